@@ -1,7 +1,8 @@
 #pragma once
-// The report folder: bench.json says whose it is (matrix, device, version), cells/ has one file a finished
-// render, pictures/ what the page shows. Every file is written under a temporary name and renamed, so that an
-// interruption leaves whole files only; half ones from elsewhere are recognised and measured again.
+// The report folder: bench.json identifies it (matrix, device, version), cells/ has one file per finished
+// render, pictures/ the pictures of the page. Every file is written under a temporary name and renamed, so
+// that an interruption leaves only complete files; incomplete ones from elsewhere are recognised and measured
+// again.
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
@@ -18,7 +19,7 @@ namespace lucerna::bench {
 /// Receives a one-line message.
 using Message = std::function<void(const std::string&)>;
 
-/// A folder that one bench has to itself.
+/// A folder in exclusive use by one bench.
 class ReportFolder {
  public:
   /// Makes the folder with folders `parts` in it, or continues one with the same measurement (`matrix`: any
@@ -41,7 +42,7 @@ class ReportFolder {
   int lock_ = -1;
 };
 
-/// Of a matrix.
+/// Report folder of a matrix.
 class Folder : public ReportFolder {
  public:
   /// Throws Error as ReportFolder.

@@ -1,5 +1,5 @@
 #pragma once
-// Words and numbers for the page, and its look.
+// Texts and numbers of the page, and its style sheet.
 #include <string>
 
 namespace lucerna::bench {

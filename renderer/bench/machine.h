@@ -11,7 +11,7 @@ struct Machine {
 };
 Machine this_machine();
 
-/// Programs that wanted to run in the last minute, on average, this one included; < 0: not known.
+/// Mean number of runnable programs in the last minute, including this one; < 0: unknown.
 double load_average();
 
 /// "2026-11-21 14:30 UTC".

@@ -1,5 +1,5 @@
 #pragma once
-// What `lucerna bench` measures: scenes x settings x budgets x repeats, read from a JSON file or built in.
+// Measurements of `lucerna bench`: scenes x settings x budgets x repeats, from a JSON file or built in.
 #include <array>
 #include <filesystem>
 #include <map>
@@ -12,11 +12,11 @@
 
 namespace lucerna::bench {
 
-/// What ends a render.
+/// Criterion that ends a render.
 enum class BudgetKind {
-  samples,  ///< samples a pixel, the same for all
-  errors,   ///< relative error that every tile is to reach; adaptive sampling only
-  seconds   ///< wall seconds of rendering alone
+  samples,  ///< samples a pixel, equal for all
+  errors,   ///< relative error of every tile; adaptive sampling only
+  seconds   ///< seconds of rendering
 };
 inline constexpr std::array<const char*, 3> k_budget_names = {"samples", "errors", "seconds"};
 
@@ -33,8 +33,8 @@ using SettingValues = std::map<std::string, std::string>;
 struct Setting {
   std::string name, about;
   SettingValues set;
-  /// "" or the curve that it is a point of: settings of one curve differ in how many records a solver comes
-  /// to, and the report joins them by a line, error against records.
+  /// "" or the curve of this point: settings of one curve differ in the number of records of a solver, and
+  /// the report connects them by a line, error against records.
   std::string curve;
   BudgetKind budget = BudgetKind::samples;
   /// "" or the file of another lucerna, whose verb `render` makes the pictures in a separate process; only
@@ -50,12 +50,12 @@ struct SceneEntry {
   std::filesystem::path file;
   uint32_t width = 0, height = 0;
   std::string camera;  ///< "": the scene's own
-  SettingValues set;   ///< for every setting on this scene, and its reference
+  SettingValues set;   ///< options of all settings for this scene, and of its reference
   uint32_t reference_samples = 0;
-  std::array<std::vector<double>, 3> budgets;  ///< by BudgetKind, smallest effort first
+  std::array<std::vector<double>, 3> budgets;  ///< by BudgetKind, in order of effort
 };
 
-/// One render to be measured.
+/// A render to measure.
 struct Cell {
   size_t scene = 0, setting = 0, budget = 0;  ///< indices; budget into SceneEntry::budgets[setting's kind]
   int repeat = 0;
@@ -65,10 +65,10 @@ struct Cell {
 struct Matrix {
   std::string name;
   int repeats = 3;
-  uint32_t warmup = 8;                         ///< samples a pixel rendered and thrown away before the clock
+  uint32_t warmup = 8;  ///< samples a pixel rendered and discarded before the measurement
   uint32_t seed = 1, reference_seed = 900001;  ///< repeat k has seed + k
   SettingValues set;                           ///< for all
-  bool as_seen = false;                        ///< the report's page is of the error as seen alone
+  bool as_seen = false;                        ///< the page shows only the error as seen
   std::vector<SceneEntry> scenes;
   std::vector<Setting> settings;  ///< the first is the baseline of comparisons
 
@@ -78,14 +78,14 @@ struct Matrix {
   Budget budget(const Cell& c) const {
     return {settings[c.setting].budget, budgets(c.scene, c.setting)[c.budget]};
   }
-  /// All cells in the order in which they are measured: scene by scene, and within a scene the repeats
-  /// outermost, every second one backwards, so that a machine that drifts meets all settings alike.
+  /// All cells in the order of measurement: scene by scene, and within a scene the repeats outermost, every
+  /// second one backwards, so that a drift of the machine affects all settings equally.
   std::vector<Cell> cells() const;
-  /// A name for a cell that serves as a file's: "glass.adaptive.2.0".
+  /// A name for a cell, suitable for files: "glass.adaptive.2.0".
   std::string id(const Cell& c) const;
 };
 
-/// Its place in Matrix::settings.
+/// Its index in Matrix::settings.
 std::optional<size_t> find_setting(const Matrix& matrix, const std::string& name);
 
 /// Reads a matrix; `where` locates messages, `folder` is what relative scene files start from. Throws Error,
@@ -93,7 +93,7 @@ std::optional<size_t> find_setting(const Matrix& matrix, const std::string& name
 /// types, values out of range, unknown settings, programs that cannot be run, names used twice, scenes that
 /// do not exist, and settings without a budget. k_matrix_help says what may stand in it.
 Matrix parse_matrix(const std::string& text, const std::string& where, const std::filesystem::path& folder);
-/// The same from a file, whose folder scene files are relative to.
+/// Likewise, from a file; relative scene files start from its folder.
 Matrix read_matrix(const std::filesystem::path& file);
 
 struct BuiltinInfo {

@@ -44,7 +44,7 @@ std::string heading(const Json& report) {
   return html + settings_table(report);
 }
 
-/// Nothing for reports from before it was measured.
+/// "" for reports from before it was measured.
 std::string relative_times(const Json& report) {
   for (const Json& scene : report.at("scenes"))
     for (const Json& s : scene.at("settings"))
@@ -93,7 +93,7 @@ std::string relative_times(const Json& report) {
          "plain sampling does.</p>\n";
 }
 
-/// Nothing for reports from before it was measured.
+/// "" for reports from before it was measured.
 std::string seen_times(const Json& report) {
   for (const Json& scene : report.at("scenes"))
     for (const Json& s : scene.at("settings"))
@@ -147,7 +147,7 @@ std::string index_table(const Json& report) {
   return html + "</table></div>\n";
 }
 
-/// That light was looked up in; 0 without any, and in reports from before they were counted.
+/// Number of records for lookups; 0 without any, and in reports from before they were counted.
 double records_of(const Json& cell) { return cell.contains("records") ? median_of(cell.at("records")) : 0; }
 
 bool has_records(const Json& scene) {

@@ -30,7 +30,7 @@ std::string measured(const Json& slope) {
                      slope_text(slope.at("low").get<double>()), slope_text(slope.at("high").get<double>()));
 }
 
-/// Of rows from `from` on: the largest cost of a path over the smallest.
+/// Largest over smallest cost of a path in the rows from `from`.
 double growth(const Json& rows, size_t from) {
   double least = 1e300, most = 0;
   for (size_t i = from; i < rows.size(); ++i) {
@@ -40,7 +40,7 @@ double growth(const Json& rows, size_t from) {
   return least > 0 && least < 1e300 ? most / least : 0;
 }
 
-/// What a light path costs by `what`, and from where on it is the same for all.
+/// Cost of a light path over `what`, and the value from which it is constant.
 std::string cost_text(const Json& rows, const char* what) {
   const auto at = [&](size_t i) { return rows[i].at(what).get<uint32_t>(); };
   std::string text = fmt::format(
@@ -122,7 +122,7 @@ Table rounds_table(const Json& rows, const char* what) {
   return t;
 }
 
-/// Of the largest round.
+/// Figures of the largest round.
 std::optional<double> bytes_a_million(const Json& rows) {
   const double photons = rows.back().at("photons").get<double>();
   if (!(photons > 0)) return std::nullopt;

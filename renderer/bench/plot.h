@@ -1,6 +1,5 @@
 #pragma once
-// Error against time, records that light is looked up in, rounds or radii of photons, on log axes, as inline
-// SVG.
+// Error over time, number of records, rounds or radii of photons, on logarithmic axes, as inline SVG.
 #include <string>
 #include <vector>
 
@@ -8,7 +7,7 @@
 
 namespace lucerna::bench {
 
-/// What the error is plotted against.
+/// Horizontal axis of an error plot.
 enum class Across { seconds, records, rounds, radius };
 
 struct PlotLine {

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// FNV-1a of strings, each with its length so that they cannot run into each other.
+/// FNV-1a of strings, each with its length, so that concatenations differ.
 class Pieces {
  public:
   void add(std::string_view bytes) {
@@ -41,7 +41,7 @@ std::string decode_uri(const std::string& uri) {
   return text;
 }
 
-/// Every text under a key "uri" (buffers, images) or "file" (environments), wherever it stands.
+/// Every text under a key "uri" (buffers, images) or "file" (environments), at any depth.
 void collect_files(const Json& json, std::set<std::string>& files) {
   if (json.is_object()) {
     for (const auto& [key, value] : json.items()) {
@@ -108,7 +108,7 @@ std::string reference_key(const Matrix& matrix, const SceneEntry& scene, const s
          {"camera", scene.camera}, {"seed", matrix.reference_seed}, {"version", LUCERNA_VERSION},
          {"halves", true}};
   SettingValues values = scene.set;
-  values.insert(matrix.set.begin(), matrix.set.end());  // the scene's stand
+  values.insert(matrix.set.begin(), matrix.set.end());  // the scene's values take precedence
   for (const auto& [key, value] : values)
     if (!solvers::owner_of(key)) j["set"][key] = value;
   Pieces hash;

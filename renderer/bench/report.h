@@ -1,6 +1,6 @@
 #pragma once
-// The bench's figures from its results: report.json holds everything, and all else (the table, the page, the
-// comparison of two benches) is made from it.
+// The figures of the bench from its results: report.json contains all; the table, the page and comparisons
+// are made from it.
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -9,9 +9,9 @@
 
 namespace lucerna::bench {
 
-/// The errors that times are given for.
+/// Errors for which times are reported.
 inline constexpr double k_targets[] = {0.05, 0.02, 0.01};
-/// And relative mean squared errors: 2 % and less of a pixel's own brightness in the end.
+/// Relative mean squared errors for which times are reported; at the end 2 % or less of a pixel's brightness.
 inline constexpr double k_relmse_targets[] = {0.01, 0.002, 0.0004};
 
 /// `about`: copied to its head (version, date, command, machine, device ...). The rest:
@@ -38,14 +38,14 @@ inline constexpr double k_relmse_targets[] = {0.01, 0.002, 0.0004};
 nlohmann::ordered_json make_report(const Matrix& matrix, const RunSummary& summary,
                                    const nlohmann::ordered_json& about);
 
-/// One line a cell and repeat, with a heading.
+/// One line per cell and repeat, with a heading.
 std::string make_csv(const nlohmann::ordered_json& report);
 
 /// Writes report.json, report.csv and report.html into the folder.
 void write_report(const std::filesystem::path& folder, const nlohmann::ordered_json& report);
 
-/// Reads report.json, or that of a folder. Throws Error located at the file when it is missing, not JSON, or
-/// not a report.
+/// Reads report.json, or that of a folder. Throws Error located at the file if it is missing, not JSON or not
+/// a report.
 nlohmann::ordered_json read_report(const std::filesystem::path& file_or_folder);
 
 }  // namespace lucerna::bench

@@ -1,5 +1,5 @@
 #pragma once
-// Runs a matrix: references first, then every cell that the report folder does not hold yet.
+// Runs a matrix: references first, then every cell missing in the report folder.
 #include <functional>
 #include <optional>
 #include <string>
@@ -13,28 +13,28 @@
 namespace lucerna::bench {
 
 struct Status {
-  size_t step = 0, steps = 0;    ///< of the renders still to do when the bench began, references among them
+  size_t step = 0, steps = 0;    ///< renders to do at the start of the bench, including references
   std::string what;              ///< "glass, adaptive, error 5 %, repeat 2 of 3"
-  double fraction = 0;           ///< of this render
-  std::optional<double> left_s;  ///< of the whole bench; nullopt until there is an estimate
+  double fraction = 0;           ///< done part of this render
+  std::optional<double> left_s;  ///< remaining time of the bench; nullopt until there is an estimate
 };
 
 struct Hooks {
   std::function<bool()> interrupted;            ///< called between work items
   std::function<void(const Status&)> progress;  ///< several times a second
-  Message message;                              ///< for lines to keep
+  Message message;                              ///< receives lines to keep
 };
 
 struct RunOptions {
-  std::string device;  ///< as gpu::DeviceOptions
+  std::string device;  ///< as in gpu::DeviceOptions
   std::filesystem::path references;
-  scene::LoadOptions scenes = {};  ///< what scenes may read and take
+  scene::LoadOptions scenes = {};  ///< limits for scenes
 };
 
 struct RunSummary {
-  bool complete = false;                  ///< false: interrupted; what was finished is kept
+  bool complete = false;                  ///< false: interrupted; finished results are kept
   size_t measured = 0;                    ///< cells rendered now
-  size_t kept = 0;                        ///< cells that were there
+  size_t kept = 0;                        ///< cells already present
   std::vector<ReferenceInfo> references;  ///< by scene, where known
   std::map<std::string, Result> results;  ///< by Matrix::id()
 };
