@@ -1,5 +1,5 @@
 #pragma once
-// The one error type that crosses module edges. An error always says where, what, and what to do.
+// The only error type across modules. An error always states where, what, and what to do.
 #include <fmt/format.h>
 
 #include <stdexcept>

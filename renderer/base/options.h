@@ -40,12 +40,12 @@ OptionInfo boolean_option(const char* key, const char* fallback, const char* hel
 OptionInfo choice_option(const char* key, const char* fallback, std::vector<std::string> choices,
                          const char* unit, const char* help, const char* label = "");
 OptionInfo text_option(const char* key, const char* help);
-/// The same option, but a change does not restart the picture.
+/// Likewise, but a change does not restart the picture.
 OptionInfo without_restart(OptionInfo option);
-/// The same option with same_light set.
+/// Likewise, with same_light set.
 OptionInfo of_same_light(OptionInfo option);
 
-/// The same option with `meaning` as at_zero.
+/// Likewise, with `meaning` as at_zero.
 OptionInfo with_zero(OptionInfo option, const char* meaning);
 
 /// The valid values, for display: "path|off", "true|false", "1 to 64 vertices"; "" for a text.

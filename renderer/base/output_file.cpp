@@ -28,7 +28,7 @@ fs::path folder_of(const fs::path& file) {
   return file.has_parent_path() ? file.parent_path() : fs::path(".");
 }
 
-/// Where bytes for a name really go.
+/// Final destination of a name, through links.
 struct Place {
   fs::path path;               ///< behind all symbolic links
   std::optional<int> own;      ///< or the descriptor of this process that the name refers to
@@ -103,7 +103,7 @@ OutputFile::OutputFile(const fs::path& file) : name_(file) {
   const Place place = place_of(file);
   target_ = place.path;
   if (place.own) {
-    std::fflush(nullptr);  // what was printed before comes before
+    std::fflush(nullptr);  // earlier output comes first
     handle_ = fcntl(*place.own, F_DUPFD_CLOEXEC, 3);
     if (handle_ < 0) refuse(errno);
   } else if (place.mode && !S_ISREG(*place.mode)) {

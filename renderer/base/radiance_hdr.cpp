@@ -69,7 +69,7 @@ std::optional<RadianceHeader> read_radiance_header(const std::vector<uint8_t>& f
     const auto value = [&](std::string_view key) {
       return found->starts_with(key) ? std::optional(found->substr(key.size())) : std::nullopt;
     };
-    // What stands behind a tab is of pictures that this one was made of.
+    // Lines after a tab describe source pictures of this one.
     if (const auto exposure = value("EXPOSURE=")) {
       if (const auto v = numbers<1>(*exposure))
         for (double& f : factor) f *= (*v)[0];

@@ -12,7 +12,7 @@ namespace lucerna {
 
 /// The header of a Radiance picture.
 struct RadianceHeader {
-  size_t end = 0;                  ///< where the scan lines begin
+  size_t end = 0;                  ///< start of the scan lines
   uint32_t lines = 0, length = 0;  ///< scan lines in the file, and pixels of each
   bool columns = false;            ///< a scan line is a column of the picture, not a row
   bool rows_up = false;            ///< rows go from the bottom to the top (+Y)
@@ -30,7 +30,7 @@ struct RadianceHeader {
 /// Nothing if the file is no Radiance picture or its header is damaged.
 std::optional<RadianceHeader> read_radiance_header(const std::vector<uint8_t>& file);
 
-/// The same scan lines with a minimal header: rows from the top, RGB.
+/// Likewise, with a minimal header: rows from the top, RGB.
 std::vector<uint8_t> without_radiance_header(const std::vector<uint8_t>& file, const RadianceHeader& header);
 
 /// Applies the header to the file's pixels (`channels` values each, read without the header): rows from the

@@ -32,7 +32,7 @@ class Writer {
       (triangles_.opaque(i) ? data_.has_opaque : data_.has_non_opaque) = true;
     data_.triangles.reserve(3 * tree_.references.size());
     if (tree_.nodes.empty() || tree_.nodes[0].leaf()) {
-      // The one leaf, or none, becomes the root's only child.
+      // A single leaf, or none, becomes the root's only child.
       data_.nodes.resize(k_node_texels);
       data_.max_depth = 1;
       std::vector<uint32_t> children(tree_.nodes.size(), 0u);

@@ -12,9 +12,9 @@ struct Crossing {
   bool plane = false;   ///< the ray crosses the triangle's plane (it is not parallel and the area is not 0)
   double t = 0;         ///< distance along the ray, in units of its direction's length
   double u = 0, v = 0;  ///< barycentrics of p1 and p2; may lie outside [0, 1]
-  /// How far the crossing lies inside the triangle, as the least barycentric (negative: outside).
+  /// Smallest barycentric coordinate of the crossing (negative: outside).
   double inside() const { return std::min({u, v, 1 - u - v}); }
-  /// The same as a distance in world units across the ray: to the nearest edge's line (negative: outside).
+  /// Likewise, as a distance in world units across the ray: to the nearest edge's line (negative: outside).
   /// This is what single-precision rounding of the vertices moves, whatever the triangle's shape.
   double margin = 0;
 };

@@ -58,7 +58,7 @@ Box grown(const Box& box, float margin) {
   Box out;
   constexpr double k_most = std::numeric_limits<float>::max();
   for (int axis = 0; axis < 3; ++axis) {
-    // What a double rounds of them lies far below the last place of the float.
+    // Rounding errors of doubles are far below the last place of a float.
     const double lo = std::max(double{box.lo[axis]} - double{margin}, -k_most),
                  hi = std::min(double{box.hi[axis]} + double{margin}, k_most);
     const auto l = static_cast<float>(lo), h = static_cast<float>(hi);

@@ -1,11 +1,12 @@
 #pragma once
-// How the view moves: pure functions on a camera, without a window. Metres and radians; right-handed, Y up. A
-// camera looks down its -Z. All functions leave the matrix rigid (orthonormal axes), whatever it was before.
+// Movements of the view: pure functions on a camera, without a window. Metres and radians; right-handed, Y
+// up. A camera looks down its -Z. All functions leave the matrix rigid (orthonormal axes), whatever it was
+// before.
 #include "scene/scene.h"
 
 namespace lucerna::commands {
 
-/// A camera with the point that it turns about: `distance` metres straight ahead.
+/// A camera with its pivot, `distance` metres ahead.
 struct Viewpoint {
   scene::Camera camera;
   float distance = 1;  ///< to the pivot, metres, > 0
@@ -31,12 +32,11 @@ void look(Viewpoint& view, const vec2& angles);
 /// Moves sideways so that the pivot follows a drag by `pixels` (y down) in a picture `picture_height` pixels
 /// high.
 void pan(Viewpoint& view, const vec2& pixels, float picture_height);
-/// Moves closer by 10 % of the distance per step (negative: away). When the pivot is nearly reached it is
-/// pushed ahead, so that the camera can move on through a doorway. Orthographic cameras change their size
-/// instead.
+/// Moves closer by 10 % of the distance per step (negative: away). Near the pivot the pivot is moved ahead,
+/// so that the camera can continue through a doorway. Orthographic cameras change their size instead.
 void dolly(Viewpoint& view, float steps);
-/// Puts the eye at a place, looking at `target`, which becomes the pivot. False, and nothing changes, when
-/// that gives no direction.
+/// Places the eye, looking at `target`, which becomes the pivot. False, without a change, if there is no
+/// direction.
 bool place(Viewpoint& view, const vec3& eye, const vec3& target, const vec3& up);
 /// Moves by metres along the camera's own axes: right, up, forward.
 void fly(Viewpoint& view, const vec3& metres);

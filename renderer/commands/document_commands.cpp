@@ -114,7 +114,7 @@ void aim(const Arguments& a, scene::Light& light) {
   light.outer_cone = std::max(light.outer_cone, light.inner_cone);
 }
 
-/// What "light.set" may change.
+/// Parameters of "light.set".
 std::vector<Parameter> light_parameters() {
   return {
       {.name = "intensity",
@@ -178,7 +178,7 @@ void Workspace::needs_scene() const {
 
 namespace {
 
-/// Of the `kind` ("light") that is named so, or has that number from 1.
+/// The `kind` ("light") with that name, or with that number from 1.
 uint32_t index_of(const char* kind, const std::string& which, const std::vector<std::string>& names) {
   const auto found = std::find(names.begin(), names.end(), which);
   if (found != names.end()) return static_cast<uint32_t>(found - names.begin());

@@ -13,7 +13,7 @@ mat4 at(const mat4& rotation, const vec3& eye) {
   return m;
 }
 
-/// How far one may go along `direction` (unit) before `clear` is left of the way to the surface ahead.
+/// Maximum distance along `direction` (unit) that keeps `clear` to the surface ahead.
 float free_way(const Look& look, const vec3& eye, const vec3& direction, float wanted, float clear,
                Obstacle* met) {
   const auto hit = look(eye, direction, wanted + 10 * clear);

@@ -77,7 +77,7 @@ void Workspace::add_interior_commands() {
 
 namespace {
 
-/// By which a scene's bookmarks are kept: its file, the same from any folder.
+/// Key of a scene's bookmarks: its file, the same from any folder.
 std::string bookmarks_key(const scene::Scene& scene) {
   return scene.file.empty() ? "" : absolute_path(scene.file).string();
 }

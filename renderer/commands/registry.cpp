@@ -99,7 +99,7 @@ const Parameter* find_parameter(const Command& c, const std::string& name) {
   return nullptr;
 }
 
-/// Where a word's name ends: "intensity=12" -> 9; npos for a word that is a value alone.
+/// End of a word's name: "intensity=12" -> 9; npos for a word that is only a value.
 size_t name_end(const Word& word) {
   const size_t at = word.text.find('=');
   if (at == std::string::npos || at == 0 || at >= word.plain) return std::string::npos;

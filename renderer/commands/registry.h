@@ -37,25 +37,25 @@ struct Parameter {
       -std::numeric_limits<double>::infinity();  ///< integer, real and each part of a vector; inclusive
   double hi = std::numeric_limits<double>::infinity();
   std::string unit;                  ///< "m", "EV", "degrees"; "" for none
-  std::vector<std::string> choices;  ///< of a choice; of a file: its endings (".png")
+  std::vector<std::string> choices;  ///< of a choice; for a file: its endings (".png")
   bool optional = false;             ///< optional
-  bool writes = false;               ///< a file that is written: its name must have one of its endings
+  bool writes = false;               ///< a written file: its name must have one of its endings
   /// Identifies the object of the command: two commands that differ only in other parameters are steps of one
   /// drag.
   bool which = false;
-  /// Words to offer for a text; given the values of the parameters before it.
+  /// Suggested words for a text, given the values of the parameters before it.
   std::function<std::vector<std::string>(const std::vector<std::string>&)> names = {};
 };
 
 /// Optional time limit of a waiting script command: "limit".
 Parameter time_limit();
-/// A "file" to read, whose name most likely has one of these endings.
+/// A file to read, whose name usually has one of these endings.
 Parameter file_named(std::vector<std::string> endings);
-/// A "file" to write, whose name must have one of these endings.
+/// A file to write, whose name must have one of these endings.
 Parameter file_to_write(std::vector<std::string> endings);
 
-/// The values of one command, checked. Asking for a parameter that was not given is a logic error (throws
-/// std::out_of_range); has() says.
+/// The checked values of one command. Reading a missing parameter is a logic error (throws
+/// std::out_of_range); see has().
 class Arguments {
  public:
   bool has(const std::string& name) const { return values_.count(name) > 0; }
@@ -69,27 +69,27 @@ class Arguments {
 
  private:
   friend class Registry;
-  std::map<std::string, std::string> values_;  ///< in the one form that each value has
+  std::map<std::string, std::string> values_;  ///< in canonical form
 };
 
 struct Command {
   std::string name;  ///< dotted, lower case
-  std::string help;  ///< one sentence or two
+  std::string help;  ///< one or two sentences
   std::vector<Parameter> parameters;
-  /// Looks at what the types cannot say, before anything is done; throws Error. May be empty.
+  /// Checks that types cannot express, before execution; throws Error. May be empty.
   std::function<void(const Arguments&)> check = {};
-  /// Does it; throws Error when it cannot be done.
+  /// Executes it; throws Error if it cannot.
   std::function<void(const Arguments&)> run;
   /// For commands that take time: scripts call it after run() until it returns true; a console does not wait.
   std::function<bool(const Arguments&)> done = {};
   bool undoable = false;  ///< changes the document (workspace.h)
   bool moves = false;     ///< moves the camera, which can be undone too
-  bool recorded = true;   ///< belongs into the script of a session
-  /// It reads which of the lines before were refused: a script waits for that.
+  bool recorded = true;   ///< recorded in the script of a session
+  /// It reads which earlier lines were refused, so a script waits for that.
   bool needs_outcome = false;
 };
 
-/// A line that has been understood.
+/// A parsed line.
 struct Line {
   const Command* command = nullptr;
   Arguments arguments;
@@ -109,17 +109,17 @@ class Registry {
   /// Parses a line. Empty lines and comments give a Line without a command. Throws Error, located at `where`,
   /// with the mistake and, for a mistyped name, a suggestion.
   Line parse(const std::string& line, const std::string& where = "") const;
-  /// The line in its one form.
+  /// The line in canonical form.
   std::string print(const Line& line) const;
-  /// What a line acts upon: its command, the values of its `which` parameters and the names of the options
-  /// given.
+  /// The target of a line: its command, the values of its `which` parameters and the names of the given
+  /// options.
   std::string target(const Line& line) const;
 
   /// "light.set LIGHT [intensity=W/sr] [color=r,g,b] [on=true|false]"
   std::string usage(const Command& command) const;
   /// Usage, help, and one line a parameter with its unit and range.
   std::string manual(const Command& command) const;
-  /// What the last word of an unfinished line may become; each entry is the whole word.
+  /// Completions of the last word of an unfinished line; each entry is the whole word.
   std::vector<std::string> complete(const std::string& line) const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// Words: how a line of text is cut into them, how they are written so that they can be read again, and which
-// known word a mistyped one is meant to be.
+// Words: splitting of a line of text, writing that can be parsed again, and suggestions for a mistyped
+// word.
 #include <concepts>
 #include <string>
 #include <string_view>
@@ -10,7 +10,7 @@
 
 namespace lucerna::commands {
 
-/// A word of a line. `plain` is the part before the first quotation mark: only there can a '=' part a name
+/// A word of a line. `plain` is the part before the first quotation mark: only there can '=' separate a name
 /// from its value.
 struct Word {
   std::string text;
@@ -20,12 +20,12 @@ struct Word {
 /// Splits a line at blanks. "..." keeps blanks, and inside it \" and \\ mean " and \; # starts a comment.
 /// Throws Error at `where` if a quotation mark is not closed.
 std::vector<Word> split(std::string_view line, const std::string& where = "");
-/// Where the last word of an unfinished line begins; its length when the next word has not been begun.
+/// Start of the last word of an unfinished line; its length if the next word has not begun.
 size_t last_word(std::string_view line);
-/// The text as a word that split() gives back: in quotation marks where it needs them.
+/// The text as a word for split(): in quotation marks if necessary.
 std::string quote(std::string_view text);
 
-/// The shortest text that is read back as the same number.
+/// The shortest text that parses to the same number.
 std::string number_text(double value);
 std::string number_text(float value);
 /// "x,y,z"
@@ -57,18 +57,18 @@ std::string line(const std::string& command, const A&... words) {
   return text;
 }
 
-/// Whole text as a finite number; false when it is none.
+/// The whole text as a finite number; false if it is not one.
 bool read_number(std::string_view text, double& value);
 bool read_vector(std::string_view text, vec3& value);
 
-/// The word of `known` that `word` is most likely meant to be: equal but for case, ending like it
-/// ("orbit" -> "camera.orbit"), beginning like it, or a few letters off. "" when none is near.
+/// The word of `known` that `word` most likely means: equal except for case, with the same ending
+/// ("orbit" -> "camera.orbit") or beginning, or a few letters different. "" if none is similar.
 std::string nearest(std::string_view word, const std::vector<std::string>& known);
-/// "; did you mean 'x'?", or "" when nothing is near.
+/// "; did you mean 'x'?", or "" if none is similar.
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
 
 /// Files that begin with `typed` and end in one of `endings` (".gltf"; none: all), and folders with a final
-/// '/', folders first. Looks at the first 5000 entries of a folder only.
+/// '/', folders first. Reads only the first 5000 entries of a folder.
 std::vector<std::string> paths_starting(const std::string& typed, const std::vector<std::string>& endings);
 
 }  // namespace lucerna::commands

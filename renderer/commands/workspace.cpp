@@ -17,7 +17,7 @@
 namespace lucerna::commands {
 namespace {
 
-/// As the scene knows it.
+/// As in the scene.
 Document::Material seen(Document::Material m) {
   if (!m.emits) m.emission = vec3(0);
   m.emits = true;

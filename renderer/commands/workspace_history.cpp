@@ -13,7 +13,7 @@
 namespace lucerna::commands {
 namespace {
 
-constexpr size_t k_steps = 500;  // that can be undone
+constexpr size_t k_steps = 500;  // maximum number of undo steps
 const std::string k_script_head =
     "# What was done in a session of Lucerna; lucerna --script FILE does it again.\n";
 

@@ -19,7 +19,7 @@ VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment) {
   return (value + alignment - 1) / alignment * alignment;
 }
 
-/// What the operating system could give now, or "plenty" when it does not say.
+/// Memory available from the operating system, or "plenty" if unknown.
 VkDeviceSize host_bytes_available() {
   std::ifstream file("/proc/meminfo");
   for (std::string key; file >> key;) {

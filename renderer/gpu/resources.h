@@ -65,7 +65,7 @@ class Buffer {
 /// Replaces a buffer that is smaller than desc.bytes, rounded up to texels; the content is lost.
 void make_room(Device& device, Buffer& buffer, BufferDesc desc);
 
-/// The same for a buffer in device memory that is also read as texels.
+/// Likewise, for a buffer in device memory that is also read as texels.
 void make_texel_room(Device& device, Buffer& buffer, const char* name, uint64_t bytes);
 
 enum class TexelFormat { rgba8_unorm, rgba8_srgb, rgba16f, rgba32f };

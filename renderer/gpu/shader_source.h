@@ -26,7 +26,7 @@ class ShaderSource {
   const std::filesystem::path& root() const { return root_; }
   /// A kernel's file: relative to the root ("shaders/x" is x), or absolute.
   std::optional<ShaderFile> open(const std::string& file) const;
-  /// What #include "name" finds in the file with the display name `includer`.
+  /// File for #include "name" in the file with the display name `includer`.
   std::optional<ShaderFile> include(const std::string& name, const std::string& includer) const;
   /// The file and all files that its #include lines name, directly or not, each once, in order of first
   /// mention. #if is ignored, so this may be more than the compiler reads; files that are not found are

@@ -59,7 +59,7 @@ class Instance {
   std::atomic<uint64_t> messages_{0};
 };
 
-/// What enumerate() reports of one device; `family` becomes the queue family to use.
+/// Result of enumerate() for one device; `family`: the queue family to use.
 DeviceInfo describe(const Instance& instance, VkPhysicalDevice physical, uint32_t index,
                     uint32_t* family = nullptr);
 

@@ -21,9 +21,9 @@ struct Plan {
   uint32_t enabled() const;
   /// Components that this one computes (bits), or the rest of.
   uint32_t components_of(const solvers::SolverInfo& info) const;
-  /// Of these, those of which it computes the rest alone.
+  /// Those among these for which it computes only the rest.
   uint32_t rests_of(const solvers::SolverInfo& info) const;
-  /// Those that compute something, in the registry's order.
+  /// Solvers that compute something, in the registry's order.
   std::vector<const solvers::SolverInfo*> at_work() const;
   /// Relative bias of a component's mean: the part of the error that the two halves of the film cannot show.
   /// 0 for unbiased solvers; nullopt if unknown or the component is off.

@@ -9,7 +9,7 @@
 namespace lucerna::plan {
 namespace {
 
-/// What each component is, for help.
+/// Description of each component, for help.
 constexpr std::array<const char*, paths::k_component_count> k_component_help{
     "emitters and direct light, also seen in mirrors and through glass", "one diffuse interreflection",
     "deeper interreflection, and caustics seen in it",

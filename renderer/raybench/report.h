@@ -1,5 +1,5 @@
 #pragma once
-// What both benches print.
+// Output common to both benches.
 #include <string>
 
 #include "raybench/measure.h"

@@ -8,7 +8,7 @@ namespace {
 
 bool emits(const Environment& e) { return e.scale > 0 && (e.image != k_none || e.radiance != vec3(0)); }
 
-/// Of a lamp that is off nothing.
+/// 0 for a lamp that is off.
 vec3 strength(const Light& l) { return l.enabled ? l.intensity : vec3(0); }
 vec3 strength(const Material& m) { return m.unlit ? vec3(m.base_color) : m.emission; }
 

@@ -33,7 +33,7 @@ struct Voter {
 
 bool is_far(const dvec3& centre, const Extent& e) { return glm::length(centre) > k_far * e.radius; }
 
-/// How far to move the scene now, with everything relative to the origin so far.
+/// Translation of the scene, relative to the present origin.
 dvec3 next_move(const std::vector<Voter>& voters) {
   dvec3 middle(0);
   std::vector<Weighted> values;

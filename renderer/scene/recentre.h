@@ -10,11 +10,11 @@ namespace lucerna::scene {
 /// An object is far if it is more than this multiple of its radius away.
 inline constexpr double k_far = 100;
 
-/// What choose_origin() needs of a placed mesh, in the file's coordinates [m].
+/// Input of choose_origin() for a placed mesh, in the file's coordinates [m].
 struct Extent {
   glm::dvec3 centre{0};
   double radius = 0;  ///< above 0
-  double weight = 1;  ///< of its vote
+  double weight = 1;  ///< weight of its vote
 };
 
 /// The new origin for an object: near its centre, in round decimal numbers of about its radius, so that users

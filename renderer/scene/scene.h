@@ -76,7 +76,7 @@ struct Material {
   TextureUse diffuse_transmission_texture;  ///< a
   vec3 diffuse_transmission_color{1};
   TextureUse diffuse_transmission_color_texture;  ///< rgb
-  std::string group;  ///< of lights, if it emits: extras.light_group; "": none given (light_groups.h)
+  std::string group;  ///< light group, if it emits: extras.light_group; "": none given (light_groups.h)
   bool operator==(const Material&) const = default;
 };
 
@@ -105,7 +105,7 @@ struct Instance {
   Id mesh = k_none;
   mat4 to_world{1};
   bool flipped = false;
-  std::string group{};  ///< of its emitting parts: the node's extras.light_group; "": none given
+  std::string group{};  ///< light group of its emitting parts: the node's extras.light_group; "": none given
 };
 
 /// Looks down its -Z, +Y up. Perspective: yfov in radians, of the picture's height. Orthographic: half
@@ -162,7 +162,7 @@ struct Scene {
   /// Render settings from settings.json beside the scene, key -> value as text, in file order; checked by
   /// plan/.
   std::vector<std::pair<std::string, std::string>> settings;
-  std::vector<std::string> warnings;            ///< what loading repaired or skipped, one line each
+  std::vector<std::string> warnings;            ///< repairs and omissions during loading, one line each
   std::vector<std::string> extensions;          ///< supported glTF extensions that the file uses, sorted
   std::vector<std::string> unknown_extensions;  ///< ignored extensions (a warning each), sorted
 };

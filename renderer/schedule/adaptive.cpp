@@ -11,7 +11,7 @@ constexpr uint32_t k_first_mark = 4;  // samples a pixel from which an error pre
 constexpr uint32_t k_few = 8;         // samples a pixel when all of the device's path state is in use
 /// A tile stays while a neighbour is over this many times the target.
 constexpr float k_neighbours = 2;
-/// What a tile's error is taken for where there is none; no error is more (film::TileError).
+/// Error assumed for a tile without an estimate; the maximum (film::TileError).
 constexpr float k_unknown_error = 1.26f;
 /// Share of the errors that samples cannot reduce; path errors below it are not reduced further.
 constexpr float k_small_share = 1.0f / 3;

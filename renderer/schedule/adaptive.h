@@ -19,43 +19,43 @@
 namespace lucerna::schedule {
 
 enum class TileState : uint8_t {
-  waiting,  ///< for the minimum of samples
+  waiting,  ///< waits for the minimum of samples
   active,
-  done,   ///< under the target
-  capped  ///< over it, with as many samples as it may have, or as help (Tile::limited)
+  done,   ///< below the target
+  capped  ///< above it, with the maximum of samples or of useful samples (Tile::limited)
 };
 
-/// A tile's error as it was once.
+/// An earlier error of a tile.
 struct TileMark {
   float error = 0;
-  uint32_t samples = 0;  ///< a pixel; 0: not known
+  uint32_t samples = 0;  ///< a pixel; 0: unknown
 };
 
-/// A tile's relative error by where it comes from, as film::RelativeError; base/error_sum.h has the sum.
+/// Parts of a tile's relative error, as in film::RelativeError; sum: base/error_sum.h.
 struct TileErrors {
   float paths = 0, records = 0, interpolation = 0;
 };
 
-/// The paths' error at which a tile stops: where the sum comes to `target`, or, where that would take them
-/// under a third of what records and interpolation come to, at that third: the sum is then within a twentieth
-/// of what no samples take away, or a third where all of that is interpolation's.
+/// Error of the paths at which a tile stops: where the sum reaches `target`, or, if that requires less than a
+/// third of the errors of records and interpolation, at that third: the sum is then within a twentieth of the
+/// errors that samples do not reduce, or within a third if these are all interpolation.
 float paths_goal(float target, float records, float interpolation);
 
 struct Tile {
-  float error = 0;  ///< the paths', as last reported; decides nothing while waiting
-  /// ... and what samples do not take away.
+  float error = 0;  ///< error of the paths, as last reported; not used while waiting
+  /// ... and the errors that samples do not reduce.
   float records = 0, interpolation = 0;
   uint32_t samples = 0;  ///< a pixel
   uint32_t passes = 0;
   TileState state = TileState::waiting;
-  TileMark last, earlier;  ///< the newest after which samples have doubled, and the one before
+  TileMark last, earlier;  ///< the newest since samples have doubled, and the one before
   float goal(float target) const { return paths_goal(target, records, interpolation); }
   float sum() const { return error_sum(error, records, interpolation); }
   /// True if the sum is under the target, except for rounding where goal() derives from it.
   bool reached(float target) const {
     return sum() <= (records > 0 || interpolation > 0 ? 1.0001f * target : target);
   }
-  /// Capped because of its records: the paths' error is at its goal.
+  /// Capped because of its records: the paths' error has reached its goal.
   bool limited(float target) const { return state == TileState::capped && error <= goal(target); }
 };
 
@@ -64,8 +64,8 @@ struct AdaptiveOptions {
   float target_error = 0.05f;
   uint32_t min_samples = 64,
            max_samples = 1024;  ///< a pixel; made even, so that both halves of the film agree
-  uint32_t slots = 131072;      ///< paths at once, at least those of one sample of a tile
-  bool one_sample = false;      ///< items are of one sample a pixel, the same for all of their blocks
+  uint32_t slots = 131072;      ///< maximum number of paths at once, at least those of one sample of a tile
+  bool one_sample = false;      ///< items have one sample a pixel, the same for all of their blocks
 };
 
 class AdaptiveSchedule {
@@ -80,15 +80,15 @@ class AdaptiveSchedule {
   bool done() const { return open_ == 0 && behind_.empty(); }
   /// The next work item; empty when done. report() then needs the errors of the item's tiles.
   WorkItem next();
-  /// Tiles of the item that next() gave last, in order; none while blocks are behind.
+  /// Tiles of the last item of next(), in order; none while blocks are behind.
   const std::vector<uint32_t>& to_report() const { return item_tiles_; }
-  /// The item has been carried out; `errors`, one for each of to_report().
+  /// Reports that the item is finished; `errors`: one per tile of to_report().
   void report(const std::vector<TileErrors>& errors);
-  /// Goes on with another target, minimum or maximum (tile and slots stay as they are): tiles that are then
-  /// over the target get samples again, those under it none, and no sample is thrown away. Between report()
-  /// or give_back() and next().
+  /// Continues with another target, minimum or maximum (tile and slots are unchanged): tiles above the new
+  /// target get samples again, those below none, and no sample is discarded. Between report() or give_back()
+  /// and next().
   void retarget(const AdaptiveOptions& options);
-  /// The item was not carried out: next() gives it again.
+  /// Returns an item that was not finished: next() gives it again.
   void give_back();
 
   const std::vector<Tile>& tiles() const { return tiles_; }
@@ -98,7 +98,7 @@ class AdaptiveSchedule {
   std::vector<uint32_t> blocks_of(uint32_t tile) const;
   /// Samples a pixel of every block, in raster order.
   std::vector<uint32_t> counts() const;
-  /// Samples that every pixel has, that some pixel has.
+  /// Minimum and maximum number of samples over the pixels.
   uint32_t least_samples() const;
   uint32_t most_samples() const;
   uint32_t count(TileState state) const;
@@ -109,7 +109,7 @@ class AdaptiveSchedule {
  private:
   void set_limits(const AdaptiveOptions& options);
   void start_round();
-  /// Where items are of one sample: tiles with the same next sample stand together.
+  /// For items of one sample: tiles with the same next sample are adjacent.
   void order_round();
   void update_states();
 
@@ -128,7 +128,7 @@ class AdaptiveSchedule {
     uint32_t block, have, lacks;
   };
   std::vector<Behind> behind_;  // blocks with fewer samples than their tile; served from the end
-  size_t item_behind_ = 0;      // of them in the last item
+  size_t item_behind_ = 0;      // number of them in the last item
 };
 
 }  // namespace lucerna::schedule

@@ -1,5 +1,5 @@
 #pragma once
-// What is rendered at once: a list of blocks of 8x8 pixels, each given the same number of further samples.
+// A work item: blocks of 8x8 pixels, each with the same number of further samples.
 #include <cstdint>
 #include <vector>
 

@@ -7,7 +7,7 @@
 
 namespace lucerna::sort {
 
-/// How many elements an array has: known while recording, or only on the device, as the length of an append
+/// Number of elements of an array: known while recording, or only on the device, as the length of an append
 /// queue is.
 ///
 /// Kernels find their share of the work from the count itself, so that nothing has to be dispatched
@@ -19,7 +19,7 @@ struct Count {
   uint64_t offset = 0;                  ///< bytes, a multiple of 4
 };
 
-/// How work is cut into runs, one an invocation.
+/// Division of work into runs, one per invocation.
 struct Runs {
   uint32_t group = 8;    ///< invocations a workgroup
   uint32_t wanted = 64;  ///< runs, where there are elements enough

@@ -16,7 +16,7 @@ enum class Keys { bits32, bits64 };  ///< of shared::SortPair, of shared::SortEn
 /// barriers, no atomics.
 class RadixSort {
  public:
-  /// How work is cut. Results do not depend on it.
+  /// Division of work. Results do not depend on it.
   struct Tuning {
     Runs runs;
     uint32_t digit_bits = 8;        ///< most bits of a digit, 1..12

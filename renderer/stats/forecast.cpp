@@ -17,7 +17,7 @@ constexpr double k_tails = 1.5;
 /// Standard deviations of log(N error^2) that the family of laws itself is off by: everywhere, and for each
 /// factor e of work that it is carried on.
 constexpr double k_misfit = 0.03, k_drift = 0.03;
-constexpr double k_few_degrees = 100;  // where they are not known
+constexpr double k_few_degrees = 100;  // if they are unknown
 constexpr double k_rate_spread = 0.05;
 constexpr double k_band = 0.05;  // probability on either side
 
@@ -198,7 +198,7 @@ std::optional<double> WorkPace::follow(double seconds, double done, double left)
   const double elapsed = seconds - begun.seconds, worked = done - begun.done;
   if (elapsed < k_least_seconds || worked < k_least_share * (worked + left) || worked <= 0)
     return std::nullopt;
-  // What a unit has taken in the newer half of the work, so that its slow beginning does not count.
+  // Mean time of a unit in the newer half of the work, so that a slow start does not count.
   const auto half = std::find_if(points_.rbegin(), points_.rend(),
                                  [&](const Point& p) { return p.done - begun.done <= 0.5 * worked; });
   const double rest = left * (seconds - half->seconds) / (done - half->done);
@@ -214,7 +214,7 @@ constexpr double k_spread_of_k = 0.5;  // of log k
 constexpr double k_least_k = 0.5, k_most_k = 2.5;
 constexpr int k_laws = 12;
 constexpr double k_history_spread = 0.07;  // of the mean of log(error / expected)
-/// How often errors leave every law because light was met for the first time, and how far.
+/// Probability that errors follow no law because new light was found, and the deviation then.
 constexpr double k_surprise = 0.01, k_surprise_spread = 1.5;
 constexpr double k_law_spread = 0.05, k_growth_spread = 0.15;  // of log(paths)
 
@@ -225,7 +225,7 @@ double quality(double error, double k) {
   return std::max(q - std::pow(k_saturated_error, -k), 0.25 * q);
 }
 
-/// What the law makes of the tile's earlier error, now.
+/// Prediction of the tile's present error from an earlier one.
 double expected_error(const TileProgress& t, double k) {
   const double q = quality(t.earlier_error, k) * std::pow(t.samples / t.earlier_samples, 0.5 * k);
   return std::pow(q + std::pow(k_saturated_error, -k), -1 / k);

@@ -37,27 +37,27 @@ class Outlook {
   /// Samples a pixel, over those of the last line (>= 1), with which the error is under `target` (> 0) with
   /// the probability `wanted`, 0 < p < 1.
   double growth(double target, double wanted) const;
-  /// The error that is not exceeded with the probability `wanted` when there are `growth` times the samples.
+  /// Error that is not exceeded with the probability `wanted` at `growth` times the samples.
   double error(double growth, double wanted) const;
-  /// -d log(error) / d log(N) now, as expected: 1/2 to 1.
+  /// Expected -d log(error) / d log(N) now: 1/2 to 1.
   double exponent() const;
 
  private:
   struct Law {
     double q, share;         ///< share: f, of the part that falls as 1 / N
-    double level, variance;  ///< of log(a) as if all lines were one, and its variance
-    double last;             ///< log(a) by the last line alone
+    double level, variance;  ///< estimate of log(a) from all lines together, and its variance
+    double last;             ///< log(a) from the last line alone
     double weight;
   };
   double probability(double target, double growth) const;
 
   std::vector<Law> laws_;
-  double samples_ = 0;        ///< of the last line
-  double line_variance_ = 0;  ///< of the logarithm of a line's error^2
+  double samples_ = 0;        ///< samples of the last line
+  double line_variance_ = 0;  ///< variance of the logarithm of a line's error^2
 };
 
-/// The paths' error with which the sum's is `target` (Entry::sum), by the records of the last line; 0: what
-/// records and interpolation come to is over it, and no samples will reach it.
+/// Error of the paths at which that of the sum is `target` (Entry::sum), with the records of the last line;
+/// 0: the errors of records and interpolation exceed it, so that no number of samples reaches it.
 double paths_target(const Ledger& ledger, double target);
 
 /// Wall seconds (Entry::wall_s) from the image's start until the sum's error is `target` in uniform sampling:
@@ -75,51 +75,51 @@ std::optional<Band> error_at(const Ledger& ledger, double samples);
 class WorkPace {
  public:
   static constexpr double k_least_seconds = 3, k_least_share = 0.1;
-  /// `done`, `left`: units of work. Nothing until k_least_seconds and k_least_share of the work have gone by:
-  /// what a unit takes is not known before. Work that is less than before, or an earlier time, is a new one.
+  /// `done`, `left`: units of work. None until k_least_seconds and k_least_share of the work are done. Less
+  /// work than before, or an earlier time, starts a new forecast.
   std::optional<double> follow(double seconds, double done, double left);
 
  private:
-  static constexpr double k_least_rest = 0.5;  ///< of what the newest pace makes of the rest
+  static constexpr double k_least_rest = 0.5;  ///< minimum remaining time over that at the newest pace
   struct Point {
     double seconds = 0, done = 0;
   };
-  std::vector<Point> points_;    ///< since the work was begun
-  std::optional<double> total_;  ///< seconds from then to the end
+  std::vector<Point> points_;    ///< since the start of the work
+  std::optional<double> total_;  ///< seconds from the start to the end
 };
 
-/// Wall seconds that a path has taken lately: over the last half of the work, so that the first, short passes
-/// do not count. 0 before there is a line.
+/// Wall seconds of a path over the last half of the work, so that the first, short passes do not count. 0
+/// without lines.
 double seconds_a_path(const Ledger& ledger);
-/// By how much that differs between the last half and the last quarter of the work, as a logarithm; a
-/// twentieth at least.
+/// Difference of that between the last half and the last quarter of the work, as a logarithm; at least a
+/// twentieth.
 double spread_of_pace(const Ledger& ledger);
 
-/// A tile as the forecast sees it.
+/// Data of a tile for the forecast.
 struct TileProgress {
-  double error = 0;    ///< of the paths, as the scheduler has it (film::TileError::relative)
-  double goal = 0;     ///< that it is to come to, where that is not the target; 0: it is
+  double error = 0;    ///< of the paths, as in the scheduler (film::TileError::relative)
+  double goal = 0;     ///< goal of the error, if not the target; 0: the target
   double samples = 0;  ///< a pixel
   double pixels = 0;
   bool open = true;  ///< still given samples
-  /// The same with a half to a quarter of the samples; 0: not known.
+  /// Likewise, at a half to a quarter of the samples; 0: unknown.
   double earlier_error = 0, earlier_samples = 0;
 };
 
-/// Error at which the tiles' measure saturates: with few samples of rare light one half of the film holds
-/// nearly all of a pixel, and the difference of the halves says no more than that.
+/// Error at which the tiles' measure saturates: with few samples of rare light one half of the film has
+/// nearly all light of a pixel, so the difference of the halves has no further information.
 inline constexpr double k_saturated_error = 0.63;
 
-/// Samples a pixel at which a tile's error comes to `target`. Errors fall from saturation e0 to those of
+/// Samples a pixel at which a tile's error is `target`. Errors fall from saturation e0 to those of
 /// independent samples,
 ///   1 / error^k = 1 / e0^k + (samples / s^2)^(k/2),
-/// s the noise of one sample; k says how soon: about 2 where all pixels of a tile are alike, 1 and less where
-/// light comes in amounts of all sizes, so that pixels leave saturation one after another.
+/// s the noise of one sample; k is about 2 if all pixels of a tile are similar, and 1 or less if light comes
+/// in amounts of all sizes, so that pixels leave saturation one after another.
 double samples_to(const TileProgress& tile, double target, double k);
 inline constexpr double k_usual_k = 1.2;  ///< without data of the picture
 
-/// Paths of the whole adaptive render: those so far, and for every open tile those that bring its error under
-/// the target and its neighbours' (`across` tiles in a row) under twice the target, within the minimum and
+/// Paths of the whole adaptive render: those so far, and for every open tile those until its error is below
+/// the target and its neighbours' (`across` tiles in a row) below twice the target, within the minimum and
 /// maximum; a 90 % band. nullopt while an open tile has fewer than Outlook::k_least_samples.
 ///
 /// The exponent k at which tiles leave saturation depends on the picture: log k is normal about log(1.2) with
@@ -132,11 +132,11 @@ inline constexpr double k_usual_k = 1.2;  ///< without data of the picture
 std::optional<Band> total_paths(std::span<const TileProgress> tiles, uint32_t across, double target,
                                 double min_samples, double max_samples);
 
-/// What plain sampling takes, about.
+/// Approximate cost of plain sampling.
 struct SamplePace {
-  double seconds = 0;  ///< of a sample for every pixel
-  double noise = 0;    ///< relative, of the picture with one (Entry::error)
-  /// Until it has that noise, which falls with the square root of the samples.
+  double seconds = 0;  ///< time of one sample for every pixel
+  double noise = 0;    ///< relative noise of the picture with one sample (Entry::error)
+  /// Time until it has that noise, which falls with the square root of the samples.
   double seconds_to(double error) const { return seconds * (noise / error) * (noise / error); }
 };
 

@@ -1,6 +1,6 @@
 #pragma once
-// What a render has cost so far and how good it is: one line each time the work has grown by a quarter or
-// half, so that the whole story of a long render is a few dozen lines, evenly spaced in log time.
+// Cost and quality of a render over time: one line each time the work has grown by a quarter or half, so that
+// a long render has a few dozen lines, evenly spaced in log time.
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -23,7 +23,7 @@ struct Entry {
   /// Wall time from the image's first work on, without pauses. Includes display, error estimates and
   /// comparison with a reference. Forecasts use this time.
   double wall_s = 0;
-  double render_s = 0;  ///< of that, spent tracing: the time of the same picture without display
+  double render_s = 0;  ///< part of it spent tracing: the time of the same picture without display
   /// Part of wall_s and of the rays spent on lookup data before the first sample.
   double prepared_s = 0;
   uint64_t prepared_rays = 0;
@@ -32,32 +32,32 @@ struct Entry {
   double samples = 0;  ///< a pixel, on average
   /// True if every pixel has samples in both halves of the film; otherwise errors are unknown, and 0.
   bool has_error = false;
-  /// Noise of the paths, estimated, as it is seen (film::ImageError::seen).
+  /// Estimated noise of the paths, as seen (film::ImageError::seen).
   std::array<double, k_layers> error{};
-  double degrees = 0;  ///< of freedom of error[0]^2 (film::ImageError::seen_degrees)
-  /// What of the sum's error is not the paths', as `error`: the noise of records that they read, and what
-  /// lookups are off by in the mean (film/error.h). Samples do not take it away, or, where it is the blur of
-  /// photons, slowly as their discs shrink.
+  double degrees = 0;  ///< degrees of freedom of error[0]^2 (film::ImageError::seen_degrees)
+  /// The other parts of the sum's error, as seen: the noise of records, and the mean error of lookups
+  /// (film/error.h). More samples do not reduce them, except the blur of photons, slowly, as their discs
+  /// shrink.
   double records = 0, interpolation = 0;
   /// Estimated error of the sum, from all three.
   double sum() const { return error_sum(error[0], records, interpolation); }
-  /// What more samples do not go below, as things are.
+  /// The part that more samples do not reduce at present.
   double floor() const { return records + interpolation; }
   /// A component's share of the noise, 0..1, as film::ImageError::share; component 0..3.
   double share(int component) const;
-  /// The same errors, of the mean: rms of the pixels' errors in luminance over the sum's mean luminance.
+  /// Likewise, of the mean: rms of the pixels' errors in luminance over the sum's mean luminance.
   struct OfMean {
     std::array<double, k_layers> error{};
     double records = 0, interpolation = 0;
     double sum() const { return error_sum(error[0], records, interpolation); }
   } of_mean;
-  /// Error of the tiles, of the sum, each over its own pixels' luminance (film::TileError::relative_sum): of
-  /// the median tile, and what a tenth of the tiles are over.
+  /// Error of the tiles, of the sum, each over its own pixels' luminance (film::TileError::relative_sum): the
+  /// median, and the value that a tenth of the tiles exceed.
   double tile_median = 0, tile_worst_tenth = 0;
   std::array<double, k_layers> component_s{};  ///< device time by component; [0] all
   std::optional<std::array<double, k_layers>>
-      truth;                       ///< of_mean against a reference, its own noise taken off
-  std::optional<Band> total_rays;  ///< forecast of the whole render's, in adaptive sampling
+      truth;                       ///< of_mean against a reference, without the reference's noise
+  std::optional<Band> total_rays;  ///< forecast for the whole render, in adaptive sampling
 };
 
 class Ledger {

@@ -32,7 +32,7 @@ struct BuildOptions {
 /// that is not finite (its triangle named), too many triangles, out of memory, cancelled.
 BvhData build(const Triangles& triangles, const BuildOptions& options = {});
 
-/// The same before layout and before its depth is limited; for tests and measurements.
+/// Likewise, before layout and before its depth is limited; for tests and measurements.
 Tree build_tree(const Triangles& triangles, const BuildOptions& options = {});
 
 }  // namespace lucerna::bvh

@@ -67,7 +67,7 @@ LUCERNA_LANES_INLINE bool meet(const PackedTriangles& leaf, ShearedRay& ray, Hit
   return true;
 }
 
-/// What is left to be walked.
+/// An entry of the traversal stack.
 struct Entry {
   float near;
   uint32_t child;
@@ -261,7 +261,7 @@ struct Bundle {
   }
 };
 
-/// What is left to be walked by a bundle.
+/// An entry of a bundle's traversal stack.
 struct BundleEntry {
   float near;
   uint32_t node, child;  ///< a child of a node

@@ -19,7 +19,7 @@ namespace lucerna::bvh {
 ///  - where two triangles lie within rounding of the same distance along the ray (at a shared edge; coplanar
 ///  ones that
 ///    are not the same triangle with the same order of vertices): each tracer takes the nearer by its own t.
-/// Where the distances computed are equal, both take the lower primitive id.
+/// For equal computed distances, both take the lower primitive id.
 class HostTracer {
  public:
   /// Builds the trees and copies what it needs of `triangles`. `threads`: tracing threads, including the

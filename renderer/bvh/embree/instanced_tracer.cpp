@@ -8,7 +8,7 @@
 namespace lucerna::bvh {
 namespace {
 
-/// What Embree carries through a query for us.
+/// User data of an Embree query.
 struct Context {
   RTCIntersectContext context;  // first: Embree hands back a pointer to it
   const InstancedTracer::Accepts* accepts;

@@ -35,7 +35,7 @@ struct alignas(64) PackedTriangles {
   uint32_t prim[k_lanes];
 };
 
-/// What the test needs to know of a ray, computed once.
+/// Constants of the test for one ray.
 struct ShearedRay {
   float origin[3];  ///< permuted: kx, ky, kz
   float shear[3];
@@ -88,7 +88,7 @@ LUCERNA_LANES_INLINE uint32_t lanes(const Ints& mask) {
                                _mm_movemask_ps(_mm_castsi128_ps(half[1])) << 4);
 }
 
-/// Where r = a * b - c * d is zero, the same without rounding: both products fit a double.
+/// If r = a * b - c * d is zero, computes it without rounding: both products fit a double.
 LUCERNA_LANES_INLINE void refine(Floats& r, const Floats& a, const Floats& b, const Floats& c,
                                  const Floats& d) {
   for (int i = 0; i < k_lanes; ++i) {

@@ -51,7 +51,7 @@ class Writer {
   }
 
  private:
-  /// Of a node of the binary tree.
+  /// State of a node of the binary tree.
   struct Subtree {
     Box box;                          ///< around what is wanted; empty: nothing is
     uint32_t count = 0;               ///< triangles that are wanted
@@ -63,7 +63,7 @@ class Writer {
   };
   struct Item {
     uint32_t from;        ///< node of the binary tree
-    uint32_t parent, at;  ///< where its index belongs
+    uint32_t parent, at;  ///< position for its index
     uint32_t held;        ///< entries of a walk's stack before its children
   };
 

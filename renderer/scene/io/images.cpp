@@ -23,7 +23,7 @@ bool begins(const std::vector<uint8_t>& bytes, std::initializer_list<int> magic)
          std::equal(magic.begin(), magic.end(), bytes.begin(), [](int a, uint8_t b) { return a == b; });
 }
 
-// By what OpenImageIO knows the format: its name or an ending.
+// OpenImageIO's name of the format, or an ending.
 std::string format_name(const std::vector<uint8_t>& bytes, const std::string& hint) {
   if (begins(bytes, {0x89, 'P', 'N', 'G'})) return "png";
   if (begins(bytes, {0xff, 0xd8, 0xff})) return "jpg";

@@ -77,7 +77,7 @@ Scene load(const std::filesystem::path& gltf_or_glb, const LoadOptions& options 
 /// The contents of a scene for `lucerna info --json`: counts, meshes, materials and their kind, textures with
 /// sizes and memory, lights, cameras, environment, extensions, bounds, warnings.
 nlohmann::ordered_json describe(const Scene& scene);
-/// The same as text, several lines.
+/// Likewise, as text of several lines.
 std::string describe_text(const Scene& scene);
 
 }  // namespace lucerna::scene

@@ -31,7 +31,7 @@ std::array<float, 6> transform_matrix(const Item& transform) {
           static_cast<float>(-s * scale.x), static_cast<float>(c * scale.y), static_cast<float>(offset.y)};
 }
 
-// Which of a material's two sets of texture coordinates TEXCOORD_n is; nothing when both are others.
+// Index of TEXCOORD_n among a material's two sets of texture coordinates; none if both are others.
 std::optional<uint32_t> take_slot(std::array<int, 2>& sets, int n) {
   for (uint32_t slot = 0; slot < 2; ++slot)
     if (sets[slot] == n) return slot;
@@ -246,7 +246,7 @@ void MaterialLoader::read_extensions(const Item& extensions, Material& m, Materi
 }
 
 void MaterialLoader::load_images(bool decode_them) {
-  // Which images, and whether a use of theirs is colour.
+  // Images, and whether any use of them is colour.
   std::map<uint32_t, Decoded> images;
   for (const Wanted& wanted : wanted_) {
     const int source = document_.model.textures[wanted.texture].source;

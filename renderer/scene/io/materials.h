@@ -9,12 +9,12 @@
 
 namespace lucerna::scene {
 
-/// What geometry needs to know of a material.
+/// Data of a material needed for geometry.
 struct MaterialNeeds {
   /// n of the TEXCOORD_n that its textures read as TextureUse::uv_set 0 and 1; -1: none. 0 and 1 are
   /// themselves unless a set beyond them came first.
   std::array<int, 2> sets{-1, -1};
-  TextureUse normal_map;  ///< how its normal map is read; none without one
+  TextureUse normal_map;  ///< its normal map, if any
 };
 
 /// Reads materials on demand, and their images at the end.

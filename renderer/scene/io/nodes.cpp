@@ -288,7 +288,7 @@ class Walker {
       if (readers[1]) readers[1]->read(i, &q[0], 4);
       if (readers[2]) readers[2]->read(i, &s[0], 3);
       glm::dquat r(q.w, q.x, q.y, q.z);
-      // What has no size may have no rotation either.
+      // Items of size 0 may have no rotation either.
       if (s == vec3(0)) r = glm::dquat(1, 0, 0, 0);
       const dmat4 to_world = world * trs(dvec3(t), r / glm::length(r), dvec3(s));
       if (kind_of(to_world) == Kind::endless) extension.fail("the matrix of instance {} is not finite", i);
@@ -311,7 +311,7 @@ class Walker {
     try {
       read_lens(item, camera);
     } catch (const Error& error) {
-      // As good as none, and no reason to keep a scene from opening that may never look through it.
+      // An invalid camera counts as missing; it must not prevent loading of the scene.
       document_.warnings.add("{} cameras that cannot be used: left out", error.what());
       return;
     }
