@@ -14,7 +14,7 @@ using namespace shared;
 namespace {
 
 constexpr int k_bins = 16;
-constexpr float k_most_surface = 0.95f;  ///< of the surface of a box its parts' may have together
+constexpr float k_most_surface = 0.95f;  ///< maximum surface of the parts of a box over its own
 constexpr float k_least_metal = 0.05f, k_least_transmission = 0.05f, k_most_roughness = 0.5f;
 
 float surface(const Box& b) {
@@ -24,7 +24,7 @@ float surface(const Box& b) {
 
 struct Cut {
   int axis = 0, bin = 0;
-  float gain = 0;  ///< surface that it takes away
+  float gain = 0;  ///< reduction of surface
 };
 
 struct Cluster {
@@ -46,7 +46,7 @@ Cluster make_cluster(std::span<const Box> all, std::vector<uint32_t> things) {
     if (c.centres.size()[axis] <= 0) continue;
     std::array<Box, k_bins> bins;
     for (const uint32_t i : c.things) bins[size_t(bin_of(c, all[i], axis))].grow(all[i]);
-    std::array<float, k_bins> above{};  // of what lies in this bin and beyond
+    std::array<float, k_bins> above{};  // surface of the items in this bin and beyond
     Box sum;
     for (size_t b = k_bins; b-- > 1;) sum.grow(bins[b]), above[b] = sum.empty() ? 0 : surface(sum);
     Box below;

@@ -9,19 +9,19 @@ namespace lucerna::transport {
 
 namespace {
 
-constexpr double k_part = 0.95;  ///< of the contribution; the rest is far off
-/// By which boxes are wider than what has been found in them, for what lies between: of their greatest size,
-/// and of that of all places together.
+constexpr double k_part = 0.95;  ///< part of the contribution inside the boxes; the rest is far away
+/// Enlargement of boxes for positions between the recorded ones: over their largest size, and over that of
+/// all positions together.
 constexpr float k_wider = 0.05f, k_wider_of_all = 0.005f;
 
-/// Of the weight, within each of the nested boxes.
+/// Parts of the weight within each of the nested boxes.
 constexpr std::array k_nested_parts = {0.5, 0.8, 0.95};
 /// Width of each further box over the one before.
 constexpr float k_shell = 4;
 
 float greatest(const vec3& v) { return std::max({v.x, v.y, v.z}); }
 
-/// By that much, and so that rounding does not make it flat.
+/// Enlarges a box by that much, and enough that rounding does not make it flat.
 Box widened(const Box& b, float by) {
   const vec3 reach = glm::max(glm::abs(b.lo), glm::abs(b.hi));
   const vec3 wider(by + 1e-6f * greatest(reach));
@@ -59,7 +59,7 @@ std::vector<Box> nested_boxes(std::vector<FirstHit> places, float extent) {
     boxes.push_back(widened(box, k_wider * greatest(box.size())));
     if (boxes.size() == k_nested_parts.size()) break;
   }
-  // What is left comes from far away, of which places are too few to be known.
+  // The rest comes from far away, with too few positions to be known.
   while (boxes.size() < k_most_nested_boxes && greatest(boxes.back().size()) < extent) {
     const Box& last = boxes.back();
     boxes.push_back(widened(last, 0.5f * (k_shell - 1) * greatest(last.size())));

@@ -35,7 +35,7 @@ HitClasses choose_hit_classes(std::span<const uint32_t> features, std::span<cons
       if (more < least) least = more, chosen.of_kind[kind] = uint32_t(c + 1);
     }
   }
-  // What these kernels leave out of that for all, by the mean hit.
+  // Mean number of features per hit that these kernels omit relative to the kernel for all hits.
   uint32_t compiled = 0;
   for (size_t kind = 0; kind < kinds; ++kind) compiled |= features[kind];
   compiled &= ~(k_feature_emission | k_feature_light_samples);
@@ -66,7 +66,7 @@ gpu::Defines defines_of(const HitClass& hits, const gpu::Defines& all) {
   };
   const auto needs = [&](uint32_t features) { return (hits.features & features) != 0; };
   const bool glass = needs(k_feature_solid_glass | k_feature_thin_glass);
-  // What light samples read of emissive triangles stays (LUCERNA_LIGHT_SURFACE).
+  // Features of emissive triangles for light samples remain (LUCERNA_LIGHT_SURFACE).
   const bool reads_lights = !hits.sky && on("LUCERNA_EMISSIVE") && !on("LUCERNA_PLAIN_EMITTERS") &&
                             (on("LUCERNA_TEX_EMISSION") || on("LUCERNA_ALPHA") || on("LUCERNA_VERTEX_EXTRA"));
   d["LUCERNA_SCENE_GLOSSY"] =

@@ -16,24 +16,24 @@ using namespace shared;
 
 namespace {
 
-/// Probability that every cluster keeps of that without learning, and of an even one: what has been seen in
-/// vain so far is still found, be it of little power.
+/// Probability of each cluster that remains unlearned, and that is uniform, so that clusters without success
+/// so far are still found, even with little power.
 constexpr double k_defensive = 0.11, k_even = 0.04;
-/// The latter before anything is learned: where a strong light is hidden, a weak one is chosen now and then.
+/// Uniform part before learning: where a strong light is hidden, a weak one is chosen occasionally.
 constexpr double k_even_at_first = 0.1;
 /// Weight of the surrounding cells' moments, in samples, for each cluster.
 constexpr double k_prior_samples = 6;
 /// Minimum samples of a cell to split it; a fifth of that gives a cell its own row.
 constexpr size_t k_cut = 256;
-/// Light samples of which the share that has arrived is a figure.
+/// Minimum light samples for a known share of unblocked shadow rays.
 constexpr size_t k_known_rays = 16;
-/// Rows at most, and their texels.
+/// Maximum number of rows, and of their texels.
 constexpr uint32_t k_most_rows = 16384, k_most_row_texels = 1u << 22;
-constexpr uint32_t k_levels = 7;  // of the octree of the cells
+constexpr uint32_t k_levels = 7;  // levels of the octree of the cells
 static_assert(1u << k_levels == k_learned_cells && k_learned_top * k_learned_brick == k_learned_cells);
 constexpr uint32_t k_top_level = 4;
 static_assert(1u << k_top_level == k_learned_top);
-/// Cells of the coarse grid, of all facings.
+/// Cells of the coarse grid, for all facings.
 constexpr uint32_t k_bricks = k_learned_facings * k_learned_top * k_learned_top * k_learned_top;
 
 /// Facing, then the path through the octree, 3 bits a level.
@@ -47,11 +47,11 @@ uint32_t key_of(const LearnedCells& cells, const LightRecord& r) {
   return key;
 }
 
-/// A light sample or a scattered ray that met light.
+/// A light sample, or a scattered ray that hit light.
 struct Sample {
   uint32_t key;
   bool scattered;
-  bool last, arrived;  // of the last generation; its shadow ray has arrived
+  bool last, arrived;  // belongs to the last generation; its shadow ray was unblocked
   uint32_t cluster;
   double value, rate;
 };
@@ -76,13 +76,13 @@ class Learner {
       if (r.met > 0 && r.before > 0)
         samples_.push_back({key, true, false, false, r.met - 1, double(r.met_value) / r.before, r.met_rate});
     }
-    // By all fields, so that sums do not depend on the order of arrival.
+    // Sorts by all fields, so that sums do not depend on the order of arrival.
     std::sort(samples_.begin(), samples_.end(), [](const Sample& a, const Sample& b) {
       return std::tie(a.key, a.scattered, a.cluster, a.value, a.rate) <
              std::tie(b.key, b.scattered, b.cluster, b.value, b.rate);
     });
     most_rows_ = std::min(k_most_rows, std::max(16u, k_most_row_texels / clusters.count()));
-    // About as many samples come on a row as a quarter of this.
+    // A row gets about a quarter of this number of samples.
     cut_ = std::max<size_t>(k_cut, 6 * samples_.size() / most_rows_);
     sums_.resize(clusters.count());
     counts_.resize(clusters.count());
@@ -95,7 +95,7 @@ class Learner {
   }
 
   void learn() {
-    // Without learning: contributions that are in proportion to the probabilities.
+    // Without learning: contributions proportional to the probabilities.
     Moments prior(clusters_.count());
     for (size_t c = 0; c < prior.size(); ++c) prior[c] = double(clusters_.plain[c]) * clusters_.plain[c];
     const Range all{0, samples_.size()};
@@ -112,7 +112,7 @@ class Learner {
   }
 
   void fill_all(uint32_t row) { to_.grid.assign(k_bricks, row << 1); }
-  /// As without learning, but for this share, which is even over the clusters that have any light.
+  /// As without learning, except for this share, which is uniform over the clusters with light.
   void mix_all(double even) {
     std::vector<double> p(even_.size());
     for (size_t c = 0; c < p.size(); ++c) p[c] = (1 - even) * clusters_.plain[c] + even * even_[c];
@@ -159,7 +159,7 @@ class Learner {
     ++to_.row_count;
   }
 
-  /// Mean rates of the clusters, wherever they are seen from.
+  /// Mean rates of the clusters, from all points.
   void find_rates() {
     rates_.assign(clusters_.count(), 0.0);
     std::vector<double> counts(rates_.size(), 0.0);
@@ -168,7 +168,7 @@ class Learner {
     for (size_t c = 0; c < rates_.size(); ++c) rates_[c] /= std::max(1.0, counts[c]);
   }
 
-  /// With `prior`, of which, where `scaled`, only the proportions count.
+  /// With `prior`; if `scaled`, only its proportions are used.
   Moments moments_of(Range range, const Moments& prior, bool scaled) {
     std::fill(sums_.begin(), sums_.end(), 0.0);
     std::fill(firsts_.begin(), firsts_.end(), 0.0);
@@ -178,7 +178,7 @@ class Learner {
       const Sample& s = samples_[i];
       if (!s.scattered) ++counts_[s.cluster], ++vertices;
     }
-    // Light samples and scattered rays together, by the balance heuristic.
+    // Combines light samples and scattered rays by the balance heuristic.
     for (size_t i = range.first; i < range.end; ++i) {
       const Sample& s = samples_[i];
       const double share = s.value / (counts_[s.cluster] + vertices * s.rate);
@@ -186,8 +186,7 @@ class Learner {
       sums_[s.cluster] += share * s.value;
       firsts_[s.cluster] += share;
     }
-    // How many light samples all that is about as good as, and how much brighter it is here than the prior
-    // has it.
+    // Equivalent number of light samples, and the brightness here relative to the prior.
     double found = 0, expected = 0;
     for (size_t c = 0; c < prior.size(); ++c) {
       weights_[c] = counts_[c] + vertices * rates_[c];
@@ -203,7 +202,7 @@ class Learner {
   }
 
   void judge(Range range, const Moments& moments, uint32_t row) {
-    // Of the last moments_of(): the mean of what arrives, and the second moments of a light sample.
+    // From the last moments_of(): mean of arriving light, and second moments of a light sample.
     double mean = 0, plain = 0, learned = 0;
     for (size_t c = 0; c < moments.size(); ++c) {
       if (clusters_.plain[c] <= 0) continue;
@@ -217,7 +216,7 @@ class Learner {
     noise_learned_ += weight * std::max(0.0, learned - mean * mean);
   }
 
-  /// Of the last generation's rays; `around`: where these are too few.
+  /// Share for the last generation's rays; `around`: used if these are too few.
   void note_arrived(Range range, uint32_t row, float around) {
     size_t count = 0, arrived = 0;
     for (size_t i = range.first; i < range.end; ++i)
@@ -250,7 +249,7 @@ class Learner {
     }
   }
 
-  /// Lookups in this cell read the row from now on.
+  /// Makes lookups in this cell read the row.
   void fill(uint32_t level, uvec3 corner, uint32_t key, uint32_t row) {
     const uint32_t facing = key >> 3 * level;
     const auto top_index = [&](uvec3 t) {

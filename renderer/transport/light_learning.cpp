@@ -30,7 +30,7 @@ LightLearning::LightLearning(gpu::Device& device, upload::LightClusters clusters
 }
 
 void LightLearning::upload_clusters() {
-  // The device has them from now on.
+  // Now on the device.
   put(device_, cluster_texels_, "light clusters", std::exchange(clusters_.clusters, {}));
   put(device_, members_, "lights of clusters", std::exchange(clusters_.members, {}));
   put(device_, primitives_, "clusters of emissive triangles", std::exchange(clusters_.primitives, {}));

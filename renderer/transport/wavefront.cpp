@@ -18,7 +18,7 @@ struct Wavefront::Impl {
   uint32_t slots;
   bool transparent = false;
   uint32_t groups = 1;          // separate light groups
-  bool compact_groups = false;  // ... all components of one together
+  bool compact_groups = false;  // ... with all components together
   bool writes_bias = false;
   uint32_t enabled = 15;
   std::vector<uint64_t> in_queue;  // a bit a slot
@@ -124,10 +124,10 @@ struct Wavefront::Impl {
       for (gpu::Resources* r : {&main[k], &shade_shadow[k]}) learning->bind(*r);
   }
 
-  /// Records what adds the paths of the last item to the film, or, where `samples` is 0, makes its picture.
+  /// Records the addition of the last item's paths to the film, or, with `samples` 0, its picture.
   void add(film::Film& film, uint32_t pixels, uint32_t samples);
 
-  /// From `begin` until no path is alive. False when cancelled.
+  /// From `begin` until no path is alive. False if cancelled.
   bool trace_paths(uint32_t count, const PathEnds& ends, const std::function<bool()>& cancel);
 
   StageSum& stage(const std::string& name, bool host) {
@@ -136,7 +136,7 @@ struct Wavefront::Impl {
     return stats.stages.emplace_back(StageSum{name, 0, host});
   }
 
-  /// Adds a stage's time, shared out by rays per component; without rays it goes to the eye's own account.
+  /// Adds a stage's time, distributed by rays per component; without rays to the account of eye paths.
   void account(const std::string& name, double ms, const uint32_t* rays_by_component, bool host) {
     stage(name, host).ms += ms;
     double total = 0;
@@ -175,7 +175,7 @@ struct Wavefront::Impl {
     account(name, timer.milliseconds(), is_shadow ? shadows : closest, true);
   }
 
-  /// Puts a queue's slots, no two alike, into their order, in which they lie in memory and in the picture.
+  /// Sorts the slots of a queue, all different, into their order in memory and in the picture.
   void order_by_slot(std::span<uint32_t> queue) {
     if (queue.size() < 1024) return;
     in_queue.assign((slots + 63) / 64, 0);
@@ -192,7 +192,7 @@ struct Wavefront::Impl {
     stream.fill(counters, 0, 4 * k_counter_shadow_next, 4);
     return going;
   }
-  /// On the host: puts those of the first shadow queue's rays that have met nothing into the second one.
+  /// On the host: appends the unblocked rays of the first shadow queue to the second one.
   uint32_t pass_unblocked(uint32_t count, const uint32_t* shadows) {
     const Timer timer;
     const auto* from = static_cast<const uint32_t*>(shadow_queues[0].mapped());
@@ -322,7 +322,7 @@ void Wavefront::Impl::add(film::Film& film, uint32_t pixels, uint32_t samples) {
   if (film.is_compact() != compact_groups)
     throw_error("transport", "a film and paths that keep groups of lights in different ways");
   if (compact_groups) {
-    // The picture's sums are of the light as it is; readers mix them.
+    // The picture's sums are of the unmixed light; readers mix them.
     stream.dispatch(fits ? unmixed_add : unmixed_add_images, film_resources, push, workgroups(pixels),
                     "film");
     stream.dispatch(fits ? groups_add : groups_add_images, film_resources, push, workgroups(pixels), "film");

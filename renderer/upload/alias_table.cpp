@@ -7,7 +7,7 @@
 namespace lucerna::upload {
 namespace {
 
-/// The nearest probability that coin_below() of shaders/lib/sampler.glsl has to the bit; of one above 0,
+/// The nearest probability that coin_below() of shaders/lib/sampler.glsl represents exactly; above 0 for one
 /// above 0.
 double as_coin(double p, bool possible) {
   const double steps = p < 0.5 ? 0x1p32 : 0x1p24;
@@ -36,7 +36,7 @@ std::vector<vec4> build_alias_table(std::span<const double> weights) {
     scaled[l] -= 1 - scaled[s];
     if (scaled[l] < 1) large.pop_back(), small.push_back(l);
   }
-  // What rounding left over takes its own entry whole; a zero weight never may.
+  // Entries left by rounding choose themselves; those of weight zero never do.
   for (uint32_t i : large) scaled[i] = 1;
   uint32_t heaviest = 0;
   for (size_t i = 0; i < n; ++i)
@@ -47,7 +47,7 @@ std::vector<vec4> build_alias_table(std::span<const double> weights) {
     else
       scaled[i] = 0, alias[i] = heaviest;
   }
-  // Probabilities are those of the coins: a weight of 1e-16 of the others is chosen more often than that.
+  // Probabilities are those of the coins: a relative weight of 1e-16 is chosen more often than that.
   std::vector<double> pmf(n, 0.0);
   for (size_t i = 0; i < n; ++i) {
     scaled[i] = as_coin(scaled[i], weights[i] > 0);

@@ -103,7 +103,7 @@ void glass_table(vec4* table, double eta) {
     vec4* row = table + j * k_table_mu;
     for (uint32_t i = 0; i < k_table_mu; ++i) {
       const double t = double(i) / (k_table_mu - 1), mu = std::max(t * t, 1e-6);
-      // Of a smooth surface facets lie along it: all of F is reflected, all of 1 - F transmitted.
+      // On a smooth surface all facets are parallel to it: F is reflected, 1 - F transmitted.
       double e = j == 0 ? 1 : 0, e_0 = 0, e_1 = 0;
       if (j > 0) {
         integrate_visible(mu, alpha, k_samples, [&](Vec wo, Vec h, double oh, Vec wi) {
@@ -158,7 +158,7 @@ void append_glass(const vec4* points, int k, std::vector<vec4>& out) {
   }
 }
 
-/// Both sides of a surface of glass, as build_bsdf_tables() lays them out.
+/// Both sides of a glass surface, in the layout of build_bsdf_tables().
 std::vector<vec4> glass_tables(float ior) {
   std::vector<vec4> tables, points(k_points);
   for (const double eta : {double(ior), 1.0 / ior}) {
@@ -168,7 +168,7 @@ std::vector<vec4> glass_tables(float ior) {
   return tables;
 }
 
-/// The same, kept for scenes to come: a tenth of a second each, and most glass is the same.
+/// Likewise, cached for later scenes: each takes a tenth of a second, and most glass is equal.
 std::vector<vec4> kept_glass_tables(float ior) {
   constexpr size_t k_kept = 64;
   static std::mutex mutex;

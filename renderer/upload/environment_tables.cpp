@@ -12,8 +12,8 @@
 namespace lucerna::upload {
 namespace {
 
-/// Solid angle of a texel, times width / 2 pi: the difference of two cosines as a product, of which nothing
-/// cancels beside the poles.
+/// Solid angle of a texel, times width / 2 pi: the difference of two cosines as a product, without
+/// cancellation near the poles.
 double row_band(uint32_t row, uint32_t h) {
   return 2 * std::sin(std::numbers::pi * (row + 0.5) / h) * std::sin(0.5 * std::numbers::pi / h);
 }
@@ -48,7 +48,7 @@ std::vector<double> luminances(const EnvironmentMap& map) {
   return y;
 }
 
-/// Which texels are the sun: those above the threshold times the mean over the sphere.
+/// Selects the texels of the sun: those above the threshold times the mean over the sphere.
 std::vector<uint8_t> sun_texels(const std::vector<double>& y, uint32_t w, uint32_t h, double threshold) {
   double sum = 0;
   for (uint32_t row = 0; row < h; ++row)
@@ -59,7 +59,7 @@ std::vector<uint8_t> sun_texels(const std::vector<double>& y, uint32_t w, uint32
   return sun;
 }
 
-/// What the environment weighs, as one emitter or as two.
+/// Weights of the environment's texels, as one emitter or as two.
 struct EnvironmentWeights {
   std::vector<double> texels, sun_texels;  ///< the latter empty unless the sun is separate
   std::vector<uint8_t> is_sun;             ///< by texel

@@ -23,7 +23,7 @@ float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
 
 bool any(const vec3& c) { return c.x > 0 || c.y > 0 || c.z > 0; }
 
-/// Vertices, triangles and their light-relevant facts, in instance order.
+/// Vertices, triangles and their data for lights, in instance order.
 void flatten_geometry(const scene::Scene& scene, FlatScene& flat) {
   for (const scene::Material& m : scene.materials) {
     flat.effects.normal_maps |= bool(m.normal_texture);

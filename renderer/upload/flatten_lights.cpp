@@ -1,4 +1,4 @@
-// What the lights of a flattened scene emit, and from where.
+// Emission of the lights of a flattened scene.
 #include <array>
 #include <bit>
 #include <cmath>
@@ -34,7 +34,7 @@ LightTexels lamp_texels(const scene::Light& l, uint32_t kind) {
           vec4(l.direction, std::cos(l.outer_cone)), vec4(0)};
 }
 
-/// Of a table's entry; `surfaces` by primitive.
+/// Emission of a table's entry; `surfaces` by primitive.
 uint32_t group_of(const FlatScene& flat, const LightEntry& entry, const std::vector<uint8_t>& surfaces) {
   if (entry.kind == k_light_triangle) return surfaces[entry.index];
   // With a separate sky, the entry is the sun's.
@@ -43,7 +43,7 @@ uint32_t group_of(const FlatScene& flat, const LightEntry& entry, const std::vec
   return entry.index == scene::k_none ? 0 : flat.groups->lamps[entry.index];
 }
 
-/// Groups of the primitives, 0 where nothing emits.
+/// Light groups of the primitives, 0 for those that do not emit.
 std::vector<uint8_t> surface_groups(const scene::Scene& scene, const FlatScene& flat) {
   std::vector<uint8_t> groups;
   groups.reserve(flat.triangles.size());

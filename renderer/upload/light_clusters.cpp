@@ -17,7 +17,7 @@ namespace {
 constexpr uint32_t k_sky_clusters = 256;  // their numbers are bytes
 constexpr uint32_t k_sky_side = 16;       // squares of a constant sky along a side
 constexpr uint32_t k_triangle_clusters = 128, k_lamp_clusters = 64, k_distant_clusters = 16;
-constexpr uint32_t k_most_squares = 8;  // of a triangle, along a side
+constexpr uint32_t k_most_squares = 8;  // squares along a side of a triangle
 /// With at least this many emissive triangles, one is resampled from this many candidates of its cluster.
 constexpr size_t k_many_triangles = 64, k_triangle_candidates = 8;
 
@@ -50,13 +50,13 @@ class Builder {
 };
 
 struct Rectangle {
-  uint32_t x0, x1, y0, y1;  // of texels
+  uint32_t x0, x1, y0, y1;  // texels
   double weight, solid_angle, priority;
   bool operator<(const Rectangle& o) const { return priority < o.priority; }
 };
 
-/// Cuts the map of a sky into rectangles. What is cut next has the greatest product of weight and solid
-/// angle: by weight alone a sun would be cut into most of them, which is seen as a whole or not at all.
+/// Divides the map of a sky into rectangles. The next one to divide has the largest product of weight and
+/// solid angle: by weight alone most rectangles would be in a sun, which is visible completely or not at all.
 class SkyCut {
  public:
   SkyCut(const std::vector<double>& weights, uint32_t w, uint32_t h)
@@ -101,7 +101,7 @@ class SkyCut {
     r.priority = r.weight * r.solid_angle;
     return r;
   }
-  /// Across the side that is longer in the middle, where half of the weight lies on each side.
+  /// Divides the longer side (at the middle) into halves of equal weight.
   std::pair<Rectangle, Rectangle> split(const Rectangle& r) const {
     const double wide =
         2 * std::numbers::pi * (r.x1 - r.x0) / w_ * std::sin(std::numbers::pi * 0.5 * (r.y0 + r.y1) / h_);
@@ -152,7 +152,7 @@ void add_sky(const FlatScene& flat, LightClusters& to) {
   to.sky = to.count();
 }
 
-/// Along the Morton curve, so that neighbours in space are neighbours in the order.
+/// Order along the Morton curve, so that neighbours in space are neighbours in the order.
 uint64_t morton(vec3 p, const Box& box) {
   const vec3 size = glm::max(box.size(), vec3(1e-30f));
   uint64_t code = 0;
@@ -162,7 +162,7 @@ uint64_t morton(vec3 p, const Box& box) {
   return code;
 }
 
-/// Runs of neighbouring lights, each of about 1 / `count` of the weight of all of them.
+/// Runs of neighbouring lights, each of about 1 / `count` of their total weight.
 void add_runs(const std::vector<uint32_t>& lights, const std::vector<vec3>& places, const FlatScene& flat,
               uint32_t count, LightClusters& to, std::vector<uint32_t>* cluster_of) {
   if (lights.empty()) return;
@@ -193,7 +193,7 @@ void add_runs(const std::vector<uint32_t>& lights, const std::vector<vec3>& plac
   finish();
 }
 
-/// Of light_facets.
+/// Texel of light_facets.
 vec4 facet_of(const FlatScene& flat, uint32_t light) {
   const vec4* t = &flat.lights[size_t(light) * shared::k_light_texels];
   const glm::dvec3 a{vec3(t[0])}, b{vec3(t[1])}, c{vec3(t[2])};
@@ -265,21 +265,21 @@ void add_lamps(const FlatScene& flat, uint32_t first, uint32_t end, LightCluster
   }
 }
 
-/// Of a place in the map of the sky, 0..1 to the right and down.
+/// Direction of a position in the map of the sky, 0..1 to the right and down.
 vec3 sky_direction(const FlatScene& flat, double u, double v) {
   const double phi = (u - 0.5) * 2 * std::numbers::pi - flat.environment_rotation;
   const double theta = v * std::numbers::pi;
   return vec3(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
 }
 
-/// Of a member of the cluster with that square.
+/// Position of a member of the cluster with that square.
 vec3 place_in(const FlatScene& flat, uint32_t light, uint32_t square) {
   const vec4* t = &flat.lights[size_t(light) * shared::k_light_texels];
   if (flat.entries[light].kind == shared::k_light_directional) return -vec3(t[2]);
   if (flat.entries[light].kind != shared::k_light_triangle) return vec3(t[0]);
   const uint32_t side = square >> 16 & 0xffu;
   if (side == 1) return (vec3(t[0]) + vec3(t[1]) + vec3(t[2])) / 3.f;
-  // As sample_light() of shaders/lib/lights.glsl places points.
+  // Like points of sample_light() of shaders/lib/lights.glsl.
   vec2 m = 0.5f * (vec2(square & 0xffu, square >> 8 & 0xffu) + 0.5f) / float(side);
   const float offset = m.y - m.x;
   m += offset > 0 ? vec2(0, offset) : vec2(-offset, 0);

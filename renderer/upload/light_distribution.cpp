@@ -1,4 +1,4 @@
-// By what lights are chosen: emissive triangles and punctual lights by power, directions of the environment
+// Selection of lights: emissive triangles and punctual lights by power, directions of the environment
 // by its luminance.
 #include <algorithm>
 #include <cmath>
@@ -15,8 +15,8 @@ namespace {
 
 using namespace shared;
 
-/// Of the emission texture on a triangle: what must be above 0 wherever it shines, for nothing else starts
-/// light paths there.
+/// Mean of the emission texture on a triangle; above 0 wherever it emits, because light paths start there
+/// with a probability proportional to it.
 double texture_mean(TextureMeans& means, const scene::TextureUse& use, const FlatScene& flat,
                     const uvec4& t) {
   const auto uv = [&](uint32_t vertex) {
@@ -32,8 +32,7 @@ float triangle_area(const FlatScene& flat, uint32_t primitive) {
   return 0.5f * glm::length(glm::cross(p[1] - p[0], p[2] - p[0]));
 }
 
-/// Entries of the light table, with the weight that each is chosen by from the scene, and the flux that it
-/// sends there.
+/// Entries of the light table, with their selection weights from the scene, and their flux into it.
 struct Choice {
   std::vector<LightEntry> entries;
   std::vector<double> weights, fluxes;
@@ -58,7 +57,7 @@ void add_triangles(const scene::Scene& scene, const FlatScene& flat, Choice& cho
   }
 }
 
-/// Lamps: flux; of a directional one that through a disk as large as the scene's core.
+/// Lamps: flux; for directional ones through a disk as large as the scene's core.
 void add_lamps(const scene::Scene& scene, double disk, Choice& choice) {
   for (uint32_t i = 0; i < scene.lights.size(); ++i) {
     const scene::Light& l = scene.lights[i];
@@ -76,7 +75,7 @@ void add_lamps(const scene::Scene& scene, double disk, Choice& choice) {
 }
 
 /// The environment and the sun count with the whole scene's cross-section, of which an interior receives
-/// little: neither they nor the lamps get less than a share of the samples.
+/// little: both they and the lamps get at least a share of the samples.
 void balance(Choice& choice, double& environment, double& sun) {
   const auto is_distant = [&](size_t i) { return choice.entries[i].kind == k_light_directional; };
   double local = 0, distant = environment + sun;

@@ -15,8 +15,8 @@ using namespace shared;
 
 namespace {
 
-/// By which two places of one vertex may differ, relative to their largest coordinate: by rounding alone, as
-/// along the seam of a sphere.
+/// Maximum relative difference of two positions of one vertex, over their largest coordinate: rounding only,
+/// as along the seam of a sphere.
 constexpr float k_same_place = 2e-6f;
 
 struct Corner {
@@ -66,11 +66,11 @@ uint32_t root_of(std::vector<uint32_t>& parents, uint32_t i) {
   return i;
 }
 
-/// By solid triangle: a number of its shell.
+/// Shells by solid triangle.
 struct Shells {
   std::vector<uint32_t> of_triangle;  ///< root corner
   std::vector<bool> open;             ///< by root corner
-  std::vector<uint32_t> borders;      ///< corners of edges that are not used as often in either direction
+  std::vector<uint32_t> borders;      ///< corners of edges not used equally often in both directions
 };
 
 Shells shells_of(const Solids& solids) {
@@ -103,11 +103,11 @@ Shells shells_of(const Solids& solids) {
   return shells;
 }
 
-/// Makes those corners along borders one that are at one place but for rounding.
+/// Merges corners along borders whose positions differ only by rounding.
 void join_borders(Solids& solids, std::vector<uint32_t> borders) {
   std::sort(borders.begin(), borders.end());
   borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
-  // Along a direction in which vertices of grids are distinct.
+  // Along a direction in which vertices of grids differ.
   std::vector<std::pair<double, uint32_t>> line;
   line.reserve(borders.size());
   for (const uint32_t corner : borders) {
@@ -132,7 +132,7 @@ void join_borders(Solids& solids, std::vector<uint32_t> borders) {
 class TreeWriter {
  public:
   explicit TreeWriter(SolidShells& into) : into_(into) {}
-  /// `around`: a node is met where the place lies in its box; else where the ray meets its box. A leaf's
+  /// `around`: a node is visited if the position lies in its box; else if the ray hits its box. A leaf's
   /// references are passed to `leaf`, which returns its word.
   template <class Leaf>
   void write(const bvh::Tree& tree, uint32_t node, bool around, bool around_below, const Leaf& leaf) {

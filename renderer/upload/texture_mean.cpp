@@ -10,7 +10,8 @@ namespace lucerna::upload {
 
 namespace {
 
-constexpr double k_most_repeats = 4;  // of rows: beyond, a triangle has the whole texture's mean
+constexpr double k_most_repeats =
+    4;  // maximum repeats of rows: beyond, a triangle has the whole texture's mean
 
 int64_t floor_mod(int64_t i, int64_t n) { return (i % n + n) % n; }
 
@@ -73,7 +74,7 @@ double TextureMeans::over(const scene::TextureUse& use, const std::array<vec2, 3
   const scene::Texture& texture = scene_.textures[use.texture];
   const scene::Image& image = scene_.images[texture.image];
   const Sums& sums = sums_of(use.texture);
-  // In texels, 0 at the middle of the first: a read between two touches both.
+  // In texels, 0 at the centre of the first: a read between two uses both.
   std::array<glm::dvec2, 3> p;
   glm::dvec2 lo(std::numeric_limits<double>::max()), hi(-lo);
   for (size_t k = 0; k < 3; ++k) {
@@ -87,7 +88,7 @@ double TextureMeans::over(const scene::TextureUse& use, const std::array<vec2, 3
   if (hi.y - lo.y > k_most_repeats * image.height ||
       std::max({std::abs(lo.x), std::abs(lo.y), std::abs(hi.x), std::abs(hi.y)}) > k_most_texel)
     return sums.mean;
-  // What the device rounds of its coordinates is far less than a texel; a read there has weight nearly 0.
+  // The device's rounding of coordinates is far below a texel; such a read has a weight near 0.
   double sum = 0, texels = 0;
   for (auto y = int64_t(std::floor(lo.y)); y <= int64_t(std::floor(hi.y)) + 1; ++y) {
     double from = 0, to = 0;

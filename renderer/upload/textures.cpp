@@ -22,8 +22,8 @@ struct Format {
   uint64_t texel_bytes() const { return floats ? 16 : 4; }
 };
 
-/// A texture to be placed: an image with a border that its wraps decide, so that an image used with two wraps
-/// is stored twice and one used twice alike is stored once.
+/// A texture to place: an image with a border for its wrap modes. An image with two wrap modes is stored
+/// twice, one used twice with equal modes once.
 struct Item {
   scene::Id image;
   scene::Wrap wrap_u, wrap_v;
@@ -31,7 +31,7 @@ struct Item {
   uint32_t page = 0, x = 0, y = 0;
 };
 
-/// Shelves: items from high to low, side by side on shelves as high as their first. Returns the number of
+/// Shelves: items in decreasing height, side by side on shelves as high as their first. Returns the number of
 /// pages.
 uint32_t place_on_shelves(std::vector<Item*>& items, uint32_t page_width, uint32_t page_height) {
   uint32_t page = 0, x = 0, y = 0, shelf = 0;
@@ -45,8 +45,8 @@ uint32_t place_on_shelves(std::vector<Item*>& items, uint32_t page_width, uint32
   return page + 1;
 }
 
-/// Page size of the least total: the largest item's, up to four times that each way, or as many items side by
-/// side as there are.
+/// Page size with the smallest total: the largest item's, up to four times that in each direction, or as many
+/// items side by side as there are.
 void place_all(std::vector<Item>& items, uint32_t& page_width, uint32_t& page_height) {
   std::vector<Item*> order;
   uint32_t widest = 0, highest = 0;
@@ -69,11 +69,11 @@ void place_all(std::vector<Item>& items, uint32_t& page_width, uint32_t& page_he
   place_on_shelves(order, page_width, page_height);
 }
 
-/// The texel that stands at `at` (-1 .. size) of a row or column of `size` texels.
+/// Texel at `at` (-1 .. size) of a row or column of `size` texels.
 uint32_t wrapped(int64_t at, uint32_t size, scene::Wrap wrap) {
   if (at >= 0 && at < int64_t(size)) return uint32_t(at);
   if (wrap == scene::Wrap::repeat) return at < 0 ? size - 1 : 0;
-  return at < 0 ? 0 : size - 1;  // clamp; and mirror, which starts with the edge texel again
+  return at < 0 ? 0 : size - 1;  // clamp; likewise mirror, which repeats the edge texel
 }
 
 template <class T>

@@ -1,4 +1,4 @@
-// How the irradiance from a triangle changes as the point that receives it moves in its tangent plane.
+// Change of the irradiance from a triangle as the receiving point moves in its tangent plane.
 //
 // A triangle with vertices p_i of uniform radiance 1 gives a point x with normal n (Lambert's formula)
 //
@@ -12,8 +12,8 @@
 //   Hessian  = 1/2 (m G' + G m' + c.n K),          K = int (8 q q'/q^6 - 2/q^4) dt                     (': transposed)
 //
 // Along the edge dt = q^2 ds / |c| with s the angle from a, and 1/q is (sin(theta - s)/|a| + sin(s)/|b|) / sin(theta): in
-// angles the integrands are smooth however unlike the distances of a and b are, and only inverse distances occur, which
-// may be 0. Neighbouring rays are at small angles, and two points of Gauss and Legendre do. (J. Arvo, "The Irradiance
+// angles the integrands are smooth however different the distances of a and b are, and only inverse distances occur, which
+// may be 0. Neighbouring rays enclose small angles, so two Gauss-Legendre points suffice. (J. Arvo, "The Irradiance
 // Jacobian for Partially Occluded Polyhedral Sources", 1994; N. Holzschuch and F. Sillion, "An Exhaustive Error-Bounding
 // Algorithm for Hierarchical Radiosity", 1998, have other forms of both.)
 #ifndef LUCERNA_IRRADIANCE_CACHE_FORM_FACTOR
@@ -26,8 +26,8 @@ struct EdgeTerms {
   vec3 hessian;   // xx, xy, yy [1/m^2]
 };
 
-// Of an edge between the unit directions `a` and `b`, at inverse distances `near_a` and `near_b` [1/m], per radiance at its
-// left, as seen from the normal's tip, over that at its right.
+// Terms of an edge between the unit directions `a` and `b`, at inverse distances `near_a` and `near_b` [1/m], per difference
+// of radiance: left of the edge, as seen from the normal's tip, minus right of it.
 EdgeTerms edge_terms(vec3 a, float near_a, vec3 b, float near_b) {
   vec3 c = cross(a, b);
   float sine = length(c), theta = atan(sine, dot(a, b));

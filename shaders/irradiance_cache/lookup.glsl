@@ -238,7 +238,7 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint media, bool enabled, floa
   return found;
 }
 
-// The same from one record, drawn in proportion to its weight: unbiased over `u`. Records that serve one place differ
+// Likewise from one record, drawn in proportion to its weight: unbiased over `u`. Records that are valid at one point differ
 // little, and reading the light of one instead of all saves a third of the lookup's time.
 Cached cache_draw(vec3 x, vec3 n, vec3 shading, uint media, bool enabled, float u) {
   Cached found = nothing_cached();

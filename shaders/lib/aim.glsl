@@ -47,7 +47,7 @@ bool aim_sample(Box box, vec3 p, vec2 u, inout vec3 direction) {
   return true;
 }
 
-// Where a line enters and leaves the box, and through which axis.
+// Entry and exit of a line through the box, and the axes of their faces.
 void aim_slabs(Box box, vec3 p, vec3 d, out float enter, out float leave, out uint axis) {
   vec3 inverse = 1.0 / mix(d, vec3(1e-25), lessThan(abs(d), vec3(1e-25)));
   vec3 a = (box.lo - p) * inverse, b = (box.hi - p) * inverse;

@@ -5,9 +5,9 @@
 //                          Lambert base/pi, coupled by (1-E(wo))(1-E(wi))/(1-E_avg)         D
 //                          diffuse transmission, coupled likewise                           D
 //   glass (1-m)t           GGX reflection and refraction with exact Fresnel (solid), or slab (thin)   G (S)
-// Of glass with KHR_materials_specular each face reflects f (f0' + (1-f0') (F-f0)/(1-f0)) in place of F, f0' = min(1, f0 color),
-// as the extension has it with Schlick's (F-f0)/(1-f0); what it does not reflect it transmits, channel by channel. Total reflection
-// stays total, for there is no way through (LUCERNA_GLASS_SPECULAR).
+// With KHR_materials_specular each glass face reflects f (f0' + (1-f0') (F-f0)/(1-f0)) in place of F, f0' = min(1, f0 color),
+// like the extension with Schlick's (F-f0)/(1-f0); it transmits the rest, channel by channel. Total reflection stays total
+// (LUCERNA_GLASS_SPECULAR).
 // w = (1 - wo.h)^5. Every GGX lobe has its multiple-scattering complement (Kulla and Conty 2017):
 //   f_ms = F_ms (1-E1(wo))(1-E1(wi)) / (pi (1-E1_avg)),  F_ms = F_avg^2 E1_avg / (1 - F_avg (1-E1_avg)).
 // For solid glass the missing energy leaves on both sides in proportion to the sides' etendue (1-E_avg) n^2, the split
@@ -35,7 +35,7 @@ const uint k_event_null = 3u;   // no letter: undeflected through a smooth thin 
 // direction left there.
 const float k_same_medium = 1e-3;
 
-// What the material says at a point.
+// The material at a point.
 struct SurfaceParameters {
   vec3 base;
   float metallic;
@@ -51,7 +51,7 @@ struct SurfaceParameters {
   int glass_row;
 };
 
-// Of what glass reflects: of all channels alike, or of each. Choices are made by glass_choice().
+// Reflectance of glass: one value for all channels, or one for each. Choices use glass_choice().
 #if LUCERNA_GLASS_SPECULAR
 #define GLASS_VALUE vec3
 float glass_choice(vec3 value) { return luminance(value); }
@@ -60,12 +60,12 @@ float glass_choice(vec3 value) { return luminance(value); }
 float glass_choice(float value) { return value; }
 #endif
 
-// Prepared for one wo.
+// Constants for one wo.
 struct Bsdf {
   vec3 diffuse;          // f_D on wo's side = diffuse * coupling(wi) / pi
   vec3 transmitted;      // f_D on the other side, likewise
-  // What these reflect and transmit of light that comes evenly from a side. Taken out of the integral over any other
-  // light it is an approximation, exact without a coat: how a coat's coupling varies with wi is then lost.
+  // Reflectance and transmittance of these for uniform light from a side. For other light it is an
+  // approximation, exact without a coat: the variation of a coat's coupling with wi is neglected.
   vec3 diffuse_albedo, transmitted_albedo;
   float alpha;
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
@@ -82,10 +82,10 @@ struct Bsdf {
   vec3 face_0, face_1;   // a face reflects face_0 + face_1 F
 #endif
   float glass;           // weight
-  vec3 tint;             // of what is transmitted
+  vec3 tint;             // colour of transmitted light
   float eta;             // n on the other side / n on wo's side
   bool solid;
-  bool glass_delta;      // smooth, or a solid that does not refract: facets turn no ray then, however rough
+  bool glass_delta;      // smooth, or a solid that does not refract: then facets do not deflect rays, however rough
   uint table_here, table_there;
   GLASS_VALUE ms_reflected, ms_transmitted;  // complement, times (1-E(wo)); radiance scale included
 #endif
@@ -119,7 +119,7 @@ TablePlace table_place(float mu, float roughness) {
   int row = int(low.y);
   return TablePlace(row * int(k_table_mu - 1u) + int(low.x), row, p - low);
 }
-// What a GGX reflector returns at once: (of f0, of f90).
+// Single-scattering reflectance of a GGX reflector: (of f0, of f90).
 vec2 specular_albedo(float mu, float roughness, bool delta) {
   TablePlace p = table_place(mu, roughness);
   vec4 a = texelFetch(bsdf_table, 2 * p.cell), b = texelFetch(bsdf_table, 2 * p.cell + 1);
@@ -218,7 +218,7 @@ Bsdf make_bsdf(SurfaceParameters s, float mu) {
   b.transmitted *= coat / coat_average;
   b.p_specular = luminance(b.f0 * t.x + b.f90 * t.y);
   b.p_specular_ms = b.delta ? 0.0 : luminance(ms) * missing;
-  // What the lobe reflects in all, not only its prefactor: the coupling averages to coat_average.
+  // Total reflectance of the lobe, not only its prefactor: the coupling averages to coat_average.
   b.diffuse_albedo = b.diffuse * coat_average;
   b.transmitted_albedo = b.transmitted * coat_average;
 #else

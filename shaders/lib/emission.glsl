@@ -29,13 +29,13 @@ struct Emission {
   vec3 origin;
   vec3 direction;      // unit
   vec3 flux;           // [W] that a path alone would carry; 0: nothing is emitted there
-  float pmf;           // of the light; this and the next two as if nothing were aimed
+  float pmf;           // of the light; this and the next two without aiming
   float pdf_place, pdf_direction;
   uint light;          // entry of emission_alias
-  uint stratum;        // in which it was drawn
-  float unaimed;       // share of its density that is not aimed, 0..1
+  uint stratum;        // stratum of the sample
+  float unaimed;       // unaimed share of its density, 0..1
   uint group;          // light group, if groups are separate
-  bool afar;           // begins on the disk of the scene
+  bool afar;           // starts on the disk of the scene
   float radiance;      // luminance of what a ray meets there; 0: none meets it (points, directions)
   float sampling;      // density of light samples there: over the squared distance, or for distant light, the luminance of
                        // a sample over the flux of the path
@@ -73,7 +73,7 @@ float emission_disk_pdf(vec3 direction, vec3 origin) {
   return core ? pdf + emission.core_share / (k_pi * emission.core_radius * emission.core_radius) : pdf;
 }
 
-// The same for a path through a box.
+// Likewise, for a path through a box.
 vec3 emission_from_afar(vec3 direction, vec2 u, bool aims, Box box) {
   vec3 through = aim_sample_afar(box, direction, u);
   vec3 aimed = through - direction * (dot(through - emission.centre, direction) + emission.radius);

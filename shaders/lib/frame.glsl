@@ -10,7 +10,7 @@
 layout(scalar) readonly buffer FrameBlock { Frame frame; };
 
 #if LUCERNA_NO_AUTOMATON
-// The plain path tracer, kept as an oracle for the partition: everything is component 0 and nothing is cut off; one bit
+// The plain path tracer, an oracle for the partition: everything is component 0 and nothing is cut off; one bit
 // remembers a diffuse event, for unlit surfaces.
 uint automaton_after(uint state, uint event) { return event == 0u ? 1u : state; }
 uint automaton_component(uint state) { return 0u; }
@@ -35,7 +35,7 @@ bool automaton_goes_on(uint state) {
 uint automaton_account(uint state) { return (frame.automaton[state] >> 29) & 3u; }
 #endif
 
-// Where a point of the picture [pixels] lies from the camera's axis, and the direction of the ray through it.
+// Offset of a point of the picture [pixels] from the camera's axis, and the direction of the ray through it.
 vec3 camera_shift(vec2 xy) {
   vec2 ndc = xy / vec2(frame.width, frame.height) * 2.0 - 1.0;
   return ndc.x * frame.camera_right - ndc.y * frame.camera_up;

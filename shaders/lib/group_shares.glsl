@@ -1,10 +1,10 @@
-// What share each group of lights has in some light, channel by channel, where light is kept as a sum of all (LUCERNA_GROUP_SUMS).
+// Shares of the light groups in light that is stored as a sum of all groups, channel by channel (LUCERNA_GROUP_SUMS).
 #ifndef LUCERNA_LIB_GROUP_SHARES
 #define LUCERNA_LIB_GROUP_SHARES
 #include "shaders/shared/lanes.h"
 #include "lib/math.glsl"
 
-const uint k_group_texels = (k_group_count + 3u) / 4u;  // of shares: four groups each
+const uint k_group_texels = (k_group_count + 3u) / 4u;  // texels of shares: four groups each
 
 // Shares of the channels, 0 to 1, in one word: mantissas of nine bits under one power of 2, 2^0 to 2^-31. A share of 1 is kept
 // exactly, all others to within 2^-9 of the largest channel's.

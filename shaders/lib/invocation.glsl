@@ -1,4 +1,4 @@
-// Which item an invocation works on, in kernels of one-dimensional workgroups.
+// Index of an invocation's item, in kernels with one-dimensional workgroups.
 #ifndef LUCERNA_INVOCATION_GLSL
 #define LUCERNA_INVOCATION_GLSL
 

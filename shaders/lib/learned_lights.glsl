@@ -12,7 +12,7 @@ uniform samplerBuffer learned_rows;
 uniform samplerBuffer light_clusters;
 uniform samplerBuffer cluster_members;
 
-// Of a unit normal: the axis that it is closest to, and on which side.
+// Facing of a unit normal: its dominant axis and sign.
 uint learned_facing(vec3 normal) {
   vec3 a = abs(normal);
   uint axis = a.x >= a.y && a.x >= a.z ? 0u : a.y >= a.z ? 1u : 2u;
@@ -26,7 +26,7 @@ uint learned_word(uint at) {
   return floatBitsToUint((at & 1u) != 0u ? two.y : two.x);
 }
 
-// The row that serves a place on a surface with that normal, unit, on the side that is seen.
+// The row for a point on a surface with that normal, unit, on the visible side.
 uint learned_row(vec3 position, vec3 normal) {
   vec3 at = clamp((position - frame.learned_origin) * frame.learned_scale, vec3(0.0), vec3(float(k_learned_cells) - 0.5));
   uvec3 cell = uvec3(at), top = cell / k_learned_brick, within = cell % k_learned_brick;
@@ -34,7 +34,7 @@ uint learned_row(vec3 position, vec3 normal) {
   uint word = learned_word(first);
   const uint bricks = k_learned_facings * k_learned_top * k_learned_top * k_learned_top;
   uint second = bricks + ((word >> 1) * k_learned_brick * k_learned_brick + within.z * k_learned_brick + within.y) * k_learned_brick + within.x;
-  // A row's word is fetched again rather than not at all: a branch would save nothing.
+  // A row's word is always fetched again: a branch would save nothing.
   return learned_word((word & 1u) != 0u ? second : first) >> 1;
 }
 
@@ -42,11 +42,11 @@ uint learned_row(vec3 position, vec3 normal) {
 float learned_ratio(uint row, uint cluster) { return texelFetch(learned_rows, int(row * frame.light_clusters + cluster)).z; }
 
 struct LightCluster {
-  uint first, count;  // of cluster_members
-  vec2 corner;        // of its square
-  float side;         // ... 1 over the squares along a side
+  uint first, count;  // range of cluster_members
+  vec2 corner;        // corner of its square
+  float side;         // side of its square: 1 over the number of squares
   float plain;        // probability without learning
-  bool of_triangles;  // ... in a run
+  bool of_triangles;  // a run of emissive triangles
 };
 LightCluster light_cluster(uint cluster) {
   vec4 c = texelFetch(light_clusters, int(cluster));
@@ -55,7 +55,7 @@ LightCluster light_cluster(uint cluster) {
   return LightCluster(floatBitsToUint(c.x), floatBitsToUint(c.y), vec2(square & 0xffu, square >> 8 & 0xffu) * side, side, c.w, (square & k_cluster_of_triangles) != 0u);
 }
 
-// Chooses a member of a cluster as without learning; bits: 64, as alias_choose().
+// Chooses a member of a cluster as without learning; bits: 64, as for alias_choose().
 uint cluster_member(LightCluster c, uvec2 bits) {
   uint i, fraction, more, lost, carry;
   umulExtended(bits.x, c.count, i, fraction);
@@ -66,7 +66,7 @@ uint cluster_member(LightCluster c, uvec2 bits) {
   return floatBitsToUint(coin_below(fraction, e.x) ? e.z : e.w);
 }
 
-// Which square of `squares` along a side holds these random numbers.
+// Index of the square, of `squares` along a side, that contains these random numbers.
 uint square_of(vec2 u, uint squares) {
   uvec2 at = min(uvec2(u * float(squares)), uvec2(squares - 1u));
   return at.y * squares + at.x;
@@ -74,12 +74,12 @@ uint square_of(vec2 u, uint squares) {
 
 #if LUCERNA_EMISSIVE
 uniform samplerBuffer primitive_clusters;
-// Of a point of an emissive triangle, by barycentrics as a hit has them.
+// Cluster of a point of an emissive triangle, by the barycentrics of a hit.
 uint emissive_cluster(uint primitive, vec2 uv) {
   vec4 four = texelFetch(primitive_clusters, int(primitive >> 2));
   vec2 two = (primitive & 2u) != 0u ? four.zw : four.xy;
   uint word = floatBitsToUint((primitive & 1u) != 0u ? two.y : two.x);
-  // The inverse of the map by which sample_light() places points.
+  // Inverse of the mapping of sample_light().
   vec2 b = vec2(1.0 - uv.x - uv.y, uv.x);
   float middle = 0.5 * (b.x + b.y);
   vec2 m = b.y > b.x ? vec2(b.x, middle) : vec2(middle, b.y);
@@ -91,7 +91,7 @@ uint emissive_cluster(uint primitive, vec2 uv) {
 #if !LUCERNA_SKY_SQUARES
 uniform samplerBuffer sky_tiles;
 #endif
-// Of a direction that lies in a texel of the environment.
+// Cluster of a direction within a texel of the environment.
 uint sky_cluster(vec3 direction, uint texel, float u) {
 #if LUCERNA_SKY_SQUARES
   return square_of(vec2(u, 0.5 - 0.5 * direction.y), uint(LUCERNA_SKY_SQUARES));

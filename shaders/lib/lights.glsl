@@ -1,7 +1,7 @@
 // Light sampling: selects a light by its probability mass (alias method, Walker 1977; Vose 1991), then a point on it.
 // Densities are per solid angle at the shaded point and include the selection.
 //
-// Of many lamps only few light a given place, and power does not identify them. A selected lamp is therefore resampled from
+// Among many lamps only few light a given point, and power does not identify them. A selected lamp is therefore resampled from
 // several candidates, by their unoccluded contribution (resampled importance sampling, J. Talbot, D. Cline and P. Egbert
 // 2005): for candidates x_i of density p and contributions q, x_i is selected in proportion to q(x_i) / p(x_i), with the
 // effective density q(x) M / sum q(x_i) / p(x_i). Unbiased for any q > 0 where light arrives; evenly spaced instead of
@@ -47,7 +47,7 @@ struct LightSample {
   vec3 target;       // point on the triangle
   vec3 normal;       // of the triangle, unit, towards the shaded point
   vec3 offset;       // error bound of target, as Surface::offset
-  bool sky;          // of a separate sky
+  bool sky;          // sample of a separate sky
   uint group;        // light group
 #if LUCERNA_LEARNED
   uint cluster;      // light cluster
@@ -217,7 +217,7 @@ uint draw_lamp(uint light, vec3 position, vec3 normal, uint choice, float u, ino
 }
 
 #if LUCERNA_LEARNED
-// The same within a cluster, in which probabilities are those without learning; a lamp's pmf is that times the cluster's
+// Likewise within a cluster, with the probabilities without learning; a lamp's pmf is then multiplied by the cluster's
 // ratio.
 uint draw_lamp_of(LightCluster cluster, uint light, vec3 position, vec3 normal, uint choice, float u, float ratio, inout float pmf) {
   const uint candidates = uint(LUCERNA_LAMP_CANDIDATES);

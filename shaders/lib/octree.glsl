@@ -1,4 +1,4 @@
-// Which spheres may contain a point: one lookup, then one loop.
+// Spheres that may contain a point: one lookup, then one loop.
 //
 //   OctreeRange range = octree_find(x);
 //   for (uint i = range.first; i < range.last; ++i) {
@@ -11,15 +11,15 @@
 //   for (uint i = range.first & ~1u; i < range.last; i += 2u) {
 //     uvec2 two = octree_two_spheres(i);               // two.x if i >= range.first, two.y if i + 1 < range.last
 //
-// Where the octree was built with copies, octree_copy(i) is the sphere itself, (centre, radius): twice as fast as to fetch
-// it by its index, because copies lie in the order in which they are read.
+// If the octree was built with copies, octree_copy(i) is the sphere itself, (centre, radius): twice as fast as fetching it
+// by its index, because copies are stored in the order of reading.
 //
 // On lavapipe all loops of an invocation together end, silently, after 65535 iterations.
 //
 // Contract: every sphere (c, r) with dot(x - c, x - c) <= r * r, in float as written here or exactly, is in the range,
 // once; others may be. The order is that of the spheres' indices. Points outside a root that is not open have an empty
-// range. A leaf that
-// is split has one reference of its own, to no sphere: it lies in no range, but may share a texel with the end of one.
+// range. A leaf that is split has one reference of its own, to no sphere: it is in no range, but may share a texel with the
+// end of one.
 //
 // The host binds these by Octree::bind().
 #ifndef LUCERNA_LIB_OCTREE
@@ -27,20 +27,20 @@
 #include "shaders/shared/octree.h"
 
 layout(scalar) readonly buffer OctreeHeaders { OctreeHeader octree; };
-uniform usamplerBuffer octree_slots;        // code, first, last, how it is split (then it lists nothing); 0: it is not
+uniform usamplerBuffer octree_slots;        // code, first, last, kind of split (then without references); 0: not split
 uniform usamplerBuffer octree_references;   // (code, sphere) pairs, two a texel
 uniform samplerBuffer octree_copies;        // centre, radius; in the order of the references
 
 struct OctreeRange { uint first, last; };
 
-// Every third bit.
+// Moves the lowest ten bits to every third position.
 uint octree_spread(uint x) {
   x = (x | x << 16) & 0x030000ffu;
   x = (x | x << 8) & 0x0300f00fu;
   x = (x | x << 4) & 0x030c30c3u;
   return (x | x << 2) & 0x09249249u;
 }
-// Of every third bit.
+// The inverse of octree_spread().
 uint octree_compact(uint x) {
   x &= 0x09249249u;
   x = (x | x >> 2) & 0x030c30c3u;
@@ -54,21 +54,21 @@ uvec3 octree_decode(uint code) {
 uint octree_code(uvec3 cell) {
   return octree_spread(cell.x) | octree_spread(cell.y) << 1 | octree_spread(cell.z) << 2;
 }
-// Of a leaf that is split, k_octree_split aside: the levels, and the first code of its cells, which are a multiple of 8.
+// Split leaf: the levels, and the first code of its cells, a multiple of 8; without k_octree_split.
 uint octree_split_levels(uint split) { return split & k_octree_split_levels; }
 uint octree_split_first(uint split) { return split & ~(k_octree_split | k_octree_split_levels); }
-// The code of a cell in a split leaf: above those of all whole leaves, and counted within the leaf, so that the bits of a
-// code do not bound how fine a cell is in the root.
+// Code of a cell in a split leaf: above those of all whole leaves, and counted within the leaf, so that the bits of a
+// code do not limit the number of levels.
 uint octree_split_code(uvec3 cell, uint split) {
   uvec3 within = cell & ((1u << octree_split_levels(split)) - 1u);
   return (1u << 3u * octree.level) + octree_split_first(split) + octree_code(within);
 }
 
-// The slot of a leaf: code, first reference, behind the last, how it is split.
+// Slot of a leaf: code, first reference, end of its references, kind of split.
 uvec4 octree_slot(uint code) {
   uint slot = (code * k_octree_hash) >> octree.slot_shift;
   uvec4 found = texelFetch(octree_slots, int(slot));
-  // A slot is free before the table has been gone through, because it has more slots than leaves.
+  // Terminates at a free slot, because the table has more slots than leaves.
   while (found.x != code && found.x != k_octree_no_leaf) {
     slot = (slot + 1u) & (octree.slots - 1u);
     found = texelFetch(octree_slots, int(slot));

@@ -1,4 +1,4 @@
-// What the kernels share that build the octree. Most of their invocations work through a run of spheres, references, leaves
+// Common to the kernels that build the octree. Most of their invocations process a run of spheres, references, leaves
 // or slots.
 #ifndef LUCERNA_LIB_OCTREE_BUILD
 #define LUCERNA_LIB_OCTREE_BUILD
@@ -26,7 +26,7 @@ Run own_run(uint index, uint count) {
   return run_of(index, run_count(count, length), length, count);
 }
 
-// Of two pairs, and of four words, in a texel.
+// Two pairs, or four words, of a texel.
 uvec2 pair_of(uvec4 two, uint index) { return (index & 1u) != 0u ? two.zw : two.xy; }
 uint word_of(uvec4 four, uint index) {
   uvec2 two = (index & 2u) != 0u ? four.zw : four.xy;
@@ -34,7 +34,7 @@ uint word_of(uvec4 four, uint index) {
 }
 
 bool finite(float x) { return abs(x) <= 3.4e38; }
-// Spheres without extent or place are left out.
+// Spheres without radius or position are omitted.
 bool usable(vec4 s) { return s.w >= 0.0 && finite(s.x) && finite(s.y) && finite(s.z) && finite(s.w); }
 
 // Points that pass dot(x - c, x - c) <= r * r in float may be up to about 4 ulps beyond r.

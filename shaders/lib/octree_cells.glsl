@@ -1,4 +1,4 @@
-// Which leaves a sphere overlaps. Included by the kernels that count and write references, which must agree to the bit:
+// Leaves that a sphere overlaps. Included by the kernels that count and write references, which must agree bit by bit:
 // hence `precise`.
 //
 // Conservative: for every x that a query finds within the sphere, the cell of x is visited. Let q(x) = x - origin in float,
@@ -7,8 +7,8 @@
 // every axis and in the distance. The differences below err by another u * edge each, the root by 4u of its value. A
 // margin of 32u * edge covers all. For centres beyond an open root their distance from its origin stands for the edge.
 //
-// The outermost cells of an open root have no outer faces: nothing is known there of where in a row's square, or in a
-// cell, a point lies, only that it lies in the sphere's box.
+// The outermost cells of an open root have no outer faces: there, the position within a row's square or a cell is unknown,
+// except that it is within the sphere's box.
 //
 // LUCERNA_OCTREE_DISCS: 1: spheres are looked up only near the plane through their centre, within `disc_thickness` of their
 // radius on either side; only cells that this slab intersects are visited, a part of each row.
@@ -20,9 +20,9 @@
 
 #if LUCERNA_OCTREE_DISCS
 uniform samplerBuffer disc_normals;
-// A hundredth of a leaf is far more than rounding makes of coordinates in leaves from the centre.
+// A hundredth of a leaf exceeds the rounding errors of coordinates in leaves from the centre by far.
 const float k_slab_margin = 0.01;
-// Below that a row runs along the slab.
+// Below this, a row is parallel to the slab.
 const float k_steep = 0.05;
 #endif
 
@@ -37,8 +37,8 @@ struct SphereCells {
 #endif
 };
 
-// Those from `lowest` to `highest`, both included, of the cells that are `split` levels finer than the leaves; lengths are in
-// such cells.
+// Cells from `lowest` to `highest`, both included, on a grid `split` levels finer than the leaves; lengths are in such
+// cells.
 SphereCells sphere_cells(vec4 s, uint index, uint split, ivec3 lowest, ivec3 highest) {
   uint cells = octree.cells << split;
   float inverse_leaf = ldexp(octree.inverse_leaf, int(split));
@@ -60,7 +60,7 @@ SphereCells sphere_cells(vec4 s, uint index, uint split, ivec3 lowest, ivec3 hig
   c.square = square;
 #if LUCERNA_OCTREE_DISCS
   c.normal = texelFetch(disc_normals, int(push.normal_stride * index + push.normal_at)).xyz;
-  // Beyond an open root places are rounded by more.
+  // Outside an open root, rounding errors of positions are larger.
   c.half_ = push.thickness * radius + k_slab_margin + (octree.open != 0u ? edge * inverse_leaf * (32.0 / 16777216.0) : 0.0);
 #endif
   return c;
@@ -78,12 +78,12 @@ bool outermost(ivec2 cell, int most) {
   return octree.open != 0u && (any(equal(cell, ivec2(0))) || any(equal(cell, ivec2(most))));
 }
 
-// Cells that a sphere overlaps, at most, where they are 2^k leaves wide.
+// Maximum number of cells of 2^k leaves width that a sphere overlaps.
 uint most_cells(SphereCells c, uint k) {
   uvec3 n = uvec3((c.last >> k) - (c.first >> k) + 1);
 #if LUCERNA_OCTREE_DISCS
   if (octree.open != 0u && (any(equal(c.first, ivec3(0))) || any(equal(c.last, ivec3(c.most))))) return n.x * n.y * n.z;
-  // Along the axis that the slab crosses most steeply, in every column of the two others.
+  // The slab, along the axis that it crosses most steeply, in every column of the two others.
   vec3 a = abs(c.normal);
   float most = max(max(a.x, a.y), a.z);
   uint across = uint(min((ldexp(2.0 * c.half_, -int(k)) + a.x + a.y + a.z - most) / most, 65536.0)) + 2u;
@@ -104,7 +104,7 @@ ivec2 next_row(SphereCells c, ivec2 row) {
   bool over = row.x == c.last.y;
   return ivec2(over ? c.first.y : row.x + 1, over ? row.y + 1 : row.y);
 }
-// First and last cell of a row that the sphere overlaps; none where the first is beyond the last.
+// First and last cell of a row that the sphere overlaps; none if first > last.
 ivec2 row_cells(SphereCells c, ivec2 row) {
 #if LUCERNA_OCTREE_SINGLE
   return c.first.xx;
@@ -118,11 +118,11 @@ ivec2 row_cells(SphereCells c, ivec2 row) {
   precise float left = c.square - dd.x, rest = left - dd.y, half_chord = sqrt(max(rest, 0.0));
   precise float from = c.centre.x - half_chord, to = c.centre.x + half_chord;
 #if LUCERNA_OCTREE_DISCS
-  // The slab: |n.x x + v| <= half, where v goes over what the row's square makes of the other axes.
+  // The slab: |n.x x + v| <= half, where v covers the range of the other axes in the row's square.
   precise vec2 middle = vec2(row) + 0.5 - c.centre.yz, parts = c.normal.yz * middle, spreads = abs(c.normal.yz);
   precise float v = parts.x + parts.y, slack = c.half_ + 0.5 * (spreads.x + spreads.y);
   if (outermost(row, c.most)) {
-    // The row's square has no end.
+    // The row's square is unbounded.
   } else if (abs(c.normal.x) >= k_steep) {
     precise float one = (-slack - v) / c.normal.x, other = (slack - v) / c.normal.x;
     from = max(from, c.centre.x + min(one, other));
@@ -138,7 +138,7 @@ ivec2 row_cells(SphereCells c, ivec2 row) {
 #endif
 }
 
-// How many cells a sphere overlaps.
+// Number of cells that a sphere overlaps.
 uint cell_count(SphereCells c) {
   uint rows = row_count(c), found = 0u;
   ivec2 row = c.first.yz;
@@ -150,10 +150,10 @@ uint cell_count(SphereCells c) {
   return found;
 }
 
-// One cell after the other, over all rows: in a loop for each row lanes would wait for the longest of every one.
+// Iterates over the cells of all rows: with a loop per row, lanes would wait for the longest row each time.
 struct CellWalk {
-  uint rows;          // that are left, with this one
-  ivec2 row, cells;   // (y, z); this cell and the row's last, none where the first is beyond the last
+  uint rows;          // remaining rows, including this one
+  ivec2 row, cells;   // (y, z); this cell and the row's last, none if first > last
 };
 CellWalk first_cell(SphereCells c) { return CellWalk(row_count(c), c.first.yz, row_cells(c, c.first.yz)); }
 bool at_cell(CellWalk w) { return w.cells.x <= w.cells.y; }

@@ -1,4 +1,4 @@
-// What the kernels share that make leaves of the sorted references.
+// Common to the kernels that make leaves of the sorted references.
 #ifndef LUCERNA_LIB_OCTREE_LEAVES
 #define LUCERNA_LIB_OCTREE_LEAVES
 #include "lib/octree_build.glsl"
@@ -13,7 +13,7 @@ uvec2 reference_pair(uint index) { return pair_of(texelFetch(octree_references, 
 uint reference_code(uint index) { return reference_pair(index).x; }
 uint reference_sphere(uint index) { return reference_pair(index).y; }
 uvec2 leaf_pair(uint index) { return pair_of(texelFetch(leaf_texels, int(index >> 1)), index); }
-// Behind a leaf's last reference.
+// End of a leaf's references.
 uint leaf_end(uint leaf) { return leaf + 1u < octree.leaves ? leaf_pair(leaf + 1u).y : reference_count(); }
 
 // Size of the hash table for that many leaves, as a power of two: half full at most, if there is memory; never full.

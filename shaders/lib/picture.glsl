@@ -1,4 +1,4 @@
-// The picture as kernels write it: 8-bit sRGB, a word a pixel, red lowest.
+// The picture in the format of kernels: 8-bit sRGB, a word a pixel, red lowest.
 #ifndef LUCERNA_LIB_PICTURE
 #define LUCERNA_LIB_PICTURE
 

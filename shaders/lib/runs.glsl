@@ -1,4 +1,4 @@
-// Cutting an array into runs: contiguous pieces of equal length, one an invocation, which works through it in order.
+// Division of an array into runs: contiguous pieces of equal length, each processed in order by one invocation.
 #ifndef LUCERNA_LIB_RUNS
 #define LUCERNA_LIB_RUNS
 
@@ -14,13 +14,13 @@ struct Run {
 const uint k_longest_run = 32768u;
 
 // Length of the runs of an array, a multiple of 4 (whole texels): about `wanted` runs of at least `least` elements, more
-// of them where they would be too long.
+// of them if they would be too long.
 uint run_length(uint count, uint least, uint wanted) {
   uint length = count / wanted + (count % wanted != 0u ? 1u : 0u);
   return (clamp(length, least, k_longest_run) + 3u) & ~3u;
 }
 
-// How many there are.
+// Number of runs.
 uint run_count(uint count, uint length) { return count / length + (count % length != 0u ? 1u : 0u); }
 
 Run run_of(uint index, uint runs, uint length, uint count) {

@@ -1,4 +1,4 @@
-// What the kernels of the prefix sum share.
+// Common to the kernels of the prefix sum.
 #ifndef LUCERNA_LIB_SCAN
 #define LUCERNA_LIB_SCAN
 #include "shaders/shared/sort.h"
@@ -20,7 +20,7 @@ uint scan_count() {
 }
 uint scan_run_length(uint count) { return run_length(count, LUCERNA_SCAN_LEAST, LUCERNA_SCAN_WANTED); }
 
-// Four elements from a multiple of 4 on; 0 beyond the end.
+// Four elements from a multiple of 4; 0 beyond the end.
 uvec4 scan_fetch(uint at, uint end) {
   uvec4 v = texelFetch(scan_in, int(at >> 2));
   uint left = end - at;

@@ -1,4 +1,4 @@
-// What the kernels of the radix sort share.
+// Common to the kernels of the radix sort.
 #ifndef LUCERNA_LIB_SORT
 #define LUCERNA_LIB_SORT
 #include "shaders/shared/sort.h"
@@ -23,7 +23,7 @@ uint sort_count() {
 uint sort_run_length(uint count) { return run_length(count, LUCERNA_SORT_LEAST, LUCERNA_SORT_WANTED); }
 uint digit(uint word) { return (word >> push.shift) & (push.bins - 1u); }
 
-// Every invocation has counters of its own, so that nothing has to be synchronized. On lavapipe a private array is the
+// Every invocation has its own counters, so that no synchronization is needed. On lavapipe a private array is the
 // fastest place for them: twice as fast as shared memory, three times as fast as a storage buffer.
 uint counters[LUCERNA_SORT_BINS];
 uint take(uint bin) {

@@ -1,10 +1,10 @@
-// Sums over a workgroup of 64 of several vectors at once. The kernel says before how many: LUCERNA_SUM_ROWS.
+// Sums of several vectors over a workgroup of 64. The including kernel defines their number, LUCERNA_SUM_ROWS.
 #ifndef LUCERNA_LIB_SUM_ROWS
 #define LUCERNA_LIB_SUM_ROWS
 
 shared vec4 lanes[LUCERNA_SUM_ROWS][64];
 
-// Sums over the workgroup, in all rows: in the first lane.
+// Sums all rows over the workgroup; valid in the first lane.
 void add_up(uint lane) {
   for (uint half_way = 32u; half_way > 0u; half_way >>= 1) {
     barrier();

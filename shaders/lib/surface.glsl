@@ -25,7 +25,7 @@ struct Surface {
   vec3 offset;       // |position - true position| is below this, componentwise; for robust ray origins
   vec3 normal_g;     // geometric, unit, front side (counter-clockwise; flipped instances mirrored)
   vec3 normal_s;     // shading, unit, on the front side's hemisphere
-  vec3 normal_v;     // as normal_s, without the normal map
+  vec3 normal_v;     // likewise, without the normal map
   bool front;        // the ray came from the front
   uint material;
   uint flags;

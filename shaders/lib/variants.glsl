@@ -3,14 +3,14 @@
 #ifndef LUCERNA_LIB_VARIANTS
 #define LUCERNA_LIB_VARIANTS
 
-// What the scene needs (renderer/upload/device_scene.cpp).
+// Features of the scene (renderer/upload/device_scene.cpp).
 #ifndef LUCERNA_LIGHTS
 #define LUCERNA_LIGHTS 0
 #endif
 #ifndef LUCERNA_EMISSIVE
 #define LUCERNA_EMISSIVE 0
 #endif
-// All emissive surfaces are opaque and shine evenly.
+// All emissive surfaces are opaque and emit uniformly.
 #ifndef LUCERNA_PLAIN_EMITTERS
 #define LUCERNA_PLAIN_EMITTERS 0
 #endif
@@ -126,7 +126,7 @@
 #define LUCERNA_COUNT_KINDS 0
 #endif
 
-// What the device can (renderer/gpu/kernel.cpp).
+// Features of the device (renderer/gpu/kernel.cpp).
 #ifndef LUCERNA_SUBGROUPS
 #define LUCERNA_SUBGROUPS 0
 #endif
@@ -161,7 +161,7 @@
 #ifndef LUCERNA_FILM_LANES
 #define LUCERNA_FILM_LANES 0
 #endif
-#ifndef LUCERNA_FILM_UNMIXED  // of groups in short: nothing is made of their mix here
+#ifndef LUCERNA_FILM_UNMIXED  // compact groups: ignores their mix
 #define LUCERNA_FILM_UNMIXED 0
 #endif
 #ifndef LUCERNA_VERTEX_COUNT

@@ -12,7 +12,7 @@
 #include "lib/radiance.glsl"
 
 layout(local_size_x = 64) in;
-// Kernels that begin or end paths define LUCERNA_PUSH first, as the name of their push structure.
+// Kernels that start or end paths define LUCERNA_PUSH first, as the name of their push structure.
 #ifndef LUCERNA_PUSH
 #define LUCERNA_PUSH TransportPush
 #endif
@@ -74,8 +74,8 @@ void store_shadow_state(uint slot, ShadowState s) {
   shadow_states[2u * slot + 1u] = words(s.glossy, s.tag);
 }
 
-// A separate place in a queue of length counters[length] for every invocation that gets here; counted by `component` in
-// counters[by_component ...]. Invocations that run together share one atomic addition: one each took a tenth of the shading
+// Reserves a place in a queue of length counters[length] for each invocation that gets here; counted by `component` in
+// counters[by_component ...]. Concurrent invocations share one atomic addition: separate ones took a tenth of the shading
 // time.
 uint queue_place(uint length, uint by_component, uint component) {
 #if LUCERNA_SUBGROUPS
@@ -92,7 +92,7 @@ uint queue_place(uint length, uint by_component, uint component) {
   return atomicAdd(counters[length], 1u);
 #endif
 }
-// The same, not counted by component.
+// Likewise, not counted by component.
 uint queue_place(uint length) {
 #if LUCERNA_SUBGROUPS
   uint all = subgroupAdd(1u), before = subgroupExclusiveAdd(1u), first = 0u;
@@ -102,7 +102,7 @@ uint queue_place(uint length) {
   return atomicAdd(counters[length], 1u);
 #endif
 }
-// Counts invocations that get here.
+// Counts the invocations that get here.
 void count_one(uint counter) {
 #if LUCERNA_SUBGROUPS
   uint all = subgroupAdd(1u);
@@ -111,14 +111,14 @@ void count_one(uint counter) {
   atomicAdd(counters[counter], 1u);
 #endif
 }
-// Puts a path's next ray into the queue.
+// Appends a path's next ray to the queue.
 void queue_ray(uint slot, PathState p, vec3 origin, vec3 direction) {
   next_queue[queue_place(k_counter_next, k_counter_rays, automaton_account(path_automaton(p)))] = slot;
   store_ray(slot, Ray(origin, k_infinity, direction, slot));
   store_path(slot, p);
 }
 
-// Zero light, of no group.
+// Sets zero light, of no group.
 void clear_radiance(uint slot) {
 #if LUCERNA_GROUP_SUMS
   for (uint c = 0u; c < k_component_count; ++c) radiance[radiance_texel(slot, c)] = vec4(0.0);
@@ -127,7 +127,7 @@ void clear_radiance(uint slot) {
 #endif
 }
 
-// To a texel of the path's radiance. At most once a texel and dispatch (see above).
+// Adds to a texel of the path's radiance. At most once per texel and dispatch (see above).
 void add_to_radiance(uint slot, uint lane, bool wanted, vec3 value) {
   if (wanted && any(notEqual(value, vec3(0.0)))) {
     int at = int(radiance_texel(slot, lane));
@@ -135,7 +135,7 @@ void add_to_radiance(uint slot, uint lane, bool wanted, vec3 value) {
   }
 }
 
-// True if a lane's light is to be added. Non-finite light is refused and counted.
+// True if a lane's light is added. Non-finite light is refused and counted.
 bool radiance_wanted(uint lane, vec3 value) {
   bool wanted = lane < k_no_lane, finite = is_finite(value);
   if (wanted && !finite) atomicAdd(counters[k_counter_dropped], 1u);
@@ -143,7 +143,7 @@ bool radiance_wanted(uint lane, vec3 value) {
 }
 
 #if LUCERNA_GROUP_SUMS
-// To the light of a group. At most once a slot and dispatch, like the next.
+// Adds to the light of a group. At most once per slot and dispatch, like the next.
 void add_to_group(uint slot, uint group, vec3 value) {
   if (any(notEqual(value, vec3(0.0)))) {
     uint lit = groups_lit(slot), bit = 1u << group;
@@ -152,7 +152,7 @@ void add_to_group(uint slot, uint group, vec3 value) {
     radiance[radiance_texel(slot, 0u)].a = uintBitsToFloat(lit | bit);
   }
 }
-// ... of two that are not the same, or of one where b is zero.
+// ... of two different groups, or of one with b zero.
 void add_to_groups(uint slot, uint group_a, vec3 a, uint group_b, vec3 b) {
   uint lit = groups_lit(slot);
   uint bit_a = any(notEqual(a, vec3(0.0))) ? 1u << group_a : 0u, bit_b = any(notEqual(b, vec3(0.0))) ? 1u << group_b : 0u;
@@ -164,7 +164,7 @@ void add_to_groups(uint slot, uint group_a, vec3 a, uint group_b, vec3 b) {
         b + ((lit & bit_b) != 0u ? group_light(slot, group_b) : vec3(0.0));
   if ((bit_a | bit_b) != 0u) radiance[radiance_texel(slot, 0u)].a = uintBitsToFloat(lit | bit_a | bit_b);
 }
-// Light of two lanes of one group, which may be the same. At most once a slot and dispatch, like the next.
+// Adds light of two lanes of one group, which may be equal. At most once per slot and dispatch, like the next.
 void add_radiance_of_group(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b) {
   bool same = lane_a == lane_b;
   vec3 both = a + b;
@@ -223,9 +223,9 @@ void add_radiance(uint slot, uint lane, vec3 value) {
   add_to_group(slot, lane / k_component_count, wanted ? value : vec3(0.0));
 }
 #else
-// At most once a lane, slot and dispatch.
+// At most once per lane, slot and dispatch.
 void add_radiance(uint slot, uint lane, vec3 value) { add_to_radiance(slot, lane, radiance_wanted(lane, value), value); }
-// Light of two lanes of one group, which may be the same.
+// Adds light of two lanes of one group, which may be equal.
 void add_radiance_of_group(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b) {
   bool same = lane_a == lane_b;
   add_radiance(slot, lane_a, a + (same ? b : vec3(0.0)));
@@ -239,7 +239,7 @@ void add_radiance_of_component(uint slot, uint lane_a, vec3 a, uint lane_b, vec3
 #endif
 
 #if LUCERNA_LOOKUP_BIAS
-// Adds VertexOut.bias; at most once a slot and dispatch. Non-finite values are left out, with their light.
+// Adds VertexOut.bias; at most once per slot and dispatch. Non-finite values are omitted, with their light.
 void add_lookup_bias(uint slot, float value) {
   int at = int(radiance_texel(slot, 1u));
   if (value != 0.0 && is_finite(vec3(value))) radiance[at].a = texelFetch(radiance_texels, at).a + value;

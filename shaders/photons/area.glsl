@@ -92,6 +92,6 @@ vec2 photon_areas(vec3 x, vec3 normal, float radius) {
   vec2 area = k_inv_pi * sum / vec2(0.5 * r2 * r2, r2);
   return node < nodes || nodes == 0u ? vec2(1.0) : clamp(area, k_photon_least_area, 1.0);
 }
-// By Epanechnikov's kernel only.
+// For Epanechnikov's kernel only.
 float photon_area(vec3 x, vec3 normal, float radius) { return photon_areas(x, normal, radius).x; }
 #endif

@@ -1,6 +1,6 @@
 // Direct light for shade.comp: emitters hit by the path and emitters sampled at a vertex, combined by MIS.
 //
-// Where records hold the sky's light (LUCERNA_SEPARATE_SKY), a vertex whose diffuse lobe has looked it up (sky_known)
+// If records store the sky's light (LUCERNA_SEPARATE_SKY), a vertex whose diffuse lobe has looked it up (sky_known)
 // computes it by neither strategy: light samples contribute the sky to the glossy lobe only, and a diffuse ray that hits the
 // sky adds nothing. The sun and all other lights are sampled as usual.
 #ifndef LUCERNA_TRANSPORT_DIRECT_LIGHT
