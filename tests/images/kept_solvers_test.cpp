@@ -1,6 +1,6 @@
 // links: session
-// Work that a choice of solvers puts aside and a later one takes up again: what changed in between decides
-// what of it holds.
+// Work of solvers that are deselected and later selected again: changes in between decide how much of it
+// stays valid.
 #include <catch2/catch.hpp>
 
 #include "images/cache_support.h"
@@ -23,7 +23,7 @@ const Settings k_path{{"components.tertiary", "path"}}, k_cache{{"components.ter
 
 }  // namespace
 
-TEST_CASE("a cache that was switched off is there again when it is called for") {
+TEST_CASE("a cache that is switched off is reused when it is switched on") {
   test::CacheRenderer bed(test::block_room(true), 24);
   bed.set(k_base);
   const film::Image first = bed.finish();
@@ -44,13 +44,13 @@ TEST_CASE("a cache that was switched off is there again when it is called for") 
   for (int c = 0; c < film::k_components; ++c) CHECK(second.components[c] == first.components[c]);
 }
 
-TEST_CASE("what changed while a cache was put aside invalidates of it what it always does") {
+TEST_CASE("changes made while a cache is off invalidate the same parts as always") {
   test::CacheRenderer bed(test::block_room(true), 24);
   bed.set(k_base);
   bed.finish();
   const irradiance_cache::RawRecords records = bed.records();
 
-  // Other light: the places hold, and the light is that of a new cache.
+  // Other light: positions stay, and the light is that of a new cache.
   bed.set(k_path);
   scene::Light lamp = bed.r.scene()->lights[0];
   lamp.intensity = {9, 2, 1};
@@ -66,13 +66,13 @@ TEST_CASE("what changed while a cache was put aside invalidates of it what it al
     const film::Image expected = fresh.finish();
     CHECK(test::mean(relit.components[2]) == Approx(test::mean(expected.components[2])).epsilon(0.02));
   }
-  // Another seed, which is another cache.
+  // Another seed gives another cache.
   bed.set(k_path);
   bed.set({{"seed", "7"}});
   bed.set(k_cache);
   bed.finish();
   CHECK_FALSE(identical(bed.records(), records));
-  // Shaders and scenes.
+  // Shader reloads and scenes.
   for (const bool scene : {false, true}) {
     bed.set(k_path);
     if (scene)
