@@ -1,6 +1,6 @@
 // links: plan
-// What the solvers say of themselves agrees with itself and with the settings: from these tables panels,
-// keys, menus, commands and files are made.
+// The solvers' tables are consistent with each other and with the settings: panels, keys, menus, commands and
+// files are generated from them.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
@@ -22,7 +22,7 @@ TEST_CASE("every setting of the picture has a row in each solver's table of chan
         return head && option.key.starts_with(*head);
       }));
     }
-    // A mix where groups are not kept apart is an edit of all lights: surfaces are what they were.
+    // A mix without tracked groups is an edit of all lights: surfaces do not change.
     scene::Changes relit(scene::Change::lamp);
     relit.edits.insert({scene::Change::environment, scene::Change::colour});
     relit.settings = {"relight.mix"};
@@ -32,8 +32,8 @@ TEST_CASE("every setting of the picture has a row in each solver's table of chan
   }
 }
 
-TEST_CASE("views, commands and files of every solver are such as the window and scripts can use") {
-  const std::string windows = "ADEFKLQRSTW";  // keys that the window has for itself
+TEST_CASE("views, commands and files of every solver are valid for window and scripts") {
+  const std::string windows = "ADEFKLQRSTW";  // keys that the window uses itself
   std::set<std::string> names, extensions;
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     INFO(solver->name);
