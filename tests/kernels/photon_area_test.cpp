@@ -1,6 +1,6 @@
 // links: photons
-// How much surface there is around a place (shaders/photons/area.glsl), against closed forms and against sums
-// over points of random triangles.
+// The surface area around a point (shaders/photons/area.glsl), compared with closed forms and with sums over
+// points of random triangles.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <random>
@@ -21,7 +21,7 @@ struct Place {
   vec3 normal;
 };
 
-/// By Epanechnikov's kernel and by the flat one.
+/// Areas by Epanechnikov's kernel and by the flat one.
 std::vector<vec2> areas(const scene::Scene& scene, const std::vector<Place>& places) {
   static gpu::Device device({"", true});
   static gpu::ShaderCompiler compiler;
@@ -60,7 +60,7 @@ scene::Scene floor() {
   return s;
 }
 
-/// Of a disc of radius 1 around the origin, the part to the left of x = d, -1..1, weighed by 2 (1 - d^2) /
+/// The part to the left of x = d, -1..1, of a disc of radius 1 around the origin, weighted by 2 (1 - d^2) /
 /// pi.
 float left_of(float d) {
   double sum = 0;
@@ -72,12 +72,12 @@ float left_of(float d) {
   return float(sum);
 }
 
-/// The same of the disc itself: a segment of it.
+/// The same unweighted: a segment of the disc.
 float segment_left_of(float d) { return 0.5f + (std::asin(d) + d * std::sqrt(1 - d * d)) / k_pi; }
 
 }  // namespace
 
-TEST_CASE("within a surface there is all of a disc, at its border as much as the closed form says") {
+TEST_CASE("inside a surface the whole disc counts, at its border the share of the closed form") {
   std::vector<Place> places;
   std::vector<vec2> expected;
   const auto ask_both = [&](const vec3& at, float radius, const vec2& area, const vec3& normal) {
@@ -97,7 +97,7 @@ TEST_CASE("within a surface there is all of a disc, at its border as much as the
     ask_both({0.1f, 0.1f * r, 0.3f}, r, {0.99f * 0.99f, 0.99f}, up);  // above it: (1 - c^2)^2, 1 - c^2
     ask({0.1f, 0.3f * r, 0.3f}, r, 1.0f / 64);                        // too far above
     ask({0.1f, 0, 0.3f}, r, 1.0f / 64, {1, 0, 0});                    // another side
-    ask({0.1f, 0, 0.3f}, r, 1, {0, -1, 0});                           // wound the other way round
+    ask({0.1f, 0, 0.3f}, r, 1, {0, -1, 0});                           // opposite winding
   }
   ask_both({0, 0, 0}, 10, {2 / k_pi / 100 * 4, 1.0f / 64}, up);  // smaller than the disc
   const std::vector<vec2> found = areas(floor(), places);
@@ -109,13 +109,13 @@ TEST_CASE("within a surface there is all of a disc, at its border as much as the
   }
 }
 
-TEST_CASE("plates, layers and what is no place for photons") {
+TEST_CASE("plates, layers and surfaces without photons") {
   scene::Scene s = floor();
   test::add_quad(s, {-0.5f, 0.01f, 0.5f}, {1, 0, 0}, {0, 0, -1});  // a mat
   // A plate: its lower side is not part of the upper one.
   test::add_quad(s, {-1, 1, 1}, {2, 0, 0}, {0, 0, -2});
   test::add_quad(s, {-1, 0.98f, -1}, {2, 0, 0}, {0, 0, 2});
-  // A mirror that goes on where a wall ends.
+  // A mirror that continues a wall.
   s.materials.emplace_back();
   s.materials[1].metallic = 1;
   test::add_quad(s, {-1, 2, 1}, {1, 0, 0}, {0, 0, -2});
@@ -138,7 +138,7 @@ TEST_CASE("plates, layers and what is no place for photons") {
   CHECK(photons::diffuse_materials(upload::flatten(s)) == std::vector<bool>{true, true});
 }
 
-TEST_CASE("of random triangles as much as a sum over their points says") {
+TEST_CASE("for random triangles the area equals a sum over their points") {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> unit(0, 1);
   const auto point = [&](float spread) {

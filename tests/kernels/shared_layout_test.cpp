@@ -1,7 +1,7 @@
 // links: gpu
-// Structs that C++ and the shaders share: every member must have the same name and offset on both sides, and
-// an array of them the same stride. A new struct in shaders/shared/ is one line in `structs()`; forgetting it
-// fails the second test.
+// Structs shared by C++ and the shaders: every member must have the same name and offset on both sides, and
+// an array of them the same stride. A new struct in shaders/shared/ needs one line in `structs()`; the second
+// test fails without it.
 #include <algorithm>
 #include <fstream>
 #include <set>
@@ -215,7 +215,7 @@ std::vector<uint32_t> compile(const SharedStruct& s, const std::filesystem::path
 
 }  // namespace
 
-TEST_CASE("shared structs are laid out alike in C++ and GLSL") {
+TEST_CASE("shared structs have the same layout in C++ and GLSL") {
   const test::Folder temporary;
   for (const SharedStruct& s : structs()) {
     INFO(s.header << ": " << s.name);
