@@ -10,7 +10,7 @@ WIDE, DEEP, HIGH = 1.52, 2.1, 3.72       # half width, depth behind the wall's m
 SILL, TRANSOM = 0.46, 2.52               # platform of a window, lower edge of the sign
 RADIUS = 1.30                            # of the arch, which springs at TRANSOM + 0.03
 
-# Letters as strokes in a box 1 high; curves are corners that the tube rounds.
+# Letters as strokes in a box 1 high; the tube rounds their corners.
 LETTERS = {
     "A": (0.66, [[(0, 0), (0.33, 1), (0.66, 0)], [(0.13, 0.36), (0.53, 0.36)]]),
     "B": (0.56, [[(0, 0), (0, 1), (0.46, 1), (0.5, 0.54), (0.04, 0.53)], [(0.04, 0.52), (0.56, 0.5), (0.54, 0), (0, 0)]]),

@@ -84,7 +84,7 @@ def figures(ours, theirs, keep, eps=0.01):
     mean_o, mean_t = o.mean(axis=0), t.mean(axis=0)
     deviation = np.sqrt(ours.variance[keep].sum(axis=0) + theirs.variance[keep].sum(axis=0)) / len(o)
     error = ((o - t) ** 2 / (t ** 2 + eps)).mean(axis=1)
-    # What is left when both renderers' own noise is taken away.
+    # The difference without both renderers' own noise.
     noise = ((ours.variance[keep] + theirs.variance[keep]) / (t ** 2 + eps)).mean(axis=1)
     calm = np.argsort(error + noise)[:len(error) - max(1, len(error) // 1000)]
     return {"mean": {"lucerna": mean_o.round(6).tolist(), "cycles": mean_t.round(6).tolist()},

@@ -110,7 +110,7 @@ def coat(f0, f90):
     basis = np.stack([np.ones_like(x), exit_term(x * x)], 1)
     at = np.sqrt(cosines())
     fit = np.array([fit_positive(basis * weight[:, None], np.interp(x, at, row) * weight) for row in relative])
-    # Exact in the average, so that energy is right whatever the fit misses.
+    # Exact on average, so the energy is right despite the error of the fit.
     means = np.trapz(4 * x[:, None] ** 3 * basis, x, axis=0)
     closure = f90 * (t[:, :, 4] + f0 / f90 * (t[:, :, 3] - t[:, :, 4]))
     return through, fit / (fit @ means)[:, None], (1 - through) / closure

@@ -72,7 +72,7 @@ class Racer:
             found, seconds = self.run(samples, 1)
             pilots.append((samples, found, seconds))
             print(f"  {self.name}: {samples} samples, error {found:.6f}, {seconds:.2f} s", file=sys.stderr, flush=True)
-            # By 1 / samples. What more samples do not mend (a cache's own error) would call for ever more.
+            # Scales with 1 / samples. An error that more samples do not reduce (a cache's) would need more and more.
             if 0.9 * error < found <= error or (found <= error and samples == 1):
                 break
             more = max(1, math.ceil(samples * found / error * 1.02))
