@@ -184,7 +184,7 @@ TEST_CASE("records store light once the camera has come near enough") {
   INFO(far.size() << " records, " << crowded(far) << " crowd; then " << now.size() << ", " << crowded(now));
   // Records that already have light do not change.
   CHECK(test::keeps_places(test::lit(now), test::lit(far)));
-  // Records whose surroundings are no nearer than their present radii are no longer crowded.
+  // Records with room beyond the present minimum radius are no longer crowded.
   const irradiance_cache::Cache& cache = *test::cache(shown.r);
   int roomy = 0, of_before = 0;
   for (const irradiance_cache::Record& r : cache.records().read()) {
@@ -194,7 +194,7 @@ TEST_CASE("records store light once the camera has come near enough") {
     roomy += r.lesser_radius > 2.02f * least && r.least_distance > 4.04f * least;
     of_before += r.lesser_radius > 2.02f * least;
   }
-  INFO(of_before << " are of before, " << roomy << " of them with room");
+  INFO(of_before << " are not updated, " << roomy << " of them with room");
   CHECK(roomy == 0);
   CHECK(test::lit(now).size() > test::lit(far).size() + 20);
 }

@@ -200,8 +200,7 @@ TEST_CASE("every edit and setting has a row; cache settings without a row invali
       if (const auto* head = std::get_if<std::string_view>(&row.what)) found |= o.key.starts_with(*head);
     INFO(o.key);
     const SolverInfo* owner = owner_of(o.key);
-    if (!owner || owner == &cache)
-      CHECK(found);  // other solvers' settings invalidate nothing, whatever their prefix
+    if (!owner || owner == &cache) CHECK(found);  // otherwise nothing is invalidated
     // A setting that does not restart the picture cannot invalidate records.
     if (!o.restarts) CHECK_FALSE(spoiled_by_setting(cache, o.key).any());
   }

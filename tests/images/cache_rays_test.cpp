@@ -37,8 +37,8 @@ TEST_CASE("the more of the picture reads a record, the less noise it has at the 
   };
   double mean = 0;
   for (const irradiance_cache::Record& r : records) mean += double(light(r)) / double(records.size());
-  int less = 0, more = 0,
-      none = 0;  // one noise bound for all would stop later, sooner; records that no pixel reads
+  // Records for which a common noise bound would stop later; sooner; records that no pixel reads.
+  int less = 0, more = 0, none = 0;
   // The stop criterion averages over neighbouring records, so records meet the rule on average: the rms of
   // noise over bound.
   double stopped = 0;

@@ -86,8 +86,7 @@ TEST_CASE("light does not leak through walls, around their ends, or far from the
     Room room(p.at);
     room.wall(p.z0, p.z1, p.height, p.thickness);
     Settings wide = k_wide;
-    wide["lights.sampling"] =
-        "power";  // training rays of learned lights would be a large share of few samples
+    wide["lights.sampling"] = "power";  // no training rays of learned lights
     const Result path = render(room.s, {{"lights.sampling", "power"}}, 128),
                  cached = render(room.s, wide, 16);
     // A record covers at least half a pixel around it (cache.min_radius), whatever is in between: the columns
@@ -229,8 +228,7 @@ TEST_CASE("without diffuse surfaces or without lights a cache costs nothing and 
   Room room(vec3(0), false);
   room.s.lights.push_back({.name = "lamp", .intensity = vec3(1), .position = {0.5f, 0.8f, 0.5f}});
   r.set_scene(std::make_shared<scene::Scene>(room.s));
-  r.settings().set("samples",
-                   "32");  // each reads one of the records that cover the point, and pixels are compared
+  r.settings().set("samples", "32");  // each reads one record; pixels are compared
   test::set(r, k_wide);
   test::set(r, {{"cache.gather", "false"}});
   const film::Image lit = test::finish(r);

@@ -37,7 +37,7 @@ stats::Band forecast(const Case& c, const char* seed) {
     if (double(e.rays) < 0.1 * total || !e.total_rays) continue;
     const stats::Band& b = *e.total_rays;
     std::printf(
-        "%-8s %ux%u to %s, seed %s: %.2f M rays in all; after %.0f %% (%.0f samples a pixel) the forecast "
+        "%-8s %ux%u to %s, seed %s: %.2f M rays in all; after %.0f %% (%.0f samples per pixel) the forecast "
         "is %.2f of that, band %.2f to %.2f\n",
         c.scene, c.width, c.height, c.target, seed, 1e-6 * total, 100 * double(e.rays) / total, e.samples,
         b.middle / total, b.low / total, b.high / total);
@@ -90,7 +90,7 @@ TEST_CASE("in uniform sampling the forecast band contains the actual value in ei
       if (!band) continue;
       ++of_scene, within += band->low <= truth->middle && truth->middle <= band->high;
       if (e.samples < 20 || (e.samples > 60 && e.samples < 75))
-        std::printf("%-8s with %.0f samples a pixel: %.2f of the truth, %.2f to %.2f\n", scene, e.samples,
+        std::printf("%-8s with %.0f samples per pixel: %.2f of the truth, %.2f to %.2f\n", scene, e.samples,
                     band->middle / truth->middle, band->low / truth->middle, band->high / truth->middle);
     }
     std::printf("%-8s %zu of %zu held the truth\n", scene, within, of_scene);

@@ -23,7 +23,7 @@ scene::Scene mirror_room() {
 
 }  // namespace
 
-TEST_CASE("all solvers compute light with the same number of events") {
+TEST_CASE("all solvers count the same scattering events for path.max_depth") {
   const scene::Scene s = mirror_room();
   for (const char* depth : {"2", "3"}) {
     test::Settings settings{{"path.max_depth", depth},

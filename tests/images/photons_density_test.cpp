@@ -159,8 +159,7 @@ TEST_CASE("importance is shown where lookups take place, and is even where looku
   s.r.picture(false);
   test::set(s.r, {{"photons.importons", "true"}});
   test::finish(s.r);
-  s.photons =
-      &dynamic_cast<photons::PhotonSolver&>(*s.r.solver("photons"));  // replaced by the change of settings
+  s.photons = &dynamic_cast<photons::PhotonSolver&>(*s.r.solver("photons"));  // a new one
   CHECK(s.r.picture(false) != plain);
   // A camera that looks straight down sees a plane in even steps, so every cell has as many lookups, up to
   // noise of the pilot.

@@ -1,5 +1,5 @@
 // links: session
-// Compares the perceived error that the two halves of a picture estimate with the difference of pictures of
+// Compares the error as seen that the two halves of a picture estimate with the difference of pictures of
 // independent seeds.
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -60,7 +60,7 @@ Layers mean_of(const std::vector<Layers>& pictures) {
 
 }  // namespace
 
-TEST_CASE("the estimated perceived error is the squared difference of independent seeds") {
+TEST_CASE("the estimated error as seen is the squared difference of independent seeds") {
   struct Case {
     const char *scene, *ev;
     bool clipped;  ///< the lamp is white: only the sum of the layers is known

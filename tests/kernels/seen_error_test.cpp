@@ -1,5 +1,5 @@
 // links: film
-// The perceived error (shaders/shared/seen_error.h) of pictures with known halves, through the real shader.
+// The error as seen (shaders/shared/seen_error.h) of pictures with known halves, through the real shader.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -86,7 +86,7 @@ float sign(uint32_t x, uint32_t y) { return (x + y) % 2 ? 1.0f : -1.0f; }
 
 }  // namespace
 
-TEST_CASE("Constant noise: the perceived error is its relative size, for picture and tiles") {
+TEST_CASE("Constant noise: the error as seen is its relative size, for picture and tiles") {
   Bench bench;
   const auto e = bench.estimate(32, 16, k_linear, [](uint32_t x, uint32_t y) {
     return grey(0.5f + 0.05f * sign(x, y), 0.5f - 0.05f * sign(x, y));
@@ -106,8 +106,7 @@ TEST_CASE("Constant noise: the perceived error is its relative size, for picture
   CHECK(bench.complaints() == 0);
 }
 
-TEST_CASE(
-    "A bright window over 5 % of the picture dominates the error of the mean, not the perceived error") {
+TEST_CASE("A bright window over 5 % of the picture dominates the error of the mean, not the error as seen") {
   Bench bench;
   // Walls have a 10 % error in tertiary light; the window, four by eight of 640 pixels, has a 50 % error in
   // primary light. The scale of a pixel is the mean of the surrounding 5x5.

@@ -46,7 +46,7 @@ std::vector<std::string> names(const auto& list) {
   return all;
 }
 
-/// Two rooms, path and learned, each by two programs, after 4 and 16 s, twice. Perceived squared errors are c
+/// Two rooms, path and learned, each by two programs, after 4 and 16 s, twice. Squared errors as seen are c
 /// / t with c 0.04 and 0.16; learned has a quarter, the other program twice as much; the seeds' spread is 2 %
 /// of the root in either direction.
 struct MadeUp {
@@ -210,7 +210,7 @@ TEST_CASE("A program's output and exit status are reported, and it ends when the
   CHECK_THROWS_WITH(run_program("/no/such/program", {}, {}), Contains("/no/such/program: cannot be run"));
 }
 
-TEST_CASE("Figures of the perceived error: after a time, to an error, factors with intervals") {
+TEST_CASE("Figures of the error as seen: after a time, to an error, factors with intervals") {
   const Json r = MadeUp().report();
   REQUIRE(r["scenes"].size() == 2);
   const Json &path = r["scenes"][0]["settings"][0], &before = r["scenes"][0]["settings"][1],
@@ -243,7 +243,7 @@ TEST_CASE("Figures of the perceived error: after a time, to an error, factors wi
   CHECK(r["seen_besides"].size() == 4);
 }
 
-TEST_CASE("Page and findings of the perceived error show factors, and mark noise") {
+TEST_CASE("Page and findings of the error as seen show factors, and mark noise") {
   MadeUp made;
   const Json r = made.report();
   const std::string html = make_page(r, made.place.path);

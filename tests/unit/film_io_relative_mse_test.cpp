@@ -84,7 +84,7 @@ TEST_CASE("Small and empty pictures") {
   CHECK(film::relative_mse_noise({}) == 0);
 }
 
-TEST_CASE("Perceived error is relative to the surrounding light plus a share of the median") {
+TEST_CASE("Error as seen is relative to the surrounding light plus a share of the median") {
   // Left half 1, right half 4, far from the border between them; the median is of both: 2.5.
   constexpr uint32_t k_width = 40, k_pixels = 40 * 20;
   std::vector<vec3> r(k_pixels), t(k_pixels);
@@ -112,7 +112,7 @@ TEST_CASE("Perceived error is relative to the surrounding light plus a share of 
   CHECK(film::seen_mse(t, {k_width, r, r}).all == Approx(sum / k_pixels));
 }
 
-TEST_CASE("The references' noise does not change the perceived error, nor its trimmed mean") {
+TEST_CASE("The references' noise does not change the error as seen, nor its trimmed mean") {
   constexpr uint32_t k_size = 256, k_pixels = k_size * k_size;
   const double sigma = 0.09 / (1.05 * 1.05) / std::sqrt(3) / k_size;
   for (const uint32_t seed : {1u, 2u, 3u}) {
@@ -132,7 +132,7 @@ TEST_CASE("The references' noise does not change the perceived error, nor its tr
   }
 }
 
-TEST_CASE("Dark, small and empty pictures have a perceived error") {
+TEST_CASE("Dark, small and empty pictures have an error as seen") {
   // Light in a corner only: the median is 0, so the mean is used.
   std::vector<vec3> r = flat(100, vec3(0));
   r[0] = vec3(9);

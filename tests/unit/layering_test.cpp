@@ -17,11 +17,10 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Module {
-  std::string folder;  ///< relative to the include root: "scene/io"
-  std::set<std::string>
-      files;  ///< names without endings; empty: all files of the folder that no other module lists
-  std::set<std::string> deps;  ///< as written
-  std::set<std::string> sees;  ///< itself and everything it reaches through deps
+  std::string folder;           ///< relative to the include root: "scene/io"
+  std::set<std::string> files;  ///< without endings; empty: all that no other module lists
+  std::set<std::string> deps;   ///< as written
+  std::set<std::string> sees;   ///< itself and everything it reaches through deps
 };
 using Modules = std::map<std::string, Module>;
 using Lines = std::vector<std::string>;

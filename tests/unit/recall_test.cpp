@@ -32,7 +32,7 @@ struct StateFolder : test::Folder {
 
 }  // namespace
 
-TEST_CASE("bookmarks and the introduction's state survive a restart; a damaged file is ignored") {
+TEST_CASE("bookmarks and the state of the first steps survive a restart; a damaged file is ignored") {
   const StateFolder folder;
   {
     Window window;  // no file yet
