@@ -14,9 +14,9 @@
 namespace lucerna::ui {
 namespace {
 
-constexpr float k_reach = 9;  // design pixels from its middle in which a handle is meant
+constexpr float k_reach = 9;  // radius of a handle in design pixels
 
-/// How far the axis of a spot is drawn where it meets nothing, of the scene's radius.
+/// Drawn length of a spot's axis that hits nothing, relative to the scene's radius.
 constexpr float k_aim_of_extent = 0.25f;
 
 LampHandle aim_of(Ui& ui, uint32_t index, const scene::Light& light) {
@@ -92,7 +92,7 @@ void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle
       continue;
     }
     if (handle.part == LampHandle::Part::aim) {
-      aim = handle.at;  // its lamp comes next
+      aim = handle.at;  // its lamp is the next entry
       list->AddCircleFilled(handle.at, r, IM_COL32(0, 0, 0, 110), 20);
       list->AddCircle(handle.at, 0.7f * r, ink, 20, px(1.5f));
       for (const float way : {-1.0f, 1.0f}) {
@@ -127,7 +127,7 @@ void drag_lamp(Ui& ui, const Area& shown) {
     const session::PickRay ray = session::pick_ray(ui.view->camera, at.x, at.y, ui.aspect);
     const auto hit = rays->nearest(ray.origin, ray.direction);
     const vec3 from = ui.light(handle.light).position;
-    // Where nothing is, in the distance in which it was.
+    // Without a surface there, at the previous distance.
     const vec3 to =
         hit ? hit->position : ray.origin + glm::distance(ray.origin, handle.point) * ray.direction;
     if (glm::distance(from, to) > 1e-4f * ui.view->extent)

@@ -9,8 +9,8 @@ namespace {
 
 float held(float value, float least, float most) { return std::clamp(value, least, std::max(least, most)); }
 
-/// Folds what a window of that size, in design pixels, has no room for, and holds the rest to what leaves a
-/// usable picture.
+/// Folds panels that a window of that size, in design pixels, has no room for, and limits the others so that
+/// the picture stays usable.
 Layout fitted(Layout layout, float width, float height) {
   const float side_room = width - k_least_picture_width;
   const auto both_fit = [&] {
@@ -18,7 +18,7 @@ Layout fitted(Layout layout, float width, float height) {
            side_room;
   };
   if (!both_fit()) (layout.opened_last == Panel::right ? layout.left_open : layout.right_open) = false;
-  // Where not even one fits, the one that was opened last is shown at the picture's cost.
+  // If not even one fits, the panel opened last is shown at the picture's cost.
   if (!both_fit() && layout.opened_last != Panel::left && layout.opened_last != Panel::right)
     layout.left_open = layout.right_open = false;
   // Each side may take what the other leaves beyond the picture.

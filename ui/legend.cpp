@@ -1,5 +1,5 @@
-// The legend of what lies over the picture, at its lower left: the ramp of a heat map, what solvers have
-// drawn (solvers::Legend), the states of tiles.
+// The legend over the picture, at its lower left: the ramp of a heat map, marks of solvers (solvers::Legend),
+// the states of tiles.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr float k_ramp_width = 248, k_ramp_height = 8;
 
 ImU32 ramp_ink(uint32_t ramp, float t) { return ink(shared::ramp_color(ramp, t)); }
 
-/// The ramp from left to right, with labels under the given places (0..1).
+/// The ramp from left to right, with labels under the given positions (0..1).
 void ramp_bar(ImDrawList* list, const ImVec2& at, uint32_t ramp,
               const std::vector<std::pair<float, std::string>>& labels) {
   constexpr int k_steps = 32;
@@ -29,7 +29,7 @@ void ramp_bar(ImDrawList* list, const ImVec2& at, uint32_t ramp,
     list->AddRectFilledMultiColor({at.x + a * w, at.y}, {at.x + b * w, at.y + h}, from, to, to, from);
   }
   ImFont* font = theme().fonts.small;
-  float taken = at.x - px(8);  // up to where there are labels
+  float taken = at.x - px(8);  // end of the labels so far
   for (const auto& [place, text] : labels) {
     const float x = std::floor(at.x + place * w);
     list->AddLine({x, at.y + h}, {x, at.y + h + px(3)}, colour::text_dim);
@@ -44,9 +44,9 @@ void ramp_bar(ImDrawList* list, const ImVec2& at, uint32_t ramp,
 }
 
 const char* title_of(uint32_t layer) {
-  if (layer == shared::k_layer_samples) return "Samples a pixel";
+  if (layer == shared::k_layer_samples) return "Samples per pixel";
   if (layer == shared::k_layer_error) return "Relative error, estimated, of 8 \xC3\x97 8 pixels";
-  return "Device time a pixel";
+  return "Device time per pixel";
 }
 
 std::vector<std::pair<float, std::string>> heat_labels(const session::Legend& legend) {
@@ -93,7 +93,7 @@ void tile_sample(ImDrawList* list, const ImVec2& lo, uint32_t state) {
   }
 }
 
-/// A square of a colour and what it stands for; returns the x behind it.
+/// A square of a colour and its meaning; returns the x behind it.
 float swatch(ImDrawList* list, const ImVec2& at, ImU32 colour, const std::string& name) {
   ImFont* font = theme().fonts.small;
   list->AddRectFilled({at.x, at.y + px(3)}, {at.x + px(10), at.y + px(13)}, colour, px(2));
@@ -103,7 +103,7 @@ float swatch(ImDrawList* list, const ImVec2& at, ImU32 colour, const std::string
   return end + px(10);
 }
 
-/// Labels of a solver's ramp; where it has none, of its range.
+/// Labels of a solver's ramp; by default the ticks of its range.
 std::vector<std::pair<float, std::string>> ramp_labels(const solvers::Legend& legend) {
   using Scale = solvers::Legend::Range::Unit;
   std::vector<std::pair<float, std::string>> labels;
@@ -126,7 +126,7 @@ std::vector<std::pair<float, std::string>> ramp_labels(const solvers::Legend& le
 
 constexpr float k_title = 20, k_ramp = 28, k_mark = 18;  // heights
 
-/// With its title, without what parts it from the next.
+/// With its title, without the gap to the next legend.
 float height_of(const solvers::Legend& legend) {
   float h = px(k_title);
   if (legend.ramp) h += px(k_ramp);
@@ -157,7 +157,7 @@ void draw_below_title(ImDrawList* list, ImVec2 at, const solvers::Legend& legend
 void draw_legend(Ui& ui, const Area& area) {
   const session::Snapshot* s = ui.snapshot.get();
   if (!s || !s->activity.empty()) return;
-  // The coarse first image has neither samples to be counted nor tiles; solvers draw over it too.
+  // The coarse first image has neither sample counts nor tiles; solvers draw over it too.
   const bool heat = !s->coarse && s->legend.layer != 0, tiles = !s->coarse && s->tiles && s->accuracy;
   std::vector<const solvers::Legend*> legends;
   for (const auto& report : s->reports)
@@ -177,7 +177,7 @@ void draw_legend(Ui& ui, const Area& area) {
       if (n > 0 || always) rows.push_back({state, name, count_text(n)});
     };
     row(shared::k_tile_waiting, "before the minimum of samples", false);
-    row(shared::k_tile_active, a.adaptive ? "at work" : "over the target", true);
+    row(shared::k_tile_active, a.adaptive ? "active" : "over the target", true);
     row(shared::k_tile_done, a.adaptive ? "done" : "under the target", true);
     row(shared::k_tile_capped, "stays over the target", false);
   }

@@ -177,7 +177,8 @@ struct Ui : commands::Workspace {
   bool asks_pointer() const;
   /// The last inspected place of a pointer at rest, as inspect.at takes it.
   std::optional<vec2> asked;
-  /// Inspections known here, and whether a script has asked since the pointer moved: then it asks nothing.
+  /// Inspections known here, and whether a script has inspected a point since the pointer moved: then the
+  /// pointer inspects nothing.
   uint64_t inspections_known = 0;
   bool script_asked = false;
 
