@@ -365,7 +365,7 @@ def seats(s):
             s.place(name, (q[0], y, q[1]), yaw + spin)
         back, spin = 0.21 + rs.uniform(-0.03, 0.05), rs.uniform(-5, 5)
         if k == 13:
-            back, spin = 0.42, 38.0   # somebody has just got up
+            back, spin = 0.42, 38.0   # this chair is pushed back
         put("chair", -back, rs.uniform(-0.02, 0.02), 0.0, spin)
         put("pad", 0.22, -0.02, TOP - 0.0005, rs.uniform(-6, 6))
         put("pencil", 0.22 + rs.uniform(-0.01, 0.01), 0.115, TOP - 0.0004, 90 + rs.uniform(-12, 12))

@@ -61,7 +61,7 @@ def floor(scene):
     scene.material("floor", (0.5, 0.5, 0.5), lambert=True)
     scene.mesh("floor", [(quad((-20, 0, 20), (20, 0, 20), (20, 0, -20), (-20, 0, -20)), "floor")])
     scene.place("floor")
-    # looks straight down from below the light, without shading it; the picture's right is +x, its top -z
+    # looks vertically down from below the light, without shading it; the picture's right is +x, its top -z
     scene.camera("main", (0, 0.5, 0), (0, 0, 0), ortho=(4, 4), up=(0, 0, -1))
 
 

@@ -1,4 +1,4 @@
-"""Directional albedos of the GGX reflection lobe, integrated here anew: the tables that node trees look up.
+"""Directional albedos of the GGX reflection lobe, integrated here: the tables that node trees look up.
 
 Independent of the renderer's own tables (renderer/upload/bsdf_table.cpp) in code and resolution.
 """

@@ -41,7 +41,7 @@ def arguments():
 
 
 class Racer:
-    """A renderer: its references, and pictures with as many samples as one asks for."""
+    """A renderer: its references, and pictures with a given number of samples."""
 
     def __init__(self, job, name):
         self.job, self.name, self.references = job, name, []

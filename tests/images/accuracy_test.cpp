@@ -49,10 +49,10 @@ TEST_CASE("no accuracy is reported while a cache is built, however often progres
     // a sample.
     shown += bed.r.draw_draft();
     keeper.follow(bed.r, 1);
-    const auto told = keeper.publish(bed.r, true);
-    CHECK(told->ledger.entries().empty());
-    REQUIRE(told->paths == 0);
-    CHECK_FALSE(session::seconds_to(*told, 10).has_value());
+    const auto reported = keeper.publish(bed.r, true);
+    CHECK(reported->ledger.entries().empty());
+    REQUIRE(reported->paths == 0);
+    CHECK_FALSE(session::seconds_to(*reported, 10).has_value());
   }
   REQUIRE(shown > 4);
   CHECK(bed.r.stats().paths == 0);
@@ -60,9 +60,9 @@ TEST_CASE("no accuracy is reported while a cache is built, however often progres
   bed.set({{"path.batch", "1024"}});
   while (bed.r.step()) {
     keeper.follow(bed.r, 1);
-    const auto told = keeper.publish(bed.r, true);
+    const auto reported = keeper.publish(bed.r, true);
     if (bed.r.samples() < 2) {
-      for (const stats::Entry& e : told->ledger.entries()) CHECK_FALSE(e.told);
+      for (const stats::Entry& e : reported->ledger.entries()) CHECK_FALSE(e.told);
       bed.r.finish_ledger();
       CHECK_FALSE(bed.r.ledger().entries().back().told);
       CHECK_FALSE(stats::seconds_to(bed.r.ledger(), 10).has_value());

@@ -21,8 +21,8 @@ struct Case {
 };
 
 struct Figures {
-  size_t asked = 0, by_paths = 0, by_noise = 0, by_sum = 0;
-  double told_paths = 0, told_records = 0, told_interpolation = 0, told = 0, truth = 0;
+  size_t tested = 0, by_paths = 0, by_noise = 0, by_sum = 0;
+  double estimated_paths = 0, estimated_records = 0, estimated_interpolation = 0, estimated = 0, truth = 0;
 };
 
 Figures measure(const Case& c) {
@@ -54,16 +54,16 @@ Figures measure(const Case& c) {
     for (size_t i = 0; i < shot.luminance.size(); ++i)
       squares += std::pow(double{shot.luminance[i]} - reference.luminance[i], 2);
     f.truth += std::sqrt(squares / double(shot.luminance.size()) - own) / mean;
-    f.told += shot.error.relative_sum();
-    f.told_paths += shot.error.relative(0), f.told_records += shot.error.relative_records();
-    f.told_interpolation += shot.error.relative_interpolation();
+    f.estimated += shot.error.relative_sum();
+    f.estimated_paths += shot.error.relative(0), f.estimated_records += shot.error.relative_records();
+    f.estimated_interpolation += shot.error.relative_interpolation();
     for (size_t t = 0; t < shot.tiles.size(); ++t) {
       film::TileError a = shot.tiles[t];
       const film::TileError& r = reference.tiles[t];
       if (a.heavy_tailed) continue;
       a = test::with_noise_of(a, r);
       const double off = std::abs(a.luminance - r.luminance);
-      ++f.asked;
+      ++f.tested;
       f.by_paths += off <= film::student_90(a.degrees) * a.standard_error;
       f.by_sum += off <= a.half_width_90();
       a.records.interpolation = 0;
@@ -85,17 +85,18 @@ TEST_CASE("the estimated error of a cached picture is its true error") {
     if (only != "all" && only != c.scene) continue;
     const Figures f = measure(c);
     std::printf(
-        "%-9s covered: paths %.1f %%, with records %.1f %%, sum %.1f %% of %zu tiles; rms estimated %.4f (paths "
+        "%-9s covered: paths %.1f %%, with records %.1f %%, sum %.1f %% of %zu tiles; rms estimated %.4f "
+        "(paths "
         "%.4f, records %.4f, interpolation %.4f), true %.4f\n",
-        c.scene, 100. * f.by_paths / f.asked, 100. * f.by_noise / f.asked, 100. * f.by_sum / f.asked, f.asked,
-        f.told / c.shots, f.told_paths / c.shots, f.told_records / c.shots, f.told_interpolation / c.shots,
-        f.truth / c.shots);
+        c.scene, 100. * f.by_paths / f.tested, 100. * f.by_noise / f.tested, 100. * f.by_sum / f.tested,
+        f.tested, f.estimated / c.shots, f.estimated_paths / c.shots, f.estimated_records / c.shots,
+        f.estimated_interpolation / c.shots, f.truth / c.shots);
     INFO(c.scene);
     // 85 to 95 %, plus two standard errors for this number of independent tiles.
-    const double tiles = double(f.asked), chance = 2 * std::sqrt(0.9 * 0.1 * tiles);
+    const double tiles = double(f.tested), chance = 2 * std::sqrt(0.9 * 0.1 * tiles);
     CHECK(std::abs(double(f.by_sum) - 0.9 * tiles) < 0.05 * tiles + chance);
-    CHECK(f.told > 0.8 * f.truth);
-    CHECK(f.told < 1.25 * f.truth);
+    CHECK(f.estimated > 0.8 * f.truth);
+    CHECK(f.estimated < 1.25 * f.truth);
     CHECK(f.by_paths < f.by_sum);
   }
 }
@@ -126,9 +127,9 @@ TEST_CASE(
   make_small(one, {});
   make_small(other, {{"path.batch", "4096"}});
   const film::Image image = test::finish(one);
-  int asked = 0, refused = 0;
+  int calls = 0, refused = 0;
   while (!other.done())
-    if (!other.step([&] { return ++asked % 149 == 0; })) REQUIRE(++refused < 10000);
+    if (!other.step([&] { return ++calls % 149 == 0; })) REQUIRE(++refused < 10000);
   CHECK(refused > 0);
   CHECK(test::identical(image, other.image()));
   REQUIRE(one.film().record_errors_complete());
@@ -168,13 +169,13 @@ TEST_CASE("a target that record errors prevent is not reported as reached and co
   test::finish(r);
   r.finish_ledger();
   size_t limited = 0;
-  const std::vector<film::TileError> told = r.tile_errors();
-  for (size_t t = 0; t < told.size(); ++t) {
+  const std::vector<film::TileError> reported = r.tile_errors();
+  for (size_t t = 0; t < reported.size(); ++t) {
     const schedule::Tile& tile = r.adaptive()->tiles()[t];
     limited += tile.limited(k_target);
     CHECK(tile.samples < 65536);
-    if (tile.state == schedule::TileState::done) CHECK(told[t].relative_sum() < 1.01 * k_target);
-    if (tile.limited(k_target)) CHECK(told[t].relative_sum() > k_target);
+    if (tile.state == schedule::TileState::done) CHECK(reported[t].relative_sum() < 1.01 * k_target);
+    if (tile.limited(k_target)) CHECK(reported[t].relative_sum() > k_target);
   }
   CHECK(limited > 0);
   CHECK(r.ledger().entries().back().floor() > 0);

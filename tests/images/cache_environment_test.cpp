@@ -197,9 +197,9 @@ TEST_CASE("without an environment or without a cache, cache.environment changes 
   const test::Result off = test::render(r);
   for (int c = 0; c < 4; ++c) CHECK(identical(on.image.components[c], off.image.components[c]));
   const scene::Scene room = make_room({.sun = true});
-  const Result plain = render(room, {}, 4), asked = render(room, {{"cache.environment", "true"}}, 4);
-  for (int c = 0; c < 4; ++c) CHECK(identical(plain.image.components[c], asked.image.components[c]));
-  CHECK(asked.bias_known[0]);
+  const Result plain = render(room, {}, 4), with_option = render(room, {{"cache.environment", "true"}}, 4);
+  for (int c = 0; c < 4; ++c) CHECK(identical(plain.image.components[c], with_option.image.components[c]));
+  CHECK(with_option.bias_known[0]);
 }
 
 TEST_CASE("cache.environment can be switched while a scene is shown") {

@@ -219,7 +219,7 @@ TEST_CASE("a cache build can finish early at any time, and the picture is that o
     r.make_do();
     REQUIRE(test::cache(r)->ready());
     const irradiance_cache::CacheStatus& s = test::cache(r)->status();
-    CHECK((s.stop == irradiance_cache::StopReason::told) == !ready);
+    CHECK((s.stop == irradiance_cache::StopReason::reported) == !ready);
     CHECK(s.records == before);
     CHECK((r.solver_statistics().at("cache").at("stopped_by") == "told") == !ready);
     CHECK(test::cache(r)->records().size() == before);

@@ -329,7 +329,7 @@ TEST_CASE("ellipses that shrink in other light leave no gaps") {
     const film::Image picture = relit.finish();
     const irradiance_cache::CachePass& last = relit.status().passes.back();
     INFO("round " << round << ": " << records << " records, then " << relit.records().size() << "; of "
-                  << last.paths << " paths in the end " << last.asked << " asked");
+                  << last.paths << " paths in the end " << last.asked << " gaps");
     CHECK(relit.status().stop == StopReason::covered);
     CHECK(last.paths > 0);
     CHECK(double(last.asked) <= 0.002 * double(last.paths));

@@ -51,8 +51,8 @@ TEST_CASE("records are refined once more rays reduce the error more than further
   test::CacheRenderer other(room, 48, false);
   other.r.settings().set("path.batch", "32768");
   other.set(noisy_records("256"));
-  int asked = 0;
-  while (!other.r.done()) other.r.step([&] { return ++asked % 97 == 0; });
+  int calls = 0;
+  while (!other.r.done()) other.r.step([&] { return ++calls % 97 == 0; });
   CHECK(test::identical(other.r.image(), picture));
   CHECK(other.records().lights == after.lights);
 }

@@ -50,13 +50,13 @@ struct Figures {
   double ratio = 0;    // estimated over true rms error of the picture
   double covered = 0;  // share of the tiles without heavy tails whose interval contains the reference
   double heavy = 0;    // share of heavy-tailed tiles
-  size_t asked = 0;    // tiles without heavy tails
+  size_t tested = 0;   // tiles without heavy tails
 };
 
 Figures measure(Bench& bench, const Shot& reference, uint32_t samples, uint32_t shots) {
   const double own = reference.error.rms[0] * reference.error.rms[0];
   double estimated = 0, found = 0;
-  size_t inside = 0, asked = 0, heavy = 0;
+  size_t inside = 0, tested = 0, heavy = 0;
   for (uint32_t s = 0; s < shots; ++s) {
     const Shot shot = bench.shoot(s, samples);
     estimated += shot.error.rms[0] * shot.error.rms[0];
@@ -73,12 +73,12 @@ Figures measure(Bench& bench, const Shot& reference, uint32_t samples, uint32_t 
       // Both are noisy: variances add, with their degrees of freedom (Welch, Satterthwaite).
       const double va = a.standard_error * a.standard_error, vr = r.standard_error * r.standard_error;
       const double degrees = (va + vr) * (va + vr) / (va * va / a.degrees + vr * vr / r.degrees);
-      ++asked;
+      ++tested;
       inside += std::abs(a.luminance - r.luminance) <= film::student_90(degrees) * std::sqrt(va + vr);
     }
   }
-  return {std::sqrt(estimated / found), double(inside) / double(std::max<size_t>(1, asked)),
-          double(heavy) / double(asked + heavy), asked};
+  return {std::sqrt(estimated / found), double(inside) / double(std::max<size_t>(1, tested)),
+          double(heavy) / double(tested + heavy), tested};
 }
 
 }  // namespace
@@ -112,7 +112,7 @@ TEST_CASE("the estimated error equals the true error") {
       CHECK(f.ratio < 1.25);
       // No claim where almost all tiles are heavy-tailed (glass with few samples): 50 tiles are the minimum
       // that distinguishes 90 from 80 %.
-      if (f.asked < 50) continue;
+      if (f.tested < 50) continue;
       CHECK(f.covered > 0.85);
       CHECK(f.covered < 0.95);
     }

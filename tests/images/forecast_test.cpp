@@ -65,7 +65,7 @@ TEST_CASE("a tenth of an adaptive render predicts the total") {
 TEST_CASE("in uniform sampling the forecast band contains the actual value in eight cases of ten") {
   // Rooms, metal, a studio's environment: the error decreases by a different law in each. Each ledger entry
   // is predicted from those before it, in samples, which equals time on an otherwise idle machine.
-  size_t told = 0, held = 0;
+  size_t reported = 0, held = 0;
   session::Renderer r(test::renderer_options(false));
   r.set_size(48, 32);
   for (const char* scene : {"cornell", "studio", "hall", "atrium"}) {
@@ -95,7 +95,7 @@ TEST_CASE("in uniform sampling the forecast band contains the actual value in ei
     }
     std::printf("%-8s %zu of %zu held the truth\n", scene, within, of_scene);
     CHECK(of_scene >= 5);
-    told += of_scene, held += within;
+    reported += of_scene, held += within;
   }
-  CHECK(10 * held >= 8 * told);
+  CHECK(10 * held >= 8 * reported);
 }

@@ -89,8 +89,8 @@ TEST_CASE("the picture is a function of scene, settings and seed") {
   test::set(renderer,
             {{"lights.sampling", "learned"}, {"samples", "8"}, {"cache.max_records", test::k_room}});
   for (int limit = 0; !renderer.done(); ++limit) {
-    int asked = 0;
-    renderer.step([&] { return ++asked > limit; });
+    int calls = 0;
+    renderer.step([&] { return ++calls > limit; });
   }
   CHECK(test::identical(first, renderer.image()));
 }

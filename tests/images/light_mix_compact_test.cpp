@@ -79,13 +79,13 @@ TEST_CASE("a mix of compact light equals that of light by component within 0.02 
     CHECK(odd_off < k_share);
     most = std::max(most, off);
     // The reported noise and brightness of the picture.
-    const film::ImageError told = in_short.r.image_error(), right = exact.r.image_error();
-    CHECK(told.rms[0] == Approx(right.rms[0]).epsilon(1e-3));
-    CHECK(told.luminance[0] == Approx(right.luminance[0]).epsilon(k_share));
+    const film::ImageError reported = in_short.r.image_error(), right = exact.r.image_error();
+    CHECK(reported.rms[0] == Approx(right.rms[0]).epsilon(1e-3));
+    CHECK(reported.luminance[0] == Approx(right.luminance[0]).epsilon(k_share));
     // Components are estimates; their sum never exceeds the picture, because they are shares of it.
     double sum = 0;
-    for (size_t c = 1; c < told.luminance.size(); ++c) sum += told.luminance[c];
-    CHECK(sum == Approx(told.luminance[0]).epsilon(1e-4));
+    for (size_t c = 1; c < reported.luminance.size(); ++c) sum += reported.luminance[c];
+    CHECK(sum == Approx(reported.luminance[0]).epsilon(1e-4));
   }
   CHECK(most > 0);  // otherwise no light was compact
 }
@@ -98,8 +98,9 @@ TEST_CASE("a mix of compact light equals a new render, statistically") {
     INFO(text);
     b.mix(text);
     const scene::LightMix mix = scene::parse_mix(text);
-    Bench anew(scene::mixed_scene(s, groups_of_room(), mix), {{"seed", "2"}, {"relight.enabled", "off"}}, 64);
-    CHECK(worst_z(as_one_component(b.r.image()), as_one_component(anew.image())) < 5.5);
+    Bench fresh(scene::mixed_scene(s, groups_of_room(), mix), {{"seed", "2"}, {"relight.enabled", "off"}},
+                64);
+    CHECK(worst_z(as_one_component(b.r.image()), as_one_component(fresh.image())) < 5.5);
   }
 }
 
@@ -174,8 +175,8 @@ TEST_CASE("sun and environment are separate groups in compact light") {
     b.mix(text);
     solo[k] = as_one_component(b.r.image());
     const scene::Scene alone = scene::mixed_scene(s, groups, scene::parse_mix(text));
-    Bench anew(alone, {{"seed", "2"}, {"relight.enabled", "off"}}, 64);
-    CHECK(worst_z(solo[k], as_one_component(anew.image())) < 5.5);
+    Bench fresh(alone, {{"seed", "2"}, {"relight.enabled", "off"}}, 64);
+    CHECK(worst_z(solo[k], as_one_component(fresh.image())) < 5.5);
   }
   CHECK(worst_z(solo[0], solo[1]) > 20);  // otherwise a mix-up would not show
   film::Image both = solo[0];

@@ -53,8 +53,8 @@ TEST_CASE("a mix of splats equals light traced from lamps of that strength, stat
                            "sky: color=1,0.2,0.1; sun: mute; lamp: kelvin=9000 ev=1.3"}) {
     INFO(text);
     b.mix(text);
-    Bench anew(scene::mixed_scene(s, groups_of_room(), scene::parse_mix(text)), traced(other), 64);
-    CHECK(worst_z(b.r.image(), anew.image()) < 5.5);
+    Bench fresh(scene::mixed_scene(s, groups_of_room(), scene::parse_mix(text)), traced(other), 64);
+    CHECK(worst_z(b.r.image(), fresh.image()) < 5.5);
   }
   CHECK(b.r.stats().rays == rays);
 }

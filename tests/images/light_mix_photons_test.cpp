@@ -46,10 +46,10 @@ TEST_CASE("a mix of photons' light equals photons from lamps of that strength, s
                            "sky: color=1,0.2,0.1; sun: mute; lamp: kelvin=9000 ev=1.3"}) {
     INFO(text);
     b.mix(text);
-    Bench anew(scene::mixed_scene(s, groups_of_room(), scene::parse_mix(text)), photons(other), 32);
+    Bench edited(scene::mixed_scene(s, groups_of_room(), scene::parse_mix(text)), photons(other), 32);
     // Radii are in pixels, so both blur alike. 24 blocks, 2 pictures: 5 errors with about 64 degrees of
     // freedom occur by chance in one of 5000 such tests; light of a wrong group is off by tens.
-    CHECK(worst_z(as_one_component(b.r.image()), as_one_component(anew.image())) < 5);
+    CHECK(worst_z(as_one_component(b.r.image()), as_one_component(edited.image())) < 5);
   }
   CHECK(b.r.stats().rays == rays);
 }

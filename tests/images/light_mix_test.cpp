@@ -30,9 +30,9 @@ TEST_CASE("a mix by powers of two and zero equals the picture of such lights bit
     INFO(text);
     const scene::LightMix mix = scene::parse_mix(text);
     const scene::Scene shining = scene::mixed_scene(s, groups, mix);
-    const film::Image anew = trace(s, shining, as_they_are),
+    const film::Image fresh = trace(s, shining, as_they_are),
                       mixed = trace(s, s, scene::mix_weights(mix, groups));
-    CHECK(identical(mixed, anew));
+    CHECK(identical(mixed, fresh));
     CHECK_FALSE(identical(mixed, neutral));
   }
 }
@@ -122,18 +122,18 @@ TEST_CASE("the reported error of a finished picture is that of the displayed mix
   session::AccuracyKeeper keeper;
   b.image();
   b.r.finish_ledger();
-  const auto told = [&] {
+  const auto reported = [&] {
     keeper.follow(b.r, 1);
     return keeper.publish(b.r, true)->error()[0];
   };
-  double last = told();
+  double last = reported();
   CHECK(last > 0);
   for (const char* text : {"sky: solo", "lamp: solo", "block: solo", ""}) {
     b.mix(text);
     INFO(text);
-    CHECK(told() == Approx(b.r.image_error().seen(0)));
-    CHECK(told() != last);
-    last = told();
+    CHECK(reported() == Approx(b.r.image_error().seen(0)));
+    CHECK(reported() != last);
+    last = reported();
   }
 }
 
@@ -204,8 +204,9 @@ TEST_CASE("a mix equals a new render: switches, strengths from 10^-4 to 10^4, co
     INFO(text);
     b.mix(text);
     const scene::LightMix mix = scene::parse_mix(text);
-    Bench anew(scene::mixed_scene(s, groups_of_room(), mix), {{"seed", "2"}, {"relight.enabled", "off"}}, 64);
-    const film::Image mixed = b.r.image(), other = anew.image();
+    Bench fresh(scene::mixed_scene(s, groups_of_room(), mix), {{"seed", "2"}, {"relight.enabled", "off"}},
+                64);
+    const film::Image mixed = b.r.image(), other = fresh.image();
     CHECK(worst_z(mixed, other) < 5.5);
     for (int c = 0; c < film::k_components; ++c)
       CHECK((mean(mixed.components[c]) > 0) == (mean(other.components[c]) > 0));
@@ -218,7 +219,7 @@ TEST_CASE("noise is reported for the mixed picture, and adaptive sampling contin
   for (const char* text : {"lamp: solo", "block: ev=4; sky: mute", ""}) {
     INFO(text);
     b.mix(text);
-    const film::ImageError told = b.r.image_error();
+    const film::ImageError reported = b.r.image_error();
     // Computed here from the halves of the displayed picture.
     const film::Image image = b.r.image();
     double variance = 0, sum = 0;
@@ -229,9 +230,9 @@ TEST_CASE("noise is reported for the mixed picture, and adaptive sampling contin
       variance += (all - odd) * (all - odd), sum += all;
     }
     const double n = double(image.samples.size());
-    CHECK(told.luminance[0] == Approx(sum / n).epsilon(1e-4));
-    CHECK(told.rms[0] == Approx(std::sqrt(variance / n)).epsilon(1e-3));
-    CHECK(b.r.ledger().entries().back().error[0] == Approx(told.seen(0)).epsilon(1e-6));
+    CHECK(reported.luminance[0] == Approx(sum / n).epsilon(1e-4));
+    CHECK(reported.rms[0] == Approx(std::sqrt(variance / n)).epsilon(1e-3));
+    CHECK(b.r.ledger().entries().back().error[0] == Approx(reported.seen(0)).epsilon(1e-6));
     CHECK(b.r.ledger().entries().size() == (*text || b.r.ledger().entries().size() == 1 ? 1u : 0u));
   }
 

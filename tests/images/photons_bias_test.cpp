@@ -52,7 +52,7 @@ scene::Scene turned_sun(bool wavy, float half = 1) {
   return s;
 }
 
-struct Told {
+struct Estimates {
   film::Image image;
   film::ImageError error;
   std::vector<film::TileError> tiles;
@@ -60,7 +60,7 @@ struct Told {
   bool bias_known = false, errors_known = false;
   double ledger_bias = 0;
 };
-Told render(const scene::Scene& scene, uint32_t samples, const test::Settings& more) {
+Estimates render(const scene::Scene& scene, uint32_t samples, const test::Settings& more) {
   session::Renderer r(test::renderer_options(samples <= test::k_validated_samples));
   r.set_size(k_size, k_size);
   r.set_scene(std::make_shared<scene::Scene>(scene));
@@ -70,16 +70,16 @@ Told render(const scene::Scene& scene, uint32_t samples, const test::Settings& m
                           {"samples", std::to_string(samples)}};
   for (const auto& [key, value] : more) settings[key] = value;
   test::set(r, settings);
-  Told told;
-  told.image = test::finish(r);
-  told.error = r.image_error();
-  told.tiles = r.tile_errors();
-  told.bias = r.film().read_lookup_bias();
-  told.bias_known = r.film().lookup_bias_known(), told.errors_known = r.lookup_errors_known();
+  Estimates reported;
+  reported.image = test::finish(r);
+  reported.error = r.image_error();
+  reported.tiles = r.tile_errors();
+  reported.bias = r.film().read_lookup_bias();
+  reported.bias_known = r.film().lookup_bias_known(), reported.errors_known = r.lookup_errors_known();
   r.finish_ledger();
-  told.ledger_bias = r.ledger().entries().back().of_mean.interpolation;
+  reported.ledger_bias = r.ledger().entries().back().of_mean.interpolation;
   CHECK(r.device().validation_messages() == 0);
-  return told;
+  return reported;
 }
 
 struct Amount {
@@ -87,7 +87,7 @@ struct Amount {
 };
 /// The sum over pixels of weight(x, y) times the picture's value or its estimated bias; in luminance.
 template <class Weight>
-Amount picture_sum(const Told& t, Weight&& weight) {
+Amount picture_sum(const Estimates& t, Weight&& weight) {
   double all = 0, odd = 0;
   for (uint32_t i = 0; i < k_size * k_size; ++i) {
     const double w = weight(i % k_size, i / k_size);
@@ -97,7 +97,7 @@ Amount picture_sum(const Told& t, Weight&& weight) {
   return {all, std::abs(all - odd)};
 }
 template <class Weight>
-Amount bias_sum(const Told& t, Weight&& weight) {
+Amount bias_sum(const Estimates& t, Weight&& weight) {
   double even = 0, odd = 0;
   for (uint32_t i = 0; i < k_size * k_size; ++i) {
     const double w = weight(i % k_size, i / k_size);
@@ -129,23 +129,24 @@ TEST_CASE("for cosine-shaped light the blur estimate equals the closed form, and
     double most_short;  // of the bias: unreported, because the light is not a parabola
   };
   for (const Case& c : {Case{"5", "1", 12, 0.1}, Case{"3", "1", 48, 0.04}, Case{"7", "0.6667", 12, 0.1}}) {
-    const Told t = render(turned_sun(true), c.rounds,
-                          {{"photons.radius", c.radius}, {"photons.alpha", c.alpha}, {"photons.floor", "0"}});
-    double kept = 0, told = 0;  // averaged over passes
+    const Estimates t =
+        render(turned_sun(true), c.rounds,
+               {{"photons.radius", c.radius}, {"photons.alpha", c.alpha}, {"photons.floor", "0"}});
+    double kept = 0, reported = 0;  // averaged over passes
     for (uint32_t i = 0; i < c.rounds; ++i) {
       const double q = k * k_pixel * std::atof(c.radius) * photons::radius_ratio(i, std::atof(c.alpha));
-      kept += epanechnikov(q) / c.rounds, told += 2 * (flat(q) - epanechnikov(q)) / c.rounds;
+      kept += epanechnikov(q) / c.rounds, reported += 2 * (flat(q) - epanechnikov(q)) / c.rounds;
     }
     const Amount mean = picture_sum(t, one), picture = picture_sum(t, wave), bias = bias_sum(t, wave),
                  even = bias_sum(t, one);
     const double truth = (kept - 1) * contrast * mean.value;
     INFO("radius " << c.radius << ": picture " << picture.value / mean.value << " +- "
                    << picture.noise / mean.value << " (" << kept * contrast << "), bias estimated "
-                   << bias.value / mean.value << " +- " << bias.noise / mean.value << " (" << told * contrast
-                   << "), true " << truth / mean.value);
+                   << bias.value / mean.value << " +- " << bias.noise / mean.value << " ("
+                   << reported * contrast << "), true " << truth / mean.value);
     // 4 standard errors, each from two halves, which can coincide by chance: plus half a hundredth.
     CHECK(std::abs(picture.value - kept * contrast * mean.value) < 4 * picture.noise + 0.005 * mean.value);
-    CHECK(std::abs(bias.value - told * contrast * mean.value) < 4 * bias.noise + 0.03 * std::abs(truth));
+    CHECK(std::abs(bias.value - reported * contrast * mean.value) < 4 * bias.noise + 0.03 * std::abs(truth));
     CHECK(bias.value < 0);
     CHECK(std::abs(bias.value) > (1 - c.most_short - 0.03) * std::abs(truth) - 4 * bias.noise);
     CHECK(std::abs(bias.value) < 1.03 * std::abs(truth) + 4 * bias.noise);
@@ -154,7 +155,7 @@ TEST_CASE("for cosine-shaped light the blur estimate equals the closed form, and
     CHECK(std::abs(even.value) < 4 * even.noise + 0.002 * mean.value);
     // The picture's figure is the quadratic mean of its pixels: that of a cosine.
     CHECK(t.error.interpolation_rms ==
-          Approx(std::abs(told) * contrast * mean.value / std::sqrt(2.0)).epsilon(0.1));
+          Approx(std::abs(reported) * contrast * mean.value / std::sqrt(2.0)).epsilon(0.1));
     CHECK(t.ledger_bias == Approx(t.error.relative_interpolation()));
     CHECK(t.error.relative_sum() == Approx(t.error.relative(0) + t.error.relative_interpolation()));
     CHECK(t.errors_known);
@@ -163,8 +164,9 @@ TEST_CASE("for cosine-shaped light the blur estimate equals the closed form, and
 
 TEST_CASE("even light has no blur estimate, up to the border of its surface") {
   // The floor ends within the picture, 16 pixels from its middle.
-  const Told t = render(turned_sun(false, 16 * float(k_pixel)), 32,
-                        {{"photons.radius", "4"}, {"photons.alpha", "1"}, {"photons.per_round", "400000"}});
+  const Estimates t =
+      render(turned_sun(false, 16 * float(k_pixel)), 32,
+             {{"photons.radius", "4"}, {"photons.alpha", "1"}, {"photons.per_round", "400000"}});
   const auto within = [](uint32_t x, uint32_t y, int least, int most) {
     const int u = std::min({int(x) - 16, 47 - int(x), int(y) - 16, 47 - int(y)});
     return u >= least && u < most ? 1.0 : 0.0;
@@ -192,18 +194,18 @@ TEST_CASE("without photons no blur is reported") {
   // No surface focuses light.
   scene::Scene plain = turned_sun(false);
   plain.materials[1] = test::diffuse(vec3(0.5f));
-  const Told none = render(plain, 4, {});
+  const Estimates none = render(plain, 4, {});
   CHECK_FALSE(none.bias_known);
   CHECK(none.error.interpolation_rms == 0);
   CHECK(none.error.relative_sum() == none.error.relative(0));
   // Path tracing only.
-  const Told paths = render(turned_sun(true), 4, {{"components.caustic", "path"}});
+  const Estimates paths = render(turned_sun(true), 4, {{"components.caustic", "path"}});
   CHECK_FALSE(paths.bias_known);
   CHECK(paths.error.interpolation_rms == 0);
   // No light at all.
   scene::Scene dark = turned_sun(true);
   dark.lights.clear();
-  const Told unlit = render(dark, 4, {});
+  const Estimates unlit = render(dark, 4, {});
   CHECK(unlit.error.interpolation_rms == 0);
   for (const auto& half : unlit.bias)
     for (const float value : half) REQUIRE(value == 0);
@@ -222,9 +224,9 @@ TEST_CASE("the estimate does not depend on work items or interruptions, and rest
   };
   make(one, "131072"), make(other, "1024");
   const film::Image image = test::finish(one);
-  int asked = 0, refused = 0;
+  int calls = 0, refused = 0;
   while (!other.done())
-    if (!other.step([&] { return ++asked % 23 == 0; })) REQUIRE(++refused < 10000);
+    if (!other.step([&] { return ++calls % 23 == 0; })) REQUIRE(++refused < 10000);
   CHECK(refused > 0);
   CHECK(test::identical(image, other.image()));
   CHECK(one.film().read_lookup_bias() == other.film().read_lookup_bias());

@@ -23,8 +23,8 @@ struct Case {
 };
 
 struct Figures {
-  size_t asked = 0, by_noise = 0, by_sum = 0, heavy = 0;
-  double told_noise = 0, told_bias = 0, told = 0, truth = 0;
+  size_t tested = 0, by_noise = 0, by_sum = 0, heavy = 0;
+  double estimated_noise = 0, estimated_bias = 0, estimated = 0, truth = 0;
 };
 
 void count(Figures& f, const Shot& shot, const Shot& reference) {
@@ -33,8 +33,8 @@ void count(Figures& f, const Shot& shot, const Shot& reference) {
   for (size_t i = 0; i < shot.luminance.size(); ++i)
     squares += std::pow(double{shot.luminance[i]} - double{reference.luminance[i]}, 2);
   f.truth += std::sqrt(std::max(0.0, squares / double(shot.luminance.size()) - own)) / mean;
-  f.told += shot.error.relative_sum();
-  f.told_noise += shot.error.relative(0), f.told_bias += shot.error.relative_interpolation();
+  f.estimated += shot.error.relative_sum();
+  f.estimated_noise += shot.error.relative(0), f.estimated_bias += shot.error.relative_interpolation();
   for (size_t t = 0; t < shot.tiles.size(); ++t) {
     film::TileError a = shot.tiles[t];
     const film::TileError& r = reference.tiles[t];
@@ -46,7 +46,7 @@ void count(Figures& f, const Shot& shot, const Shot& reference) {
     }
     a = test::with_noise_of(a, r);
     const double off = std::abs(a.luminance - r.luminance);
-    ++f.asked;
+    ++f.tested;
     f.by_sum += off <= a.half_width_90();
     a.records.interpolation = 0;
     f.by_noise += off <= a.half_width_90();
@@ -108,21 +108,21 @@ TEST_CASE("the estimated error of a picture of photons is its true error") {
         test::set(renderer, settings);
         count(f, shot_of(renderer), reference);
       }
-      const double share = 100 / double(std::max<size_t>(1, f.asked)), n = c.shots;
+      const double share = 100 / double(std::max<size_t>(1, f.tested)), n = c.shots;
       std::printf(
           "%-8s radius %-3s covered: noise %.1f %%, with bias %.1f %% of %zu tiles (%zu heavy-tailed); rms "
           "estimated "
           "%.4f (noise %.4f, bias %.4f), true %.4f\n",
-          c.scene, radius.c_str(), share * double(f.by_noise), share * double(f.by_sum), f.asked, f.heavy,
-          f.told / n, f.told_noise / n, f.told_bias / n, f.truth / n);
+          c.scene, radius.c_str(), share * double(f.by_noise), share * double(f.by_sum), f.tested, f.heavy,
+          f.estimated / n, f.estimated_noise / n, f.estimated_bias / n, f.truth / n);
       std::fflush(stdout);
       INFO(c.scene << " radius " << radius);
       // 85 %, minus two standard errors for this number of independent tiles.
-      const double tiles = double(f.asked), chance = 2 * std::sqrt(0.9 * 0.1 * tiles);
+      const double tiles = double(f.tested), chance = 2 * std::sqrt(0.9 * 0.1 * tiles);
       CHECK(double(f.by_sum) > 0.85 * tiles - chance);
       CHECK(f.by_noise < f.by_sum);
-      CHECK(f.told > 0.8 * f.truth);
-      CHECK(f.told < 1.6 * f.truth);
+      CHECK(f.estimated > 0.8 * f.truth);
+      CHECK(f.estimated < 1.6 * f.truth);
     }
   }
 }

@@ -244,11 +244,12 @@ TEST_CASE("records whose rays end in photons follow the lamp") {
   r.set_scene(std::make_shared<scene::Scene>(room));
   const film::Image bright = test::finish(r);
   CHECK(tertiary(bright) == Approx(2 * tertiary(first)).epsilon(0.1));
-  const test::Render anew{.width = 24, .height = 24, .samples = 4, .settings = settings, .validated = false};
-  const test::Result fresh = test::render(anew, &room);
+  const test::Render edited{
+      .width = 24, .height = 24, .samples = 4, .settings = settings, .validated = false};
+  const test::Result fresh = test::render(edited, &room);
   CHECK(tertiary(bright) == Approx(tertiary(fresh.image)).epsilon(0.1));
   // A second run is identical bit for bit.
-  CHECK(test::identical(fresh.image, test::render(anew, &room).image));
+  CHECK(test::identical(fresh.image, test::render(edited, &room).image));
 }
 
 TEST_CASE("solvers without photons give the same picture bit for bit") {

@@ -122,8 +122,8 @@ TEST_CASE("cancelled trials are repeated", "[photons_trials]") {
   const test::Settings few = photons_for({"secondary", "tertiary"}, k_few);
   const film::Image whole = Session(room, few).image();
   Session s(room, few);
-  uint32_t asked = 0;
-  for (uint32_t step = 0; !s.r.done() && step < 100000; ++step) s.r.step([&] { return ++asked % 41 == 0; });
+  uint32_t calls = 0;
+  for (uint32_t step = 0; !s.r.done() && step < 100000; ++step) s.r.step([&] { return ++calls % 41 == 0; });
   CHECK(test::identical(whole, s.r.image()));
 }
 

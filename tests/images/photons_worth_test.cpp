@@ -162,7 +162,7 @@ TEST_CASE("the pilot's noise estimates are correct for both methods", "[photons_
   // Smooth mirrors, and rough ones on which paths sample the lamps.
   for (const float roughness : {0.0f, 0.3f}) {
     const scene::Scene scene = two_lamps(roughness);
-    const Rendered told = render(scene, photons, 1);
+    const Rendered reported = render(scene, photons, 1);
     const film::Image path = render(scene, k_caustics, k_samples).image,
                       counted = render(scene, with(photons, {{"photons.worth", "false"}}), k_samples).image;
     for (const uint32_t x : {4u, 22u}) {
@@ -170,7 +170,7 @@ TEST_CASE("the pilot's noise estimates are correct for both methods", "[photons_
       double n = 0;
       for (uint32_t v = 3; v < 13; ++v)
         for (uint32_t u = x / 2; u < x / 2 + 3; ++u) {
-          const photons::Region& r = told.regions.all[v * told.regions.width + u];
+          const photons::Region& r = reported.regions.all[v * reported.regions.width + u];
           mean.mean += r.mean, mean.photons += r.photons, mean.paths += r.paths, ++n;
         }
       mean.mean /= n, mean.photons /= n, mean.paths /= n;

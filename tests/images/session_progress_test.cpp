@@ -64,13 +64,13 @@ TEST_CASE("progress is reported while a cache is built or relit") {
   lamp.position.x += 0.2f;
   window.r.set_light(0, lamp);
   double before = 0;
-  int told = 0;
+  int reported = 0;
   for (int i = 0; i < 10000 && window.r.preparing(); ++i, window.r.step())
     if (const auto p = window.progress()) {
       CHECK(p->done > before - 0.05);
-      before = p->done, ++told;
+      before = p->done, ++reported;
     }
-  CHECK(told > 0);
+  CHECK(reported > 0);
 }
 
 TEST_CASE("preview samples estimate the time of path tracing before any lookup is possible") {

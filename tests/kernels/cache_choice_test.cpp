@@ -233,10 +233,10 @@ TEST_CASE(
   for (const bool screen_too : {true, false}) {
     bench.placement.clear();
     for (int twice = 0; twice < 2; ++twice) {
-      const auto asked = bench.placement.collect(bench.stream, buffer, 200, 1, screen_too, reach);
-      REQUIRE(asked.size() == 4);
+      const auto collected = bench.placement.collect(bench.stream, buffer, 200, 1, screen_too, reach);
+      REQUIRE(collected.size() == 4);
       for (uint32_t k = 0; k < 3; ++k)
-        for (uint32_t block = 0; block < 4; ++block) CHECK(asked[block][k] == by_origin[block][k]);
+        for (uint32_t block = 0; block < 4; ++block) CHECK(collected[block][k] == by_origin[block][k]);
     }
     const uint32_t each = in_all[1] + in_all[2] + (screen_too ? in_all[0] : 0);
     REQUIRE(bench.placement.size() == 2 * each);
@@ -249,14 +249,14 @@ TEST_CASE(
     const Choice all = bench.placement.choice();
     uint32_t at = 0;
     for (uint32_t i = 0; i < 200; ++i) {
-      const uint32_t told = uint32_t(slots[2 * i].w);
-      if (told == 0 || (told == 1 && !screen_too)) continue;
+      const uint32_t reported = uint32_t(slots[2 * i].w);
+      if (reported == 0 || (reported == 1 && !screen_too)) continue;
       for (int twice = 0; twice < 2; ++twice, ++at) {
         CHECK(all.candidates[at].position.x == float(i));
         CHECK(all.candidates[at].facet == i);
-        CHECK(all.candidates[at].origin == told - 1);
+        CHECK(all.candidates[at].origin == reported - 1);
         CHECK(all.candidates[at].reach ==
-              Approx(std::max(told == 3 ? 20.0f : 0.001f, 0.1f * (float(i) + 5))));
+              Approx(std::max(reported == 3 ? 20.0f : 0.001f, 0.1f * (float(i) + 5))));
       }
     }
     CHECK(at == 2 * each);

@@ -175,11 +175,11 @@ TEST_CASE("derivatives of an edge's form factor match Lambert's formula") {
   }
   const gpu::Kernel kernel(bed.device, bed.compiler,
                            std::string(LUCERNA_SOURCE_DIR) + "/tests/kernels/shaders/form_factor_probe.comp");
-  gpu::Buffer asked(bed.device, {.name = "edges", .bytes = edges.size() * sizeof(Edge)});
-  asked.write(std::span<const Edge>(edges));
+  gpu::Buffer edge_buffer(bed.device, {.name = "edges", .bytes = edges.size() * sizeof(Edge)});
+  edge_buffer.write(std::span<const Edge>(edges));
   const gpu::Buffer terms(bed.device, {.name = "terms", .bytes = edges.size() * 6 * sizeof(float)});
   gpu::Resources resources;
-  resources.set("Edges", asked);
+  resources.set("Edges", edge_buffer);
   resources.set("Terms", terms);
   gpu::Stream stream(bed.device);
   stream.dispatch(kernel, resources, uint32_t(edges.size()), gpu::groups_for(edges.size(), 64));

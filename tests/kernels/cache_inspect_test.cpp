@@ -215,12 +215,12 @@ TEST_CASE("the reported overlap of the picture equals that of its pixels, counte
   r.picture(false);
   const auto report = test::cache_report(r);
   REQUIRE(report->overlap);
-  const irradiance_cache::Overlap& told = *report->overlap;
+  const irradiance_cache::Overlap& reported = *report->overlap;
   const std::vector<Record> all = test::cache(r)->records().read();
   const film::Image image = r.image();
   uint64_t pixels = 0, served = 0, sum = 0;
   uint32_t most = 0;
-  std::vector<uint32_t> histogram(told.histogram.size(), 0);
+  std::vector<uint32_t> histogram(reported.histogram.size(), 0);
   for (uint32_t p = 0; p < k_size * k_size; ++p) {
     const vec2 at = place_of(p) / float(k_size);
     const auto hit = session::pick(*r.scene(), r.camera(), at.x, at.y, 1);
@@ -231,17 +231,17 @@ TEST_CASE("the reported overlap of the picture equals that of its pixels, counte
     ++pixels, served += count > 0, sum += count, most = std::max(most, count);
     ++histogram[std::min<size_t>(count, histogram.size() - 1)];
   }
-  INFO(told.pixels << " pixels, " << told.served << " covered by " << told.mean << ", " << told.most
-                   << " at most; by hand " << pixels << ", " << served << ", " << double(sum) / double(served)
-                   << ", " << most);
+  INFO(reported.pixels << " pixels, " << reported.served << " covered by " << reported.mean << ", "
+                       << reported.most << " at most; by hand " << pixels << ", " << served << ", "
+                       << double(sum) / double(served) << ", " << most);
   CHECK(served > 1000);
-  CHECK(double(told.pixels) == Approx(double(pixels)).epsilon(0.003));
-  CHECK(double(told.served) == Approx(double(served)).epsilon(0.01));
-  CHECK(told.mean == Approx(double(sum) / double(served)).epsilon(0.01));
-  CHECK(std::abs(int(told.most) - int(most)) <= 1);
-  CHECK(std::accumulate(told.histogram.begin(), told.histogram.end(), 0ull) == told.pixels);
+  CHECK(double(reported.pixels) == Approx(double(pixels)).epsilon(0.003));
+  CHECK(double(reported.served) == Approx(double(served)).epsilon(0.01));
+  CHECK(reported.mean == Approx(double(sum) / double(served)).epsilon(0.01));
+  CHECK(std::abs(int(reported.most) - int(most)) <= 1);
+  CHECK(std::accumulate(reported.histogram.begin(), reported.histogram.end(), 0ull) == reported.pixels);
   for (size_t i = 0; i < histogram.size(); ++i)
-    CHECK(std::abs(int(told.histogram[i]) - int(histogram[i])) < int(pixels / 100));
+    CHECK(std::abs(int(reported.histogram[i]) - int(histogram[i])) < int(pixels / 100));
 }
 
 TEST_CASE("on a normal map inspection reports lookups on the smooth surface, and those without records") {
@@ -253,16 +253,16 @@ TEST_CASE("on a normal map inspection reports lookups on the smooth surface, and
     r.set_scene(std::make_shared<scene::Scene>(room));
     test::set(r, {{"components.secondary", "cache"}, {"components.tertiary", "cache"}, {"samples", "2"}});
     test::finish(r);
-    const irradiance_cache::Overlap told = *test::cache_report(r)->overlap;
-    CHECK(told.pixels == 64 * 64);
+    const irradiance_cache::Overlap reported = *test::cache_report(r)->overlap;
+    CHECK(reported.pixels == 64 * 64);
     // Three quarters of the texels are tilted; records bridge 12 degrees, not 45.
-    const double unserved = double(told.histogram[0] - told.gathered) / double(told.pixels);
+    const double unserved = double(reported.histogram[0] - reported.gathered) / double(reported.pixels);
     INFO(unserved << " without records");
     if (degrees < 20)
       CHECK(unserved < 0.01);
     else
       CHECK(unserved == Approx(0.75).margin(0.03));
-    size_t in_vain = 0, asked = 0;
+    size_t in_vain = 0, inspected = 0;
     for (const float x : {0.13f, 0.31f, 0.44f, 0.58f, 0.71f, 0.9f})
       for (const float y : {0.11f, 0.27f, 0.4f, 0.63f, 0.77f, 0.92f}) {
         r.inspect(vec2(x, y));
@@ -273,12 +273,12 @@ TEST_CASE("on a normal map inspection reports lookups on the smooth surface, and
         CHECK(found.surface.normal == vec3(0, 0, 1));
         CHECK(found.surface.position.z == Approx(-0.98).margin(1e-5));
         CHECK((found.count > 0) == (found.asks == shared::k_asks));
-        in_vain += found.asks == shared::k_asks_in_vain, ++asked;
+        in_vain += found.asks == shared::k_asks_in_vain, ++inspected;
       }
     if (degrees < 20)
       CHECK(in_vain == 0);
     else
-      CHECK(in_vain > asked / 2);
+      CHECK(in_vain > inspected / 2);
     // A metal has no lookups, and does not count.
     scene::Material metal = room.materials[2];
     metal.metallic = 1;
@@ -301,11 +301,11 @@ TEST_CASE(
   r.set_scene(std::make_shared<scene::Scene>(test::PanelRoom().s));
   test::set(r, {{"components.tertiary", "cache"}, {"samples", "2"}});
   test::finish(r);
-  const irradiance_cache::Overlap told = *test::cache_report(r)->overlap;
-  CHECK(told.pixels == 48 * 48);
-  CHECK(told.served > told.pixels / 2);
+  const irradiance_cache::Overlap reported = *test::cache_report(r)->overlap;
+  CHECK(reported.pixels == 48 * 48);
+  CHECK(reported.served > reported.pixels / 2);
   // A loaded cache measures the picture on request, without a build pass.
-  const auto file = std::filesystem::temp_directory_path() / fmt::format("lucerna-told-{}.cache", getpid());
+  const auto file = std::filesystem::temp_directory_path() / fmt::format("lucerna-overlap-{}.cache", getpid());
   r.solver_save("cache", file);
   r.restart();
   r.solver_load("cache", file);
@@ -313,7 +313,7 @@ TEST_CASE(
   test::finish(r);
   REQUIRE(test::cache(r)->status().loaded > 0);
   const uint64_t rays = r.stats().rays;
-  CHECK(test::cache_report(r)->overlap->histogram == told.histogram);
+  CHECK(test::cache_report(r)->overlap->histogram == reported.histogram);
   CHECK(r.stats().rays == rays);
 }
 

@@ -80,9 +80,10 @@ TEST_CASE("irradiance and gradients under a disk light match the closed form") {
     const Moments scatter = moments(records, i * k_repeats, k_repeats, [](const Record& r) {
       return 0.2126 * r.parts[0].value.x + 0.7152 * r.parts[0].value.y + 0.0722 * r.parts[0].value.z;
     });
-    const Moments told = moments(records, i * k_repeats, k_repeats, [](const Record& r) { return r.error; });
-    INFO("error " << told.mean << ", scatter " << scatter.deviation * std::sqrt(double(k_repeats)));
-    CHECK(told.mean > 0.8 * scatter.deviation * std::sqrt(double(k_repeats)));
+    const Moments reported =
+        moments(records, i * k_repeats, k_repeats, [](const Record& r) { return r.error; });
+    INFO("error " << reported.mean << ", scatter " << scatter.deviation * std::sqrt(double(k_repeats)));
+    CHECK(reported.mean > 0.8 * scatter.deviation * std::sqrt(double(k_repeats)));
   }
   // Directly below the disk, which subtends sin^2 = 1/5 from 2 m: rays hit the disk and nothing else.
   const Moments inverse = moments(records, 0, k_repeats, [](const Record& r) { return 1 / r.mean_distance; });

@@ -148,9 +148,9 @@ TEST_CASE("directions of the environment map follow its density, which integrate
              chi_square(within, std::vector<double>(within.size(), drawn / double(within.size()))).p);
     CHECK(jury.verdict() == "");
     // The density of a draw equals the density returned for hitting the environment in that direction.
-    const auto told = lights.environment(again);
+    const auto reported = lights.environment(again);
     size_t different = 0;
-    for (size_t i = 0; i < told.size(); ++i) different += std::abs(told[i].pdf / pdfs[i] - 1) > 1e-4f;
+    for (size_t i = 0; i < reported.size(); ++i) different += std::abs(reported[i].pdf / pdfs[i] - 1) > 1e-4f;
     CHECK(different == 0);
   }
 }
@@ -208,15 +208,15 @@ TEST_CASE("tables of an environment are built once for its texels, whatever else
   };
   scene::Scene edited = scene;
   const auto as_anew = [&] {
-    const upload::FlatScene anew = upload::flatten(edited, flat.sun_threshold);
+    const upload::FlatScene fresh = upload::flatten(edited, flat.sun_threshold);
     const auto same = [](const auto& a, const auto& b) {
       return std::equal(a.begin(), a.end(), b.begin(), b.end());
     };
-    return same(flat.environment.alias, anew.environment.alias) &&
-           same(flat.environment.density, anew.environment.density) &&
-           same(flat.environment.sun_cells, anew.environment.sun_cells) &&
-           same(flat.sun_density, anew.sun_density) && same(flat.light_alias, anew.light_alias) &&
-           same(flat.environment_texels, anew.environment_texels);
+    return same(flat.environment.alias, fresh.environment.alias) &&
+           same(flat.environment.density, fresh.environment.density) &&
+           same(flat.environment.sun_cells, fresh.environment.sun_cells) &&
+           same(flat.sun_density, fresh.sun_density) && same(flat.light_alias, fresh.light_alias) &&
+           same(flat.environment_texels, fresh.environment_texels);
   };
   edited.environment.rotation = 80, edited.environment.scale = 3;
   edited.lights.emplace_back().intensity = vec3(300);
@@ -311,10 +311,12 @@ TEST_CASE("sky and sun as two emitters sum to the environment, each sampled by i
   CHECK(sky_mean.error() < 0.01 * sky_light);
   CHECK(sun_mean.error() < 0.01 * sun_light);
   for (const int sun : {0, 1}) {
-    const auto told = lights.environment(again[sun], sun == 1);
+    const auto reported = lights.environment(again[sun], sun == 1);
     size_t wrong = 0;
-    for (size_t i = 0; i < told.size(); ++i) wrong += std::abs(told[i].pdf / pdfs[sun][i] - 1) > 1e-3f;
-    CHECK(double(wrong) < 1e-3 * double(told.size()));  // rounding can move a direction into the next texel
+    for (size_t i = 0; i < reported.size(); ++i)
+      wrong += std::abs(reported[i].pdf / pdfs[sun][i] - 1) > 1e-3f;
+    CHECK(double(wrong) <
+          1e-3 * double(reported.size()));  // rounding can move a direction into the next texel
   }
   // An environment without bright texels has no sun, and light samples ignore it.
   scene.lights.clear();

@@ -80,8 +80,8 @@ TEST_CASE("the estimated error of a preview is close to its true error") {
       stage.sample(stage.film, samples, [&](uint32_t x, uint32_t y) {
         return Sample{.light = vec3(light(x, y) * noise(random))};
       });
-      const std::optional<double> told = stage.show(nullptr, filtered).error;
-      REQUIRE(told);
+      const std::optional<double> reported = stage.show(nullptr, filtered).error;
+      REQUIRE(reported);
       const std::vector<float> shown = stage.shown();
       double sum = 0;
       uint32_t count = 0;
@@ -96,9 +96,9 @@ TEST_CASE("the estimated error of a preview is close to its true error") {
         }
       const double error = sum / count;
       INFO(samples << " samples" << (filtered ? ", filtered" : "") << ": off by " << error << ", estimated "
-                   << *told);
-      CHECK(*told > 0.6 * error);
-      CHECK(*told < 2.5 * error);
+                   << *reported);
+      CHECK(*reported > 0.6 * error);
+      CHECK(*reported < 2.5 * error);
     }
   }
 }

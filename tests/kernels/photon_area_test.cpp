@@ -37,13 +37,13 @@ std::vector<vec2> areas(const scene::Scene& scene, const std::vector<Place>& pla
   frame.most_visits = shared::k_photon_most_visits;
   gpu::Buffer block(device, {"photon lookups", sizeof frame});
   block.write(&frame, sizeof frame);
-  gpu::Buffer asked(device, {"places", places.size() * sizeof(Place)});
-  asked.write(std::span<const Place>(places));
+  gpu::Buffer place_buffer(device, {"places", places.size() * sizeof(Place)});
+  place_buffer.write(std::span<const Place>(places));
   const gpu::Buffer answers(device, {"areas", places.size() * sizeof(vec2)});
   gpu::Resources resources;
   index.bind(resources);
   resources.set("PhotonBlock", block);
-  resources.set("Places", asked);
+  resources.set("Places", place_buffer);
   resources.set("Areas", answers);
   gpu::Stream stream(device);
   stream.dispatch(kernel, resources, uint32_t(places.size()), gpu::groups_for(places.size(), 64));

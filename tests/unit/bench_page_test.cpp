@@ -96,9 +96,9 @@ TEST_CASE("Figures: times, ratios, index and forecast match the synthetic render
 }
 
 TEST_CASE("A gain within the noise is not reported as a gain") {
-  const auto told = findings(report(1.01));
-  REQUIRE(told.size() == 6);
-  for (const std::string& line : told) CHECK_THAT(line, Contains("by more than the measurement’s noise"));
+  const auto reported = findings(report(1.01));
+  REQUIRE(reported.size() == 6);
+  for (const std::string& line : reported) CHECK_THAT(line, Contains("by more than the measurement’s noise"));
   const auto gain = findings(report(4));
   CHECK_THAT(
       gain[0],
@@ -123,11 +123,11 @@ TEST_CASE("Gains from one repeat are reported as such, and extrapolated figures 
         if (s.contains(measure)) s[measure].erase("noise");
   }
   r["scenes"][0]["settings"][1]["relmse_end"]["kind"] = "extrapolated";
-  const auto told = findings(r);
-  REQUIRE(told.size() == 7);
-  CHECK_THAT(told[0], Contains("4.00 times sooner"));
-  CHECK_THAT(told[2], Contains("plain would then have 2.26e-05"));
-  CHECK_THAT(told[6], Contains("one repeat"));
+  const auto reported = findings(r);
+  REQUIRE(reported.size() == 7);
+  CHECK_THAT(reported[0], Contains("4.00 times sooner"));
+  CHECK_THAT(reported[2], Contains("plain would then have 2.26e-05"));
+  CHECK_THAT(reported[6], Contains("one repeat"));
 }
 
 TEST_CASE("An error below the reference's noise counts as not measured") {
@@ -280,9 +280,9 @@ TEST_CASE("Error against records: a line for each curve, on scenes with records"
 }
 
 TEST_CASE("A curve's best setting is reported, and the number of records for the other curve's error") {
-  const std::vector<std::string> told = findings(report_of_curves());
+  const std::vector<std::string> reported = findings(report_of_curves());
   const auto line = [&](const char* what) {
-    for (const std::string& l : told)
+    for (const std::string& l : reported)
       if (l.starts_with("cornell: ") && l.find(what) != std::string::npos) return l;
     return std::string();
   };
@@ -294,7 +294,7 @@ TEST_CASE("A curve's best setting is reported, and the number of records for the
   const std::string ends = line("ends with a relative squared error");
   CHECK(count(ends, "split-") <= 1);
   CHECK(count(ends, "hessian-") <= 1);
-  CHECK(std::none_of(told.begin(), told.end(), [](const std::string& l) {
+  CHECK(std::none_of(reported.begin(), reported.end(), [](const std::string& l) {
     return l.starts_with("glass") && l.find("records") != l.npos;
   }));
 }

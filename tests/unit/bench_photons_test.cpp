@@ -197,20 +197,20 @@ TEST_CASE("text and page show the measured values beside the expected ones") {
                 {"rays", 777},
                 {"rays_with_photons", 777},
                 {"light_paths", 0.0}}}};
-  for (const std::string& told : {photons_text(report), photons_page(report)}) {
-    INFO(told);
-    CHECK_THAT(told,
+  for (const std::string& reported : {photons_text(report), photons_page(report)}) {
+    INFO(reported);
+    CHECK_THAT(reported,
                Contains("noise over rounds -0.333 (-0.340 to -0.320), expected -0.333: within a tenth") &&
                    Contains("bias over rounds -0.200 (-0.220 to -0.180), expected -0.333: not within") &&
                    Contains("error over rounds not known") && Contains("lost in noise"));
     // 14 MB for 101 thousand.
-    CHECK_THAT(told, Contains("139 MB a million photons"));
-    CHECK_THAT(told,
+    CHECK_THAT(reported, Contains("139 MB a million photons"));
+    CHECK_THAT(reported,
                Contains("2.00 µs of CPU time at 10000 paths, 2.20 µs at 1010000; within 1.10 of each other "
                         "from 10000 on"));
-    CHECK_THAT(told, Contains("2.00 µs of CPU time at 1 lamps, 5.00 µs at 1000") &&
-                         !Contains("5.00 µs at 1000; within"));
-    CHECK_THAT(told, Contains("+0.20 % (-0.40 to +0.60), 777 rays against 777: under 1 %"));
+    CHECK_THAT(reported, Contains("2.00 µs of CPU time at 1 lamps, 5.00 µs at 1000") &&
+                             !Contains("5.00 µs at 1000; within"));
+    CHECK_THAT(reported, Contains("+0.20 % (-0.40 to +0.60), 777 rays against 777: under 1 %"));
   }
   CHECK_THAT(photons_page(report), Contains("<svg") && Contains("A &lt;Processor&gt;") &&
                                        Contains("rounds of photons") && !Contains("A <Processor>"));

@@ -123,10 +123,10 @@ TEST_CASE("the format matches its header comment, byte for byte") {
 TEST_CASE("a truncated file is refused at every length") {
   const std::string bytes = encode(some_cache(3));
   for (size_t n = 0; n < bytes.size(); ++n) {
-    const std::string told = refusal(bytes.substr(0, n));
-    INFO(n << ": " << told);
-    REQUIRE(told.find("a.cache: cut short: ") == 0);
-    REQUIRE_THAT(told, Contains(std::to_string(n)));
+    const std::string reported = refusal(bytes.substr(0, n));
+    INFO(n << ": " << reported);
+    REQUIRE(reported.find("a.cache: cut short: ") == 0);
+    REQUIRE_THAT(reported, Contains(std::to_string(n)));
   }
   CHECK(refusal(bytes).empty());
   CHECK_THAT(refusal(bytes + "x"), Contains("a.cache: damaged: ") && Contains("it says that it has"));
@@ -138,11 +138,12 @@ TEST_CASE("a file with one byte changed is refused, for every byte and change") 
     for (const int change : {1, 0x80, 0xff}) {
       std::string other = bytes;
       other[n] = char(other[n] ^ change);
-      const std::string told = refusal(other);
-      INFO(n << " ^ " << change << ": " << told);
-      REQUIRE(told.find("a.cache: ") == 0);
-      if (n < 8) REQUIRE_THAT(told, Contains("not an irradiance cache: expected a file that begins with"));
-      if (n >= 28) REQUIRE_THAT(told, Contains("damaged: its checksum is"));
+      const std::string reported = refusal(other);
+      INFO(n << " ^ " << change << ": " << reported);
+      REQUIRE(reported.find("a.cache: ") == 0);
+      if (n < 8)
+        REQUIRE_THAT(reported, Contains("not an irradiance cache: expected a file that begins with"));
+      if (n >= 28) REQUIRE_THAT(reported, Contains("damaged: its checksum is"));
     }
   std::string other = bytes;
   other[8] = 1;
@@ -166,9 +167,9 @@ TEST_CASE("invalid contents with a valid checksum are refused or read, never fol
       hash.add_bytes(other.data(), other.size() - 8);
       const uint64_t sum = hash.low();
       std::memcpy(other.data() + other.size() - 8, &sum, sizeof sum);
-      const std::string told = refusal(other);
-      ++(told.empty() ? read : refused);
-      REQUIRE((told.empty() || told.starts_with("a.cache: damaged: ")));
+      const std::string reported = refusal(other);
+      ++(reported.empty() ? read : refused);
+      REQUIRE((reported.empty() || reported.starts_with("a.cache: damaged: ")));
     }
   CHECK(refused > 50);  // lengths and counts
   CHECK(read > 2000);   // the records' own numbers

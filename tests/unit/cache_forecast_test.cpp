@@ -71,17 +71,17 @@ TEST_CASE("the remaining time of a cache build is forecast") {
     for (const Pass& p : all) whole += p.ms;
     for (uint32_t i = 0; i < all.size(); ++i) {
       for (const double part : {0.4, 0.7}) {
-        const auto told = forecast_of(at(all, i, part), k_stop);
+        const auto reported = forecast_of(at(all, i, part), k_stop);
         INFO("pass " << i << ", " << part << " of it");
-        REQUIRE(told);
+        REQUIRE(reported);
         const double done = before + part * all[i].ms;
-        CHECK(told->done > 0);
-        CHECK(told->done < 1);
+        CHECK(reported->done > 0);
+        CHECK(reported->done < 1);
         // The total: small scenes finish earlier than the first pass suggests.
-        const double foretold = done + told->left_ms;
+        const double foretold = done + reported->left_ms;
         CHECK(foretold < (i == 0 ? 2.3 : 1.7) * whole);
         CHECK(foretold > whole / 1.7);
-        CHECK(told->done == Approx(done / foretold));
+        CHECK(reported->done == Approx(done / foretold));
       }
       before += all[i].ms;
     }
@@ -107,10 +107,10 @@ TEST_CASE("progress of relighting is measured in the records' previous rays") {
   p.relit = true, p.records = 100, p.rays = 1000;
   p.ms[size_t(BuildStep::evaluate)] = 50;
   s.passes = {p}, s.rays = 1000;
-  const auto told = forecast_of(s, k_stop);
-  REQUIRE(told);
-  CHECK(told->done == Approx(0.25));
-  CHECK(told->left_ms == Approx(150));
+  const auto reported = forecast_of(s, k_stop);
+  REQUIRE(reported);
+  CHECK(reported->done == Approx(0.25));
+  CHECK(reported->left_ms == Approx(150));
   // Rays are counted before their time is known, and set-up time does not scale.
   s.passes[0].ms = {};
   s.passes[0].ms[size_t(BuildStep::measure)] = 500;

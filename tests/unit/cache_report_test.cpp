@@ -184,19 +184,21 @@ TEST_CASE("the card shows the record under a point and the records it reads, sho
   c.inspection.solid = true, c.inspection.asks = shared::k_asks;
   CHECK_FALSE(make_report(c, settings()).card);  // no point is inspected
   c.looked_at = vec2(0.5f);
-  const auto told = [&](Room room = Room::much) { return words_of(*make_report(c, settings()).card, room); };
-  CHECK_THAT(told(), Contains("No record serves here: it is path traced."));
+  const auto reported = [&](Room room = Room::much) {
+    return words_of(*make_report(c, settings()).card, room);
+  };
+  CHECK_THAT(reported(), Contains("No record serves here: it is path traced."));
   c.status.stop = StopReason::building;
-  CHECK_THAT(told(), Contains("No record serves here yet."));
+  CHECK_THAT(reported(), Contains("No record serves here yet."));
   c.inspection.gathers = true;
-  CHECK_THAT(told(), Contains("Paths gather the light here."));
+  CHECK_THAT(reported(), Contains("Paths gather the light here."));
   c.inspection.gathers = false, c.inspection.count = 9;
   for (uint32_t i = 0; i < 9; ++i) c.inspection.serving.push_back({100 + i, float(9 - i) / 45, {}, 1});
   Record record;
   record.radius = 0.31f, record.lesser_radius = 0.1f, record.mean_distance = INFINITY, record.rays = 64;
   record.parts[1].value = vec3(0.5f, 0.25f, 0.125f);
   c.inspection.under = {1508, record, {}};
-  const std::string much = told(), little = told(Room::little);
+  const std::string much = reported(), little = reported(Room::little);
   CHECK_THAT(much, Contains("pass 1 \xC2\xB7 screen") && Contains("Radius|10.0 cm x 31.0 cm\n") &&
                        Contains("Mean distance (harmonic)|\xE2\x88\x9E") && Contains("secondary\n") &&
                        !Contains("tertiary"));
@@ -204,7 +206,7 @@ TEST_CASE("the card shows the record under a point and the records it reads, sho
   CHECK_THAT(little, Contains("508|31.0 cm\n") && !Contains("Radius") && Contains("weight 105") &&
                          !Contains("weight 106"));
   c.inspection.asks = shared::k_asks_in_vain;
-  CHECK_THAT(told(), Contains("too steep"));
+  CHECK_THAT(reported(), Contains("too steep"));
   c.inspection.solid = false;
   CHECK_FALSE(make_report(c, settings()).card);
 }

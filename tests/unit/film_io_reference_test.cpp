@@ -79,13 +79,13 @@ TEST_CASE("the noise stated in a file is read back; invalid noise counts as none
     film::write_exr(file.path, image);
     return film::read_reference(file.path, k_width, k_height);
   };
-  const film::Reference told = read_with(film::noise_text(rms));
-  REQUIRE(told.noise);
-  CHECK(*told.noise == rms);
-  CHECK(told.scene == "hall");
-  CHECK(told.seed == "17");
-  CHECK(told.view.empty());
-  CHECK(told.mean_luminance == Approx(1));
+  const film::Reference reported = read_with(film::noise_text(rms));
+  REQUIRE(reported.noise);
+  CHECK(*reported.noise == rms);
+  CHECK(reported.scene == "hall");
+  CHECK(reported.seed == "17");
+  CHECK(reported.view.empty());
+  CHECK(reported.mean_luminance == Approx(1));
   for (const char* text : {"", "0.5", "{}", "{\"sum\":0.5}", "not json"}) CHECK_FALSE(read_with(text).noise);
   CHECK_FALSE(read_with(film::noise_text({0.5, -1, 0, 0, 0})).noise);
 }

@@ -43,12 +43,12 @@ std::string moved(const std::function<void(Scene&)>& change, Scene s = room()) {
   const LightHash before = light_hash(s);
   change(s);
   const LightHash after = light_hash(s);
-  std::string told;
-  if (after.geometry != before.geometry) told += 'g';
-  if (after.materials != before.materials) told += 'm';
-  if (after.lights != before.lights) told += 'l';
-  if (after.environment != before.environment) told += 'e';
-  return told;
+  std::string reported;
+  if (after.geometry != before.geometry) reported += 'g';
+  if (after.materials != before.materials) reported += 'm';
+  if (after.lights != before.lights) reported += 'l';
+  if (after.environment != before.environment) reported += 'e';
+  return reported;
 }
 
 }  // namespace

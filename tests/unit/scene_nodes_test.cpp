@@ -313,16 +313,16 @@ TEST_CASE("progress is reported in order and can cancel") {
   Asset asset;
   asset.triangle();
   const std::filesystem::path file = asset.gltf(folder);
-  std::vector<float> told;
+  std::vector<float> reported;
   scene::load(file, {}, [&](float fraction, const std::string& what) {
     CHECK_FALSE(what.empty());
-    told.push_back(fraction);
+    reported.push_back(fraction);
     return true;
   });
-  CHECK(std::is_sorted(told.begin(), told.end()));
-  CHECK(told.front() == 0);
-  CHECK(told.back() == 1);
-  for (size_t stop = 0; stop < told.size(); ++stop) {
+  CHECK(std::is_sorted(reported.begin(), reported.end()));
+  CHECK(reported.front() == 0);
+  CHECK(reported.back() == 1);
+  for (size_t stop = 0; stop < reported.size(); ++stop) {
     size_t calls = 0;
     CHECK_THROWS_AS(scene::load(file, {}, [&](float, const std::string&) { return calls++ != stop; }),
                     scene::Cancelled);

@@ -181,7 +181,7 @@ TEST_CASE("the 90 % band contains the truth of synthetic renders in nine cases o
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
   constexpr int k_pixels = 400, k_renders = 200;
-  int told = 0, in = 0, low = 0, pairs = 0, steady = 0;
+  int reported = 0, in = 0, low = 0, pairs = 0, steady = 0;
   double width = 0;
   for (int render = 0; render < k_renders; ++render) {
     const double q = 0.25 + 0.75 * uniform(random), bend = std::pow(10, 2 * uniform(random) - 0.5);
@@ -217,20 +217,20 @@ TEST_CASE("the 90 % band contains the truth of synthetic renders in nine cases o
       Ledger whole;
       for (const Entry& line : all) whole.add(line);
       const double truth = seconds_to(whole, target)->middle;
-      ++told, in += band->low <= truth && truth <= band->high, low += truth > band->high;
+      ++reported, in += band->low <= truth && truth <= band->high, low += truth > band->high;
       if (before) ++pairs, steady += before->low <= band->middle && band->middle <= before->high;
       before = band;
       width += std::log(band->high / band->low);
     }
   }
-  INFO(told << " forecasts, " << in << " held the truth, " << low << " were too short; on average "
-            << std::exp(width / told) << " from end to end");
-  REQUIRE(told > 1000);
-  CHECK(in > 0.88 * told);
-  CHECK(low < 0.1 * told);
+  INFO(reported << " forecasts, " << in << " held the truth, " << low << " were too short; on average "
+                << std::exp(width / reported) << " from end to end");
+  REQUIRE(reported > 1000);
+  CHECK(in > 0.88 * reported);
+  CHECK(low < 0.1 * reported);
   // Each forecast lies within the previous one.
   CHECK(steady > 0.97 * pairs);
-  CHECK(std::exp(width / told) < 5);
+  CHECK(std::exp(width / reported) < 5);
 }
 
 TEST_CASE(
