@@ -58,7 +58,7 @@ int bench_latency(const BenchLatencyArguments& a) {
   std::tie(o.width, o.height) = parse_size(a.size);
   o.reference_samples = a.reference_samples, o.reference_solver = a.reference_solver, o.seconds = a.seconds,
   o.settle.seconds = a.settle;
-  o.repeats = a.repeats;
+  o.repeats = a.repeats, o.seed = a.seed;
   o.device = a.device, o.references = a.references, o.pictures = a.pictures, o.scenes = a.load;
   for (const std::string& pair : a.set) {
     const size_t at = pair.find('=');
@@ -80,6 +80,7 @@ int bench_latency(const BenchLatencyArguments& a) {
     std::printf("\nmedian of %u\n", a.repeats);
     for (const auto& runs : rows) std::printf("%s\n", bench::latency_row(bench::median_of(runs)).c_str());
   }
+  std::printf("%s\n", bench::text_of(bench::reported_errors(results)).c_str());
   if (a.json.empty()) return 0;
   const bench::Machine machine = bench::this_machine();
   nlohmann::ordered_json j{{"version", LUCERNA_VERSION},

@@ -102,24 +102,24 @@ void finish(session::Renderer& r) {
 }  // namespace
 
 int bench_mix(const BenchMixArguments& a) {
-  const auto apart = load(a, a.keep), together = load(a, "off");
-  if (!apart->relight().apart)
-    throw_error(a.scene, "its light groups cannot be tracked: {}", apart->relight().why_not);
-  const uint32_t groups = apart->film().groups();
+  const auto separate = load(a, a.keep), together = load(a, "off");
+  if (!separate->relight().separate)
+    throw_error(a.scene, "its light groups cannot be tracked: {}", separate->relight().why_not);
+  const uint32_t groups = separate->film().groups();
   // Whole pictures alternate; the first of each compiles the remaining kernels.
   std::vector<double> cpu[2];
   for (int round = 0; round <= a.repeats; ++round)
     for (int k = 0; k < 2; ++k) {
-      session::Renderer& r = k == 0 ? *together : *apart;
+      session::Renderer& r = k == 0 ? *together : *separate;
       r.restart();
       const double before = cpu_seconds();
       finish(r);
       if (round > 0) cpu[k].push_back(cpu_seconds() - before);
     }
-  const std::string stages = stages_text(together->stats(), apart->stats());
+  const std::string stages = stages_text(together->stats(), separate->stats());
   // A drag of the sliders, one group after the other; then the remaining parts of a mix: sums by component,
   // and the noise estimate.
-  session::Renderer& r = *apart;
+  session::Renderer& r = *separate;
   const uint64_t rays = r.stats().rays;
   std::vector<std::string> names;
   for (const scene::LightGroup& group : r.relight().groups->groups) names.push_back(group.name);
@@ -153,7 +153,7 @@ int bench_mix(const BenchMixArguments& a) {
                   100 * (many / one - 1), stages, 1e3 * shown.median, 1e3 * shown.low, 1e3 * shown.high,
                   1e3 * shown_cpu, 1e3 * begun.median, 1e3 * begun.low, 1e3 * begun.high,
                   1e3 * dragged.median, 1e3 * dragged.low, 1e3 * dragged.high, 1e3 * settled.median,
-                  1e3 * settled.low, 1e3 * settled.high, film::sum_bytes(groups, r.film().groups_kept()))
+                  1e3 * settled.low, 1e3 * settled.high, film::sum_bytes(groups, r.film().group_storage()))
           .c_str());
   if (!a.json.empty()) {
     const auto times = [](const Timing& t) {
@@ -165,7 +165,7 @@ int bench_mix(const BenchMixArguments& a) {
                                       {"samples", a.samples},
                                       {"groups", groups},
                                       {"keep", a.keep},
-                                      {"bytes_a_pixel", film::sum_bytes(groups, r.film().groups_kept())},
+                                      {"bytes_a_pixel", film::sum_bytes(groups, r.film().group_storage())},
                                       {"cpu_s_one_group", cpu[0]},
                                       {"cpu_s", cpu[1]},
                                       {"shown_s", times(shown)},

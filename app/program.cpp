@@ -314,8 +314,8 @@ void Program::add_bench_latency() {
   latency_->add_option("SCENES", bt.scenes, "glTF scenes, or names of folders in scenes/")->required();
   latency_
       ->add_option("--edits", bt.edits,
-                   "some of load, strength, move (of the brightest lamp), sky (rotation), material, camera, "
-                   "solver (switch); each on top of those before")
+                   "some of load, strength, move (of the brightest lamp), sky (rotation), material, undo, "
+                   "camera, solver (switch); each on top of those before")
       ->delimiter(',');
   latency_->add_option("--solvers", bt.solvers, "of secondary and tertiary light [path,cache]")
       ->delimiter(',');
@@ -328,6 +328,7 @@ void Program::add_bench_latency() {
                    "sessions of each scene and solver; the median of each figure is reported")
       ->check(CLI::Range(1u, 1000u))
       ->capture_default_str();
+  latency_->add_option("--seed", bt.seed, "of the edits' amounts; 0: fixed amounts")->capture_default_str();
   latency_->add_option("--settle", bt.settle, "maximum seconds to wait before an edit for a finished picture")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();

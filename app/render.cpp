@@ -229,7 +229,7 @@ double run(session::Renderer& r, const RenderArguments& a, const std::vector<ses
       may_prepare = true;
       if (r.preparing()) {
         log::info("half of the time is over: the picture is rendered with the data prepared so far");
-        r.make_do();
+        r.finish_early();
       }
     }
     if (!r.step()) break;

@@ -20,13 +20,13 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   j["rms"] = error_sum(error.rms[0], error.records_rms, error.interpolation_rms);
   j["white"] = error.white, j["dark"] = error.dark;
   const std::vector<film::TileError> tiles = r.tile_errors();
-  const auto tell_tiles = [](nlohmann::ordered_json& to, const film::TileSpread& spread) {
+  const auto write_tiles = [](nlohmann::ordered_json& to, const film::TileSpread& spread) {
     to["tile_median"] = spread.median;
     to["tile_worst_decile"] = spread.worst_tenth;
     to["tile_worst"] = spread.worst;
   };
   const film::TileSpread sum = film::tile_spread(tiles);
-  tell_tiles(j, sum);
+  write_tiles(j, sum);
   j["heavy_tailed_tiles"] = sum.heavy_tailed;
   // Tiles where photons are looked up and none has arrived.
   j["unknown_tiles"] = std::count_if(tiles.begin(), tiles.end(), [](const auto& t) { return t.unknown; });
@@ -34,7 +34,7 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   const auto part = [&](const char* name, double seen, double of_mean, double rms,
                         double film::TileError::*of) {
     j[name] = {{"seen", seen}, {"of_mean", of_mean}, {"rms", rms}};
-    tell_tiles(j[name], film::tile_spread(tiles, of));
+    write_tiles(j[name], film::tile_spread(tiles, of));
   };
   part("paths", error.seen(0), error.relative(0), error.rms[0], &film::TileError::relative);
   if (r.looks_up() && !r.lookup_errors_known()) j["records"] = j["bias"] = nullptr;
@@ -134,11 +134,11 @@ nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
                              {"prepared_s", e.prepared_s}, {"paths", e.paths},       {"rays", e.rays},
                              {"samples", e.samples}};
     for (int k = 0; k < stats::k_layers; ++k) {
-      if (e.told) j["seen"][stats::k_layer_names[k]] = e.error[k];
-      if (e.told) j["of_mean"][stats::k_layer_names[k]] = e.of_mean.error[k];
+      if (e.has_error) j["seen"][stats::k_layer_names[k]] = e.error[k];
+      if (e.has_error) j["of_mean"][stats::k_layer_names[k]] = e.of_mean.error[k];
       j["component_s"][stats::k_layer_names[k]] = e.component_s[k];
     }
-    if (e.told)
+    if (e.has_error)
       j["seen_records"] = e.records, j["seen_bias"] = e.interpolation, j["seen_total"] = e.sum(),
       j["seen_degrees"] = e.degrees, j["of_mean_records"] = e.of_mean.records,
       j["of_mean_bias"] = e.of_mean.interpolation, j["of_mean_total"] = e.of_mean.sum(),

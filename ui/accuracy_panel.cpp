@@ -228,20 +228,20 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   if (best.run) stroke(list, best.points, colour::text_dim, px(1.5f));
   list->AddCircleFilled(*near, px(3), best.ink, 12);
-  const Accuracy& shown = best.run ? *best.run->accuracy : a;
+  const Accuracy& chosen = best.run ? *best.run->accuracy : a;
   // The ledger entry of that point, by its time.
   const double seconds = plot.x.value(near->x);
   size_t line = 0;
-  for (size_t i = 0; i < shown.ledger.entries().size(); ++i)
-    if (std::abs(std::log(shown.ledger.entries()[i].wall_s / seconds)) <
-        std::abs(std::log(shown.ledger.entries()[line].wall_s / seconds)))
+  for (size_t i = 0; i < chosen.ledger.entries().size(); ++i)
+    if (std::abs(std::log(chosen.ledger.entries()[i].wall_s / seconds)) <
+        std::abs(std::log(chosen.ledger.entries()[line].wall_s / seconds)))
       line = i;
   std::string name = best.name;
   name[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(name[0])));
   std::vector<std::pair<std::string, ImU32>> rows{
       {fmt::format("{}: {}", name, percent_text(plot.y.value(near->y))), colour::text},
-      {run_figures(shown, line), colour::text_dim}};
-  const stats::Entry& then = shown.ledger.entries()[line];
+      {run_figures(chosen, line), colour::text_dim}};
+  const stats::Entry& then = chosen.ledger.entries()[line];
   if (best.layer && *best.layer > 0)
     rows.emplace_back(
         fmt::format("{:.0f} % of the noise as seen (squared); of the mean {}",
@@ -381,15 +381,17 @@ void body(Ui& ui, const Area& area, const Accuracy& a) {
 std::vector<std::string> early_texts(const session::Snapshot& s, double target) {
   std::vector<std::string> texts;
   if (s.shown_error) {
-    const double error = *s.shown_error;
+    const film::ShownError error = *s.shown_error;
     std::string when;
     // Noise falls with the square root of time.
-    if (error < session::k_usable_error)
+    const double excess = std::max(error.median / session::k_usable_error.median,
+                                   error.worst_tenth / session::k_usable_error.worst_tenth);
+    if (session::usable(error))
       when = ": usable";
     else if (s.seconds > 0.1)
-      when = fmt::format(", usable in about {}",
-                         about_text(s.seconds * (std::pow(error / session::k_usable_error, 2) - 1)));
-    texts.push_back(fmt::format("Preview: error about {}{}", percent_text(error), when));
+      when = fmt::format(", usable in about {}", about_text(s.seconds * (excess * excess - 1)));
+    texts.push_back(fmt::format("Preview: error about {}, in the worst tenth {}{}",
+                                percent_text(error.median), percent_text(error.worst_tenth), when));
   }
   if (!s.preparing.empty())
     texts.push_back(s.preparing_left ? fmt::format("{}; {:.0f} % done, about {} left", s.preparing,

@@ -53,7 +53,7 @@ std::vector<std::pair<std::string, std::string>> key_rows() {
     };
     for (const solvers::ViewInfo& view : solver->views) {
       add(view.shortcut, view.label);
-      inspects = inspects || view.asks_pointer;
+      inspects = inspects || view.inspects_pointer;
     }
     end_row();
     for (const solvers::CommandInfo& command : solver->commands) add(command.shortcut, command.label);
@@ -157,9 +157,9 @@ void draw_dialogs(Ui& ui) {
 }
 
 bool Ui::pressed(int key, int mods) const {
-  const int heeded = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER;
+  const int relevant = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER;
   return std::any_of(keys.begin(), keys.end(),
-                     [&](const auto& k) { return k.first == key && (k.second & heeded) == mods; });
+                     [&](const auto& k) { return k.first == key && (k.second & relevant) == mods; });
 }
 
 namespace {

@@ -358,7 +358,8 @@ void help_menu(Ui& ui) {
 std::string preview_text(const session::Snapshot& s) {
   if (s.stale > 0.005)
     return fmt::format("{} from before the edit", padded(fmt::format("{:.0f} %", 100 * s.stale), 5));
-  if (s.filtered >= 1 && s.shown_error) return fmt::format("filtered, {} off", percent_text(*s.shown_error));
+  if (s.filtered >= 1 && s.shown_error)
+    return fmt::format("filtered, {} off", percent_text(s.shown_error->median));
   return s.filtered > 0.02 ? "filtered" : "";
 }
 
@@ -447,7 +448,7 @@ void draw_menu_bar(Ui& ui, const Area& area) {
       ImGui::SetCursorScreenPos({preview_begin, area.lo.y});
       ImGui::InvisibleButton("##preview", {preview_end - preview_begin, area.hi.y - area.lo.y - px(2)});
       const std::string off =
-          s->shown_error ? fmt::format(" Its error is about {}.", percent_text(*s->shown_error)) : "";
+          s->shown_error ? fmt::format(" Its error is about {}.", percent_text(s->shown_error->median)) : "";
       tooltip(
           "The displayed picture is not samples only: light from before the last edit stays until the new "
           "light is better, and the noise of few samples is filtered." +

@@ -11,7 +11,7 @@ namespace {
 constexpr size_t k_least_lines = 8;    // of the ledger
 constexpr double k_least_seconds = 1;  // of rendering
 
-bool worth_keeping(const Run& run) {
+bool should_keep(const Run& run) {
   const auto& lines = run.accuracy->ledger.entries();
   return lines.size() >= k_least_lines && lines.back().wall_s >= k_least_seconds && lines.back().error[0] > 0;
 }
@@ -56,7 +56,7 @@ void Runs::follow(const session::Snapshot& s, std::shared_ptr<const scene::Scene
   if (!s.accuracy) return;
   if (current_.accuracy && current_.accuracy->scene_id != s.accuracy->scene_id) {
     earlier_.clear();
-  } else if (current_.accuracy && current_.accuracy->run != s.accuracy->run && worth_keeping(current_)) {
+  } else if (current_.accuracy && current_.accuracy->run != s.accuracy->run && should_keep(current_)) {
     earlier_.push_front(current_);
     if (earlier_.size() > k_most) earlier_.pop_back();
   }

@@ -160,11 +160,11 @@ void Ui::turn_view(const solvers::ViewInfo& view) {
   act("set", view.option, at == ring.end() || at + 1 == ring.end() ? ring.front() : *(at + 1));
 }
 
-bool Ui::asks_pointer() const {
+bool Ui::inspects_pointer() const {
   if (setting_on("overlay.lights")) return true;
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const solvers::ViewInfo& view : solver->views)
-      if (view.asks_pointer && view_on(view) && uses(*solver)) return true;
+      if (view.inspects_pointer && view_on(view) && uses(*solver)) return true;
   return false;
 }
 

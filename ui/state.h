@@ -174,7 +174,7 @@ struct Ui : commands::Workspace {
   /// Toggles a view; a choice advances in its ring.
   void turn_view(const solvers::ViewInfo& view);
   /// True if a view is on that inspects the place under the pointer.
-  bool asks_pointer() const;
+  bool inspects_pointer() const;
   /// The last inspected place of a pointer at rest, as inspect.at takes it.
   std::optional<vec2> asked;
   /// Inspections known here, and whether a script has inspected a point since the pointer moved: then the

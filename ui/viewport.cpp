@@ -338,7 +338,7 @@ void inspect_at_rest(Ui& ui, const Area& shown, bool active) {
                    (at.y - shown.lo.y) / std::max(1.0f, shown.height()));
   const bool inside = place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
   const bool still = !(active && dragging()) && !ui.flight.moving();
-  if (ui.asks_pointer() && ui.picture_hovered && inside && still) {
+  if (ui.inspects_pointer() && ui.picture_hovered && inside && still) {
     if (active || ui.asked == place || ui.now - since < k_rest) return;
     ui.asked = place;
     ++ui.inspections_known;

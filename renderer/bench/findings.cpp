@@ -32,27 +32,27 @@ class Found {
   explicit Found(const Json& report) : report_(report) {}
   void add(const std::string& setting, double ratio, std::string text) {
     const std::string curve = curve_of(report_, setting);
-    const auto same = [&](const Told& t) { return !curve.empty() && t.curve == curve; };
-    const auto at = std::find_if(told_.begin(), told_.end(), same);
-    if (at == told_.end())
-      told_.push_back({curve, ratio, std::move(text)});
+    const auto same = [&](const Finding& t) { return !curve.empty() && t.curve == curve; };
+    const auto at = std::find_if(findings_.begin(), findings_.end(), same);
+    if (at == findings_.end())
+      findings_.push_back({curve, ratio, std::move(text)});
     else if (ratio > at->ratio)
       *at = {curve, ratio, std::move(text)};
   }
   std::vector<std::string> texts() const {
     std::vector<std::string> all;
-    for (const Told& t : told_) all.push_back(t.text);
+    for (const Finding& t : findings_) all.push_back(t.text);
     return all;
   }
 
  private:
-  struct Told {
+  struct Finding {
     std::string curve;
     double ratio;
     std::string text;
   };
   const Json& report_;
-  std::vector<Told> told_;
+  std::vector<Finding> findings_;
 };
 
 /// What is to be said of one measure of one scene; only what was measured, never what was extrapolated.

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <condition_variable>
-#include <glm/gtc/matrix_transform.hpp>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -16,7 +15,6 @@
 #include "base/timer.h"
 #include "bench/reference.h"
 #include "film/io/image_file.h"
-#include "film/tonemap.h"
 #include "plan/settings.h"
 #include "session/renderer.h"
 #include "session/session.h"
@@ -30,105 +28,6 @@ using scene::Scene;
 constexpr double k_black_share = 1e-3;
 /// Pictures of one edit that are kept to be looked at: no more than this a second.
 constexpr double k_moments_s = 1.0 / 60;
-
-/// What is changed, as Session and Renderer take it.
-struct Change {
-  std::optional<scene::Camera> camera;
-  std::optional<std::pair<uint32_t, scene::Light>> light;
-  std::optional<std::pair<float, float>> environment;
-  std::optional<std::pair<uint32_t, scene::Material>> material;
-
-  template <class Target>
-  void apply(Target& to) const {
-    if (camera) to.set_camera(*camera);
-    if (light) to.set_light(light->first, light->second);
-    if (environment) to.set_environment(environment->first, environment->second);
-    if (material) to.set_material(material->first, material->second);
-  }
-};
-
-std::optional<uint32_t> brightest_lamp(const Scene& s) {
-  std::optional<uint32_t> best;
-  for (uint32_t i = 0; i < s.lights.size(); ++i)
-    if (s.lights[i].enabled &&
-        (!best || luminance(s.lights[i].intensity) > luminance(s.lights[*best].intensity)))
-      best = i;
-  return best;
-}
-
-/// Of the materials that weigh more than 0, each times its surface, the one that weighs most.
-template <class Weight>
-std::optional<uint32_t> heaviest_material(const Scene& s, const Weight& weight) {
-  std::vector<double> area(s.materials.size(), 0);
-  for (const scene::Instance& i : s.instances)
-    for (const scene::Primitive& p : s.meshes[i.mesh].primitives)
-      for (const uvec3& t : p.triangles) {
-        vec3 v[3];
-        for (int k = 0; k < 3; ++k) v[k] = vec3(i.to_world * vec4(p.positions[t[k]], 1));
-        area[p.material] += 0.5 * length(cross(v[1] - v[0], v[2] - v[0]));
-      }
-  std::optional<uint32_t> best;
-  double most = 0;
-  for (uint32_t m = 0; m < area.size(); ++m)
-    if (const double w = area[m] * weight(s.materials[m]); w > most) best = m, most = w;
-  return best;
-}
-
-/// Of opaque diffuse materials without textures, the one with the largest surface.
-std::optional<uint32_t> largest_plain_material(const Scene& s) {
-  return heaviest_material(s, [](const scene::Material& x) {
-    const bool plain = !x.base_color_texture && x.metallic < 1 && x.transmission == 0 && !x.unlit &&
-                       luminance(vec3(x.base_color)) > 0 && luminance(x.emission) == 0;
-    return plain ? 1.0 : 0.0;
-  });
-}
-
-/// The one that sends most light.
-std::optional<uint32_t> brightest_emitter(const Scene& s) {
-  return heaviest_material(
-      s, [](const scene::Material& x) { return x.unlit ? 0.0 : double(luminance(x.emission)); });
-}
-
-/// The change that an edit makes of a scene; nothing where it has none to be made.
-std::optional<Change> change_of(Edit edit, const Scene& s, const scene::Camera& camera) {
-  const Box box = scene::bounds(s);
-  const float radius = 0.5f * length(box.hi - box.lo);
-  Change c;
-  if (edit == Edit::camera) {
-    c.camera = camera;
-    c.camera->to_world = glm::translate(mat4(1), 0.02f * radius * vec3(camera.to_world[0])) *
-                         camera.to_world * glm::rotate(mat4(1), glm::radians(12.0f), vec3(0, 1, 0));
-  } else if (edit == Edit::strength || edit == Edit::move) {
-    const std::optional<uint32_t> lamp = brightest_lamp(s);
-    if (!lamp) {
-      const std::optional<uint32_t> emitter = brightest_emitter(s);
-      if (!emitter || edit == Edit::move) return std::nullopt;
-      scene::Material dimmed = s.materials[*emitter];
-      dimmed.emission *= 1 / 3.0f;
-      c.material = {*emitter, dimmed};
-      return c;
-    }
-    scene::Light light = s.lights[*lamp];
-    if (edit == Edit::strength)
-      light.intensity *= 1 / 3.0f;
-    else if (light.kind == scene::LightKind::directional)
-      light.direction =
-          vec3(glm::rotate(mat4(1), glm::radians(25.0f), vec3(0, 1, 0)) * vec4(light.direction, 0));
-    else
-      light.position += 0.1f * radius * vec3(camera.to_world[0]);
-    c.light = {*lamp, light};
-  } else if (edit == Edit::sky) {
-    if (s.environment.image == scene::k_none) return std::nullopt;
-    c.environment = {s.environment.scale, s.environment.rotation + 90};
-  } else if (edit == Edit::material) {
-    const std::optional<uint32_t> index = largest_plain_material(s);
-    if (!index) return std::nullopt;
-    scene::Material red = s.materials[*index];
-    red.base_color = vec4(0.7f, 0.15f, 0.1f, red.base_color.w);
-    c.material = {*index, red};
-  }
-  return c;
-}
 
 struct Shown {
   double seconds;
@@ -218,7 +117,7 @@ class Latency {
   void run_scene(const fs::path& file, const std::string& solver) {
     session::Session s({.device = o_.device, .validation = false, .shaders = {}, .scenes = o_.scenes});
     s.set_size(o_.width, o_.height);
-    changes_.clear(), done_edits_.clear();
+    changes_.clear(), back_.clear(), done_edits_.clear();
     const Timer clock;
     s.load(file);
     choose(s, solver);
@@ -240,7 +139,17 @@ class Latency {
       if (edit == Edit::load) continue;
       if (edit == Edit::solver) choose(s, solver == "path" ? "cache" : "path");
       settle(s);
-      const std::optional<Change> change = change_of(edit, *s.scene(), s.snapshot()->camera);
+      const scene::Camera camera = s.snapshot()->camera;
+      std::optional<Change> change;
+      std::string done = done_edits_ + std::string("-") + k_edit_names[size_t(edit)];
+      const bool back = edit == Edit::undo && !back_.empty();
+      if (edit == Edit::undo) {
+        // What a camera or a solver did in between stays.
+        if (back) change = back_.back().change, done = back_.back().edits;
+        back_.clear();
+      } else {
+        change = change_of(edit, *s.scene(), camera, o_.seed);
+      }
       if (!change) {
         message_(fmt::format("{}: it has nothing for the edit '{}'", file.stem().string(),
                              k_edit_names[size_t(edit)]));
@@ -250,9 +159,13 @@ class Latency {
       if (edit == Edit::solver) {
         choose(s, solver);
       } else {
+        if (edit == Edit::camera)
+          back_.clear();
+        else if (!back)
+          back_ = {{reverse_of(*change, *s.scene(), camera), done_edits_}};
         change->apply(s);
         changes_.push_back(*change);
-        done_edits_ += std::string("-") + k_edit_names[size_t(edit)];
+        done_edits_ = done;
       }
       report(file, solver, edit, watch(s, since, o_.seconds), s, 0);
     }
@@ -265,11 +178,11 @@ class Latency {
     std::vector<Moment> moments;
     for (const Shown& at : shown) {
       // What is shown while a scene is loaded is what it begins with.
-      Moment m{std::max(0.0, at.seconds - loading), {1, 1}, {}};
+      Moment m{std::max(0.0, at.seconds - loading), {1, 1, 1, 1}, {}};
       if (at.snapshot && at.snapshot->rgba.size() == reference.mean.size() * 4)
         m.distance = picture_distance(shown_luminance(at.snapshot->rgba), reference.mean, o_.width,
                                       reference.half_difference),
-        m.told = at.snapshot->shown_error;
+        m.reported = at.snapshot->shown_error;
       moments.push_back(m);
     }
     LatencyResult result = latency_of(moments, o_.seconds);
@@ -277,7 +190,7 @@ class Latency {
     result.loading_s = loading;
     if (!o_.pictures.empty()) {
       const std::string name = fmt::format("{}-{}-{}", result.scene, solver, result.edit);
-      for (const double t : k_told_s) {
+      for (const double t : k_listed_s) {
         const auto next =
             std::find_if(shown.begin(), shown.end(), [&](const Shown& x) { return x.seconds > loading + t; });
         if (const auto& picture = std::prev(next)->snapshot;
@@ -303,11 +216,12 @@ class Latency {
   /// With both halves of its samples. Rendered where no earlier run has left it.
   film::FilmImage reference_image(const fs::path& file) {
     const uint32_t samples = std::max(2u, o_.reference_samples);
-    const std::string key = fmt::format("{} {} {}x{} {} {} {}", LUCERNA_VERSION, scene_hash(file), o_.width,
-                                        o_.height, done_edits_, samples, o_.reference_solver);
+    const std::string key =
+        fmt::format("{} {} {}x{} {} {} {} {}", LUCERNA_VERSION, scene_hash(file), o_.width, o_.height,
+                    done_edits_, o_.seed, samples, o_.reference_solver);
     const fs::path kept =
-        o_.references / fmt::format("{}{}-{}x{}-{}-{}.exr", file.stem().string(), done_edits_, o_.width,
-                                    o_.height, o_.reference_solver, samples);
+        o_.references / fmt::format("{}{}-{}-{}x{}-{}-{}.exr", file.stem().string(), done_edits_, o_.seed,
+                                    o_.width, o_.height, o_.reference_solver, samples);
     if (file_exists(kept)) try {
         film::FilmImage image = film::read_exr(kept);
         if (const auto of = image.metadata.find("bench.key"); of != image.metadata.end() && of->second == key)
@@ -342,24 +256,16 @@ class Latency {
   const std::function<void(const LatencyResult&)>& done_;
   const std::function<bool()>& interrupted_;
   std::vector<Change> changes_;  // made so far
-  std::string done_edits_;       // their names
+  std::string done_edits_;       // names of those that are in force
+  /// Takes the last edit back, and the edits that are in force then.
+  struct Back {
+    Change change;
+    std::string edits;
+  };
+  std::vector<Back> back_;  // one at most
   std::map<std::string, Reference> references_;
   std::vector<LatencyResult> results_;
 };
-
-std::vector<float> mean_3x3(std::span<const float> of, uint32_t width) {
-  const auto height = uint32_t(of.size() / width);
-  std::vector<float> all(of.size());
-  for (uint32_t y = 0; y < height; ++y)
-    for (uint32_t x = 0; x < width; ++x) {
-      float sum = 0, n = 0;
-      for (uint32_t v = y > 0 ? y - 1 : 0; v <= std::min(y + 1, height - 1); ++v)
-        for (uint32_t u = x > 0 ? x - 1 : 0; u <= std::min(x + 1, width - 1); ++u)
-          sum += of[size_t{v} * width + u], n += 1;
-      all[size_t{y} * width + x] = sum / n;
-    }
-  return all;
-}
 
 std::string text(const std::optional<double>& value, const char* unit, double factor = 1) {
   return value ? fmt::format("{:.{}f} {}", *value * factor, *unit == '%' ? 1 : 2, unit) : "-";
@@ -367,55 +273,7 @@ std::string text(const std::optional<double>& value, const char* unit, double fa
 
 }  // namespace
 
-Edit edit_of(const std::string& name) {
-  const auto at = std::find(k_edit_names.begin(), k_edit_names.end(), name);
-  if (at == k_edit_names.end())
-    throw_error("bench latency", "there is no edit '{}'; there are {}", name, fmt::join(k_edit_names, ", "));
-  return Edit(at - k_edit_names.begin());
-}
-
-PictureDistance picture_distance(std::span<const float> shown, std::span<const float> reference,
-                                 uint32_t width, std::span<const float> half_difference) {
-  constexpr size_t k_tile = 16;
-  struct Tile {
-    double error = 0, square = 0, noise = 0;
-  };
-  const std::vector<float> a = mean_3x3(shown, width), b = mean_3x3(reference, width),
-                           half = mean_3x3(half_difference, width);
-  PictureDistance d;
-  size_t lit = 0, black = 0;
-  const size_t across = (width + k_tile - 1) / k_tile;
-  std::vector<Tile> tiles(across * ((a.size() / width + k_tile - 1) / k_tile));
-  for (size_t i = 0; i < a.size(); ++i) {
-    const double off = std::abs(a[i] - b[i]) / std::max(b[i], k_dark),
-                 noise = half.empty() ? 0.0 : double(half[i] / std::max(b[i], k_dark));
-    Tile& t = tiles[i / width / k_tile * across + i % width / k_tile];
-    t.error += off, t.square += off * off, t.noise += noise * noise;
-    if (b[i] < k_dark) continue;
-    ++lit;
-    black += a[i] < 0.05f * b[i];
-  }
-  // What is left of a right picture is as often below 0 as above, and sums to nothing.
-  for (const Tile& t : tiles) {
-    if (t.square <= 0) continue;
-    const double left = 1 - t.noise / t.square;
-    d.error += t.error * std::copysign(std::sqrt(std::abs(left)), left);
-  }
-  d.error = std::max(0.0, d.error) / double(std::max<size_t>(1, a.size()));
-  d.black = double(black) / double(std::max<size_t>(1, lit));
-  return d;
-}
-
-std::vector<float> shown_luminance(std::span<const uint8_t> rgba) {
-  std::array<float, 256> linear;
-  for (size_t i = 0; i < 256; ++i) {
-    linear[i] = linear_from_srgb(float(i) / 255);
-  }
-  std::vector<float> all(rgba.size() / 4);
-  for (size_t i = 0; i < all.size(); ++i)
-    all[i] = luminance(vec3(linear[rgba[4 * i]], linear[rgba[4 * i + 1]], linear[rgba[4 * i + 2]]));
-  return all;
-}
+bool usable(const PictureDistance& d) { return session::usable({d.tile_median, d.worst_tenth}); }
 
 LatencyResult latency_of(std::span<const Moment> moments, double seconds) {
   LatencyResult r;
@@ -426,15 +284,18 @@ LatencyResult latency_of(std::span<const Moment> moments, double seconds) {
       r.lit_s.reset();
     else if (!r.lit_s)
       r.lit_s = m.seconds;
-    if (m.distance.error >= k_usable)
+    if (!usable(m.distance))
       r.usable_s.reset();
     else if (!r.usable_s)
       r.usable_s = m.seconds;
-    r.rise = std::max(r.rise, m.distance.error - std::min(least, m.distance.error));
-    least = std::min(least, m.distance.error);
-    for (size_t k = 0; k < k_told_s.size(); ++k)
-      if (m.seconds <= k_told_s[k] && k_told_s[k] <= seconds + 0.5)
-        r.error[k] = m.distance.error, r.told[k] = m.told;
+    r.rise = std::max(r.rise, m.distance.tile_median - std::min(least, m.distance.tile_median));
+    least = std::min(least, m.distance.tile_median);
+    for (size_t k = 0; k < k_listed_s.size(); ++k) {
+      if (m.seconds > k_listed_s[k] || k_listed_s[k] > seconds + 0.5) continue;
+      r.error[k] = m.distance.tile_median, r.worst[k] = m.distance.worst_tenth;
+      r.reported[k].reset(), r.reported_worst[k].reset();
+      if (m.reported) r.reported[k] = m.reported->median, r.reported_worst[k] = m.reported->worst_tenth;
+    }
   }
   return r;
 }
@@ -454,9 +315,10 @@ LatencyResult median_of(std::span<const LatencyResult> runs) {
   };
   r.lit_s = middle(of(&LatencyResult::lit_s)), r.usable_s = middle(of(&LatencyResult::usable_s));
   r.rise = *middle(of(&LatencyResult::rise)), r.loading_s = *middle(of(&LatencyResult::loading_s));
-  for (size_t k = 0; k < r.error.size(); ++k)
-    r.error[k] = middle([k](const LatencyResult& run) { return run.error[k]; }),
-    r.told[k] = middle([k](const LatencyResult& run) { return run.told[k]; });
+  for (const auto figures : {&LatencyResult::error, &LatencyResult::worst, &LatencyResult::reported,
+                             &LatencyResult::reported_worst})
+    for (size_t k = 0; k < r.error.size(); ++k)
+      (r.*figures)[k] = middle([&](const LatencyResult& run) { return (run.*figures)[k]; });
   return r;
 }
 
@@ -466,19 +328,58 @@ std::vector<LatencyResult> measure_latency(const LatencyOptions& options, const 
   return Latency(options, message, done, interrupted).run();
 }
 
+ReportedErrors reported_errors(std::span<const LatencyResult> results) {
+  ReportedErrors all;
+  std::vector<double> ratios;
+  const auto right = [](double ratio) { return ratio >= k_right_low && ratio <= k_right_high; };
+  for (const LatencyResult& r : results)
+    for (size_t k = 0; k < k_listed_s.size(); ++k) {
+      if (!r.error[k] || !r.worst[k] || !r.reported[k] || !r.reported_worst[k]) continue;
+      if (session::usable({*r.reported[k], *r.reported_worst[k]})) {
+        ++all.said_usable;
+        all.not_usable += !session::usable({*r.error[k] / 1.1, *r.worst[k] / 1.1});
+      }
+      if (*r.error[k] < k_least_true) continue;
+      ++all.known;
+      ratios.push_back(*r.error[k] / std::max(*r.reported[k], 1e-6));
+      all.median_right += right(ratios.back());
+      all.worst_right += right(*r.worst[k] / std::max(*r.reported_worst[k], 1e-6));
+    }
+  std::sort(ratios.begin(), ratios.end());
+  if (!ratios.empty())
+    for (size_t i = 0; i < 3; ++i)
+      all.ratio[i] = ratios[std::min(ratios.size() - 1, ratios.size() * (1 + 4 * i) / 10)];
+  return all;
+}
+
+std::string text_of(const ReportedErrors& e) {
+  return fmt::format(
+      "reported errors: of {} pictures the median tile's true error is within {:g} to {:g} of the reported "
+      "one "
+      "in {}, the worst tenth's in {}; true over reported {:.2f} (deciles {:.2f}, {:.2f}); of {} pictures "
+      "reported as usable {} are not",
+      e.known, k_right_low, k_right_high, e.median_right, e.worst_right, e.ratio[1], e.ratio[0], e.ratio[2],
+      e.said_usable, e.not_usable);
+}
+
 std::string latency_heading() {
   std::string row =
       fmt::format("{:<14} {:<8} {:<10} {:>8} {:>8}", "scene", "solver", "edit", "lit", "usable");
-  for (const double t : k_told_s) row += fmt::format(" {:>15}", fmt::format("at {:g} s", t));
+  for (const double t : k_listed_s) row += fmt::format(" {:>23}", fmt::format("at {:g} s", t));
   return row + fmt::format(" {:>9}", "set back");
 }
 
 std::string latency_row(const LatencyResult& r) {
   std::string row = fmt::format("{:<14} {:<8} {:<10} {:>8} {:>8}", r.scene, r.solver, r.edit,
                                 text(r.lit_s, "s"), text(r.usable_s, "s"));
-  for (size_t k = 0; k < k_told_s.size(); ++k)
-    row += fmt::format(" {:>15}", text(r.error[k], "%", 100) +
-                                      (r.told[k] ? fmt::format(" ({:.3g})", 100 * *r.told[k]) : ""));
+  const auto pair = [](const std::optional<double>& median, const std::optional<double>& worst) {
+    return median && worst ? fmt::format("{:.3g}|{:.3g}", 100 * *median, 100 * *worst) : std::string("-");
+  };
+  for (size_t k = 0; k < k_listed_s.size(); ++k) {
+    std::string cell = pair(r.error[k], r.worst[k]);
+    if (r.reported[k]) cell += " (" + pair(r.reported[k], r.reported_worst[k]) + ")";
+    row += fmt::format(" {:>23}", cell);
+  }
   row += fmt::format(" {:>9}", text(r.rise, "%", 100));
   if (r.loading_s > 0) row += fmt::format("  (loading {:.2f} s)", r.loading_s);
   return row;
@@ -491,13 +392,22 @@ nlohmann::ordered_json to_json(const LatencyResult& r) {
   };
   j["lit_s"] = or_null(r.lit_s);
   j["usable_s"] = or_null(r.usable_s);
-  for (size_t k = 0; k < k_told_s.size(); ++k)
-    j["error"][fmt::format("{:g}", k_told_s[k])] = or_null(r.error[k]),
-                                   j["told"][fmt::format("{:g}", k_told_s[k])] = or_null(r.told[k]);
+  for (size_t k = 0; k < k_listed_s.size(); ++k) {
+    const std::string at = fmt::format("{:g}", k_listed_s[k]);
+    j["error"][at] = or_null(r.error[k]), j["worst"][at] = or_null(r.worst[k]);
+    j["reported"][at] = or_null(r.reported[k]), j["reported_worst"][at] = or_null(r.reported_worst[k]);
+  }
   j["set_back"] = r.rise;
   j["loading_s"] = r.loading_s;
-  for (const Moment& m : r.moments)
-    j["moments"].push_back({{"s", m.seconds}, {"error", m.distance.error}, {"told", or_null(m.told)}});
+  for (const Moment& m : r.moments) {
+    nlohmann::ordered_json moment{{"s", m.seconds},
+                                  {"error", m.distance.tile_median},
+                                  {"worst", m.distance.worst_tenth},
+                                  {"mean", m.distance.error}};
+    if (m.reported)
+      moment["reported"] = m.reported->median, moment["reported_worst"] = m.reported->worst_tenth;
+    j["moments"].push_back(std::move(moment));
+  }
   return j;
 }
 

@@ -10,61 +10,36 @@
 #include <string>
 #include <vector>
 
+#include "bench/edit.h"
 #include "bench/folder.h"
+#include "bench/picture_distance.h"
 #include "scene/io/load.h"
 #include "session/session.h"
-#include "shaders/shared/preview.h"
 
 namespace lucerna::bench {
 
-enum class Edit {
-  load,      ///< the scene is loaded; the clock runs from when that is done
-  strength,  ///< the brightest lamp to a third; without lamps so the emissive material that sends most light
-  move,      ///< that lamp a tenth of the scene's radius aside; one without a place turns by 25 degrees;
-             ///< without lamps nothing is measured
-  sky,       ///< the environment turns by 90 degrees; without an image nothing is measured
-  material,  ///< the material of the largest surface without a texture becomes red
-  camera,    ///< turns by 12 degrees and steps aside by 2 % of the scene's radius
-  solver     ///< from path tracing to the solver, or back
-};
-inline constexpr std::array<const char*, 7> k_edit_names = {"load",     "strength", "move",  "sky",
-                                                            "material", "camera",   "solver"};
-/// Throws Error listing the names.
-Edit edit_of(const std::string& name);
-
-/// Of pictures, in the linear luminance that is shown: 0 black, 1 white. Both of one size, row by row.
-struct PictureDistance {
-  /// Mean over the pixels of the difference over the reference, after a mean over 3x3 pixels of both; pixels
-  /// darker than k_dark are held against k_dark. In tiles of 16x16 pixels, what the reference's own noise has
-  /// in its mean square is taken off; tiles where more than all of it seems to be noise count below 0.
-  double error = 0;
-  double black = 0;  ///< share of the pixels with light in the reference that show none, 3x3 likewise
-};
-inline constexpr float k_dark = shared::k_preview_dark;
-/// `half_difference`: of two independent halves of the reference, whose mean it is; empty: it has no noise.
-PictureDistance picture_distance(std::span<const float> shown, std::span<const float> reference,
-                                 uint32_t width, std::span<const float> half_difference = {});
-/// Luminance that a published picture with the linear tone curve shows.
-std::vector<float> shown_luminance(std::span<const uint8_t> rgba);
-
-/// What was shown from then on, until the next one. Seconds since the edit.
+/// One picture, shown until the next one.
 struct Moment {
-  double seconds = 0;
+  double seconds = 0;  ///< since the edit
   PictureDistance distance;
-  std::optional<double> told;  ///< the window's own estimate of the error (Snapshot::shown_error)
+  std::optional<film::ShownError> reported;  ///< the window's own estimate (Snapshot::shown_error)
 };
 
-/// Relative error below which a picture is usable.
-inline constexpr double k_usable = session::k_usable_error;
-/// Seconds after the edit of which errors are told.
-inline constexpr std::array<double, 5> k_told_s = {0.3, 1, 3, 10, 30};
+/// Whether a picture is good to work with: session::usable() of its true error.
+bool usable(const PictureDistance& distance);
+/// Seconds after the edit at which errors are listed.
+inline constexpr std::array<double, 5> k_listed_s = {0.3, 1, 3, 10, 30};
+/// The reported error of a picture is right if the true one lies within these multiples of it.
+inline constexpr double k_right_low = 0.7, k_right_high = 1.4;
 
 struct LatencyResult {
   std::string scene, solver, edit;
   std::optional<double> lit_s;     ///< until no more than 0.1 % of the lit pixels are black, and stay so
-  std::optional<double> usable_s;  ///< until the error is below k_usable and stays there
-  std::array<std::optional<double>, k_told_s.size()> error{};  ///< where measured for so long
-  std::array<std::optional<double>, k_told_s.size()> told{};   ///< the window's own estimate of it, then
+  std::optional<double> usable_s;  ///< until the picture is usable() and stays so
+  /// Of the median tile at k_listed_s: the true error, and the reported one; none: not watched for so long.
+  std::array<std::optional<double>, k_listed_s.size()> error{}, reported{};
+  /// The same of the worst tenth of the tiles.
+  std::array<std::optional<double>, k_listed_s.size()> worst{}, reported_worst{};
   /// The most by which the error has grown again from its least so far.
   double rise = 0;
   double loading_s = 0;         ///< of a load
@@ -88,13 +63,14 @@ struct LatencyOptions {
   std::string reference_solver = "path";
   double seconds = 10;   ///< that each edit is watched
   uint32_t repeats = 1;  ///< sessions of each scene and solver, each with all edits
+  uint64_t seed = 0;     ///< of the edits' amounts: change_of()
   struct {
     double seconds = 120;  ///< that it may take to be complete
     uint32_t samples = 8;  ///< a pixel, that it then has
   } settle;                ///< of the picture before an edit
   std::string device;
   std::filesystem::path references;                      ///< folder; pictures that serve are kept
-  std::filesystem::path pictures;                        ///< folder for PNGs at k_told_s; empty: none
+  std::filesystem::path pictures;                        ///< folder for PNGs at k_listed_s; empty: none
   std::vector<std::pair<std::string, std::string>> set;  ///< settings of the sessions, beyond the scene's
   scene::LoadOptions scenes = {};
 };
@@ -105,6 +81,20 @@ struct LatencyOptions {
 std::vector<LatencyResult> measure_latency(const LatencyOptions& options, const Message& message,
                                            const std::function<void(const LatencyResult&)>& done,
                                            const std::function<bool()>& interrupted = {});
+
+/// How well reported errors agree with the true ones, over all listed times of all edits.
+struct ReportedErrors {
+  size_t known = 0;               ///< pictures with a reported error, and a true error above k_least_true
+  size_t median_right = 0;        ///< of these: the median tile's within k_right_low..k_right_high
+  size_t worst_right = 0;         ///< ... the worst tenth's
+  size_t said_usable = 0;         ///< pictures reported as usable
+  size_t not_usable = 0;          ///< of these: are not, by more than a tenth
+  std::array<double, 3> ratio{};  ///< true over reported median: its lower decile, median, upper decile
+};
+/// Smaller true errors are lost in the rounding to 8 bits.
+inline constexpr double k_least_true = 0.01;
+ReportedErrors reported_errors(std::span<const LatencyResult> results);
+std::string text_of(const ReportedErrors& errors);
 
 /// A row of the table, under latency_heading().
 std::string latency_row(const LatencyResult& result);

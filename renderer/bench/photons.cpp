@@ -42,7 +42,7 @@ double median(std::vector<double> v) {
 }
 
 Values alone(const char* component) {
-  Values v{{"photons.worth", "false"}};  // photons are measured, not whether they pay
+  Values v{{"photons.efficiency", "false"}};  // photons are measured, not whether they pay
   for (const char* c : {"primary", "secondary", "tertiary", "caustic"})
     if (c != std::string(component)) v.emplace_back(std::string("components.") + c, "off");
   return v;
@@ -129,11 +129,11 @@ class Bench {
     while (r.samples() < samples && !r.done()) {
       if (hooks_.interrupted()) throw Interrupted{};
       if (!r.step(hooks_.interrupted)) break;
-      tell(double(r.samples()) / double(r.max_samples()));
+      report_progress(double(r.samples()) / double(r.max_samples()));
     }
     if (hooks_.interrupted()) throw Interrupted{};
   }
-  void tell(double fraction, bool at_once = false) {
+  void report_progress(double fraction, bool at_once = false) {
     if (!at_once && since_progress_.seconds() < k_progress_every_s) return;
     since_progress_.restart();
     status_.fraction = std::min(1.0, fraction);
@@ -360,8 +360,8 @@ Json Bench::timed_rounds(Renderer& r, uint32_t paths) {
     build.push_back(r.figure("seconds of sorting photons") - sorted);
     photons = r.figure("photons") - stored;
   }
-  const Json told = r.solver_statistics().value("photons", Json::object());
-  const Json rates = told.value("per_second", Json::object());
+  const Json statistics = r.solver_statistics().value("photons", Json::object());
+  const Json rates = statistics.value("per_second", Json::object());
   const double t = median(trace), b = median(build), w = median(wall);
   return {{"paths", paths},
           {"photons", photons},
@@ -375,8 +375,8 @@ Json Bench::timed_rounds(Renderer& r, uint32_t paths) {
           {"sorted_per_s", b > 0 ? photons / b : 0},
           {"looked_up_per_s", rates.value("looked_up", 0.0)},
           {"gathered_per_s", rates.value("gathered", 0.0)},
-          {"casters", told.value("casters", 0)},
-          {"bytes", told.value("bytes", 0.0)},
+          {"casters", statistics.value("casters", 0)},
+          {"bytes", statistics.value("bytes", 0.0)},
           // Of light paths and their photons' sorting.
           {"cpu_us_a_path", w > 0 ? 1e6 * median(cpu) * (t + b) / w / paths : 0}};
 }
@@ -448,7 +448,7 @@ void Bench::plan_free() {
            b = seconds(*photons);
            if (i % 2 == 1) a = seconds(*path);
            if (i > 0) extra.push_back(b / a - 1), plain.push_back(a);  // the first pair compiles
-           tell(double(i) / o_.pairs);
+           report_progress(double(i) / o_.pairs);
          }
          const Slope m = median95(extra);
          write_file(f, json_text(Json{{"scene", "cornell"},
@@ -478,7 +478,7 @@ Json Bench::run() {
   for (const Unit* u : todo) {
     ++status_.step;
     status_.what = u->name, current_ = u->effort;
-    tell(0, true);
+    report_progress(0, true);
     u->measure(u->file);
     done_ += current_;
   }

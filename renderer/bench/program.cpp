@@ -66,7 +66,7 @@ ProgramResult run_program(const std::filesystem::path& program, const std::vecto
 
   ProgramResult result;
   const Timer timer;
-  double asked_to_end = 0;
+  double end_requested_s = 0;
   for (bool open = true; open;) {
     pollfd from{ends[0], POLLIN, 0};
     if (poll(&from, 1, k_poll_ms) > 0) {
@@ -77,10 +77,10 @@ ProgramResult run_program(const std::filesystem::path& program, const std::vecto
     }
     if (hooks.waiting) hooks.waiting(timer.seconds());
     if (!result.interrupted && hooks.interrupted && hooks.interrupted()) {
-      result.interrupted = true, asked_to_end = timer.seconds();
+      result.interrupted = true, end_requested_s = timer.seconds();
       kill(child, SIGTERM);
     }
-    if (result.interrupted && timer.seconds() > asked_to_end + k_patience_s) kill(child, SIGKILL);
+    if (result.interrupted && timer.seconds() > end_requested_s + k_patience_s) kill(child, SIGKILL);
   }
   close(ends[0]);
   int status = 0;

@@ -173,14 +173,14 @@ std::optional<ReferenceInfo> find_reference(const fs::path& folder, const SceneE
   std::string why;
   try {
     const film::FilmImage image = film::read_exr(info.file);
-    const auto told = [&](const char* name) {
+    const auto attribute = [&](const char* name) {
       const auto at = image.metadata.find(name);
       return at == image.metadata.end() ? std::string() : at->second;
     };
-    info.key = told("bench.key");
-    info.samples = uint32_t(std::strtoul(told("bench.samples").c_str(), nullptr, 10));
-    info.seconds = std::strtod(told("bench.seconds").c_str(), nullptr);
-    info.seed = uint32_t(std::strtoul(told("seed").c_str(), nullptr, 10));
+    info.key = attribute("bench.key");
+    info.samples = uint32_t(std::strtoul(attribute("bench.samples").c_str(), nullptr, 10));
+    info.seconds = std::strtod(attribute("bench.seconds").c_str(), nullptr);
+    info.seed = uint32_t(std::strtoul(attribute("seed").c_str(), nullptr, 10));
     const film::Reference reference = film::read_reference(info.file, scene.width, scene.height);
     if (info.key == key) find_noise(info, image, scene);
     if (info.key.empty())

@@ -72,7 +72,7 @@ Distances distances(const Renderer& r, const film::ReferencePair& halves) {
 }
 
 /// What is told of the sum; of the components, the paths' noise.
-Layers told(const stats::Entry& e) {
+Layers estimated_errors(const stats::Entry& e) {
   Layers all = e.of_mean.error;
   all[0] = e.of_mean.sum();
   return all;
@@ -83,7 +83,7 @@ CurvePoint make_point(const stats::Entry& e, const Distances& distances) {
           .device_s = e.device_s,
           .rays = e.rays,
           .samples = e.samples,
-          .estimated = told(e),
+          .estimated = estimated_errors(e),
           .truth = e.truth.value_or(Layers{}),
           .tiles = e.tile_worst_tenth,
           .relmse = std::max(0.0, distances.relative.trimmed),
@@ -151,7 +151,7 @@ class Run {
     }
     return true;
   }
-  void tell(double fraction, bool at_once = false) {
+  void report_progress(double fraction, bool at_once = false) {
     if (!at_once && since_progress_.seconds() < k_progress_every_s) return;
     since_progress_.restart();
     status_.fraction = fraction;
@@ -163,7 +163,7 @@ class Run {
     since_unit_.restart();
     ++status_.step;
     status_.what = what;
-    tell(0, true);
+    report_progress(0, true);
   }
   void end() { left_.finished(unit_, since_unit_.seconds()); }
 
@@ -188,7 +188,7 @@ ReferenceInfo Run::make_reference(const SceneEntry& scene, const std::string& ke
   values["seed"] = std::to_string(matrix_.reference_seed);
   values["samples"] = std::to_string(scene.reference_samples);
   const auto r = make_renderer(scene, values, options_);
-  while (!r->done() && step(*r)) tell(fraction_done(*r, {}, 0));
+  while (!r->done() && step(*r)) report_progress(fraction_done(*r, {}, 0));
   ReferenceInfo info{.file = reference_file(options_.references, scene),
                      .key = key,
                      .samples = scene.reference_samples,
@@ -220,7 +220,7 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   const auto r = make_renderer(scene, values, options_);
   r->set_reference(reference.file);
   // The device compiles its kernels when they first run, and the machine's clocks and caches warm up.
-  while (!warm(*r, setup.seconds()) && !r->done() && step(*r)) tell(0);
+  while (!warm(*r, setup.seconds()) && !r->done() && step(*r)) report_progress(0);
   r->image_error();
   Result result{.scene = scene.name,
                 .setting = setting.name,
@@ -243,9 +243,9 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
     const size_t lines = entries.size();
     if (!step(*r)) break;
     // Before every pixel has a sample it is not the same picture.
-    if (entries.size() > lines && entries.back().told)
+    if (entries.size() > lines && entries.back().has_error)
       result.curve.push_back(make_point(entries.back(), distances(*r, halves)));
-    tell(fraction_done(*r, budget, r->render_seconds()));
+    report_progress(fraction_done(*r, budget, r->render_seconds()));
   }
   r->finish_ledger();
   const stats::Entry& last = entries.back();
@@ -257,7 +257,7 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   result.rays = last.rays, result.paths = last.paths, result.samples = last.samples;
   result.parts.paths = last.of_mean.error[0];
   result.parts.records = last.of_mean.records, result.parts.interpolation = last.of_mean.interpolation;
-  result.estimated = told(last), result.truth = last.truth.value_or(Layers{});
+  result.estimated = estimated_errors(last), result.truth = last.truth.value_or(Layers{});
   result.component_s = last.component_s;
   const double rms = result.truth[0] * r->reference()->mean_luminance;
   result.mse = rms * rms;
@@ -300,7 +300,7 @@ Result Run::render_outside(const Cell& cell, const ReferenceInfo& reference, con
                       {.interrupted = hooks_.interrupted, .waiting = [&](double seconds) {
                          // Of samples it is not known how far it is.
                          const bool timed = budget.kind == BudgetKind::seconds;
-                         tell(timed ? std::min(1.0, seconds / (times * budget.value)) : 0);
+                         report_progress(timed ? std::min(1.0, seconds / (times * budget.value)) : 0);
                        }});
     if (run.interrupted) {
       forget();

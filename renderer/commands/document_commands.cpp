@@ -57,7 +57,7 @@ void exclude(const Arguments& a, const char* one, const char* other) {
 }
 
 /// The colour asked for, its strongest channel 1, by the parameter of that name or in kelvin; else `before`.
-vec3 tint_asked(const Arguments& a, const char* color, const vec3& before) {
+vec3 requested_tint(const Arguments& a, const char* color, const vec3& before) {
   if (a.has("kelvin")) return blackbody_color(a.number("kelvin"));
   if (!a.has(color)) return before;
   if (strength_of(a.vector(color)) <= 0)
@@ -160,7 +160,7 @@ std::vector<Parameter> light_parameters() {
 /// Strength, colour and switch as asked for.
 void shine(const Arguments& a, scene::Light& light) {
   float strength = strength_of(light.intensity);
-  const vec3 tint = tint_asked(a, "color", tint_of(light.intensity));
+  const vec3 tint = requested_tint(a, "color", tint_of(light.intensity));
   if (a.has("intensity")) strength = a.number("intensity");
   if (a.has("power")) strength = a.number("power") / std::max(float(scene::solid_angle(light)), 1e-9f);
   if (a.has("intensity") || a.has("power") || a.has("color") || a.has("kelvin"))
@@ -382,7 +382,7 @@ void Workspace::add_material_commands() {
              if (a.has("metallic")) m.metallic = a.number("metallic");
              if (a.has("emission")) m.emission = a.vector("emission");
              float strength = strength_of(m.emission);
-             const vec3 tint = tint_asked(a, "emission_color", tint_of(m.emission));
+             const vec3 tint = requested_tint(a, "emission_color", tint_of(m.emission));
              if (a.has("strength")) strength = a.number("strength");
              if (a.has("strength") || a.has("emission_color") || a.has("kelvin"))
                m.emission = strength * tint;

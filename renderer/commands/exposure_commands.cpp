@@ -86,26 +86,26 @@ void Workspace::take_measure() {
   }
   if (!measuring_ || measuring_->result.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
     return;
-  const Measuring asked = *measuring_;
+  const Measuring requested = *measuring_;
   measuring_.reset();
-  if (asked.scene != view_scene) return;
+  if (requested.scene != view_scene) return;
   try {
-    const film::Brightness found = asked.result.get();
+    const film::Brightness found = requested.result.get();
     if (!found.ev)
-      throw Error("", asked.at_point ? "it is black there: no exposure makes it grey"
-                                     : "the picture is black: no exposure shows it");
+      throw Error("", requested.at_point ? "it is black there: no exposure makes it grey"
+                                         : "the picture is black: no exposure shows it");
     // Where somebody has set it meanwhile it is theirs.
-    if (asked.of_load && setting("film.ev") != plan::find_option("film.ev")->fallback) return;
+    if (requested.of_load && setting("film.ev") != plan::find_option("film.ev")->fallback) return;
     const float ev = std::round(*found.ev * 100) / 100;
     if (number_text(ev) == setting("film.ev")) return;
     run(line("set", "film.ev", ev));
-    if (asked.of_load)
+    if (requested.of_load)
       measured(fmt::format("The scene names no exposure; {:+.1f} EV was found for it", ev));
     else
       measured(fmt::format("Exposure {:+.2f} EV", ev));
   } catch (const std::exception& error) {
     measure_failure_ = error.what();
-    if (!asked.of_load) log::error("exposure: {}", error.what());
+    if (!requested.of_load) log::error("exposure: {}", error.what());
   }
 }
 

@@ -164,7 +164,7 @@ bool Workspace::has_samples(int64_t samples) {
     throw Error("", "the picture stands still after an error");
   // A picture from before the last edits, cameras and sizes does not count.
   if (!up_to_date() || resizing) return false;
-  if (const solvers::Report* told = waiting()) throw Error("", told->to_go_on);
+  if (const solvers::Report* waiting_report = waiting()) throw Error("", waiting_report->to_go_on);
   if (snapshot->finished || (!snapshot->coarse && snapshot->samples >= samples)) return true;
   if (snapshot->paused) throw Error("", "rendering is paused; render.resume takes more samples");
   return false;

@@ -87,8 +87,8 @@ void Workspace::add_file_commands(const SolverInfo& solver) {
 void Workspace::add_leading_commands(const SolverInfo& solver) {
   // True once preparation waits or is complete, with all in force that was commanded.
   const auto still = [this, &solver](const Arguments&) {
-    const solvers::Report* told = report(solver);
-    return up_to_date() && told && (told->waits || told->ready);
+    const solvers::Report* current = report(solver);
+    return up_to_date() && current && (current->waits || current->ready);
   };
   for (const solvers::CommandInfo& command : solver.commands) {
     Command c{.name = solver.name + "." + command.name,

@@ -151,9 +151,9 @@ void Workspace::follow_scene() {
   probing_ =
       std::async(std::launch::async, [s = scene] { return std::make_shared<const session::Probe>(s); });
   measuring_.reset();
-  const bool brings = std::any_of(scene->settings.begin(), scene->settings.end(),
-                                  [](const auto& setting) { return setting.first == "film.ev"; });
-  exposure_due_ = brings || std::exchange(exposure_given_, false) ? 0 : view_scene;
+  const bool sets_exposure = std::any_of(scene->settings.begin(), scene->settings.end(),
+                                         [](const auto& setting) { return setting.first == "film.ev"; });
+  exposure_due_ = sets_exposure || std::exchange(exposure_given_, false) ? 0 : view_scene;
   solo_ = -1;
   scene_camera = -1;
   for (size_t i = 0; i < scene->cameras.size(); ++i)

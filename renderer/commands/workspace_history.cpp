@@ -76,14 +76,14 @@ void Workspace::carry_out(const Line& line, uint64_t gesture, const std::string&
   const Document after = std::move(*working_);
   working_.reset();
   send(now_seen, after);
-  const bool asked = loading() && !touched_.empty();
+  const bool requested = loading() && !touched_.empty();
   const Sent sent = sent_since(first, moves);
   if (merges)
     undo_.back().after = after, undo_.back().line = registry.print(line),
     undo_.back().sent.last = std::max(undo_.back().sent.last, sent.last);
   else if (after != now_seen)
     undo_.push_back({registry.print(line), target, gesture, now_seen, after, sent});
-  else if (!asked)
+  else if (!requested)
     return;
   if (undo_.size() > k_steps) undo_.erase(undo_.begin());
   redo_.clear();

@@ -45,16 +45,16 @@ void Developer::tone_map(gpu::Stream& stream, const Film& film, const View& view
 }
 
 gpu::Kernel& Developer::mix_kernel(const Film& film, const View& view) {
-  const auto [at, made] = mixes_.try_emplace({film.in_short(), view.curve});
+  const auto [at, made] = mixes_.try_emplace({film.is_compact(), view.curve});
   if (made || !at->second)
     at->second = gpu::Kernel(device_, compiler_, "film/mix.comp",
-                             {{"LUCERNA_GROUP_SUMS", film.in_short() ? "1" : "0"},
+                             {{"LUCERNA_GROUP_SUMS", film.is_compact() ? "1" : "0"},
                               {"LUCERNA_TONE_CURVE", std::to_string(view.curve)}});
   return at->second;
 }
 
 void Developer::prepare_mix(gpu::Stream& stream, const Film& film, const View& view) {
-  if (!film.quick() || mixes_.contains({film.in_short(), view.curve})) return;
+  if (!film.quick() || mixes_.contains({film.is_compact(), view.curve})) return;
   film.bind(resources_);
   stream.dispatch(mix_kernel(film, view), resources_, MixPush{}, 1);
   stream.run();

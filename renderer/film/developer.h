@@ -33,7 +33,7 @@ class Developer {
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
   gpu::Kernel tonemap_, heat_, tiles_;
-  std::map<std::pair<bool, uint32_t>, gpu::Kernel> mixes_;  ///< by Film::in_short and curve
+  std::map<std::pair<bool, uint32_t>, gpu::Kernel> mixes_;  ///< by Film::is_compact and curve
   gpu::Buffer no_coarse_;
   gpu::Resources resources_;
 };

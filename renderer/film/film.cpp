@@ -19,15 +19,15 @@ constexpr uint64_t k_coarse_pixels = shared::k_coarse_step * shared::k_coarse_st
 
 }  // namespace
 
-uint64_t sum_bytes(uint32_t groups, GroupsKept kept) {
+uint64_t sum_bytes(uint32_t groups, GroupStorage kept) {
   constexpr uint64_t k_all = k_components * k_sum_bytes;
   if (groups <= 1) return k_all;
-  return k_all + groups * (kept == GroupsKept::in_short ? sizeof(shared::GroupSums)
-                                                        : k_all + sizeof(shared::GroupLight));
+  return k_all + groups * (kept == GroupStorage::compact ? sizeof(shared::GroupSums)
+                                                         : k_all + sizeof(shared::GroupLight));
 }
 
 void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, uint32_t groups,
-                GroupsKept kept) {
+                GroupStorage kept) {
   const gpu::Limits& limits = device.limits;
   const uint64_t pixels = uint64_t(width) * height;
   if (pixels == 0) throw Error("size", "a picture needs at least one pixel");
@@ -37,7 +37,7 @@ void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, 
   const uint64_t memory = device.memory_bytes - std::min(device.memory_bytes, k_paths_bytes);
   const uint64_t coarse = (k_pixel_bytes + sum_bytes(1)) / k_coarse_pixels;
   const uint64_t texels =
-      std::max<uint64_t>(k_sum_bytes / 16, groups > 1 && kept == GroupsKept::in_short ? groups : 0);
+      std::max<uint64_t>(k_sum_bytes / 16, groups > 1 && kept == GroupStorage::compact ? groups : 0);
   const uint64_t largest = std::min({limits.max_texel_elements / texels, limits.max_storage_buffer / 4,
                                      memory / (k_pixel_bytes + sum_bytes(groups, kept) + coarse)});
   if (pixels > largest)
@@ -58,15 +58,15 @@ Film::Sums Film::make_sums() const {
   return sums;
 }
 
-Film::Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups, GroupsKept kept)
+Film::Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups, GroupStorage kept)
     : width_(width), height_(height), groups_(std::max(1u, groups)), kept_(kept), device_(device) {
   const gpu::Limits& limits = device.info().limits;
   const uint64_t pixels = uint64_t(width) * height;
   check_size(device.info(), width, height, groups, kept);
-  const uint64_t short_sums = in_short() ? pixels * groups * sizeof(shared::GroupSums) : 0;
+  const uint64_t short_sums = is_compact() ? pixels * groups * sizeof(shared::GroupSums) : 0;
   fits_storage_buffers_ = std::max(pixels * k_sum_bytes, short_sums) <= limits.max_storage_buffer;
   sums_ = make_sums();
-  for (uint32_t g = 0; groups > 1 && !in_short() && g < groups; ++g) group_sums_.push_back(make_sums());
+  for (uint32_t g = 0; groups > 1 && !is_compact() && g < groups; ++g) group_sums_.push_back(make_sums());
   group_short_ = gpu::Buffer(device, {.name = "sums by group", .bytes = short_sums, .texel = true});
   light_mix_ = gpu::Buffer(
       device,
@@ -137,7 +137,7 @@ void Film::clear(gpu::Stream& stream) {
   for (gpu::Buffer& b : sums_) stream.fill(b, 0);
   for (Sums& sums : group_sums_)
     for (gpu::Buffer& b : sums) stream.fill(b, 0);
-  if (in_short()) stream.fill(group_short_, 0);
+  if (is_compact()) stream.fill(group_short_, 0);
   stream.fill(albedo_, 0);
   stream.fill(normal_, 0);
   stream.fill(count_, 0);
@@ -196,7 +196,7 @@ void Film::set_mix(std::span<const vec3> weights) {
   for (vec4& w : mix_.weight) w = vec4(1);
   for (size_t g = 0; g < std::min<size_t>(weights.size(), shared::k_most_groups); ++g) {
     mix_.weight[g] = vec4(weights[g], 1);
-    if (in_short() && weights[g] != vec3(1)) mix_.groups = groups_;
+    if (is_compact() && weights[g] != vec3(1)) mix_.groups = groups_;
   }
   light_mix_.write(&mix_, sizeof mix_);
 }
@@ -251,7 +251,7 @@ std::array<std::vector<vec3>, k_components> Film::read_group(uint32_t group) con
 }
 
 std::vector<shared::GroupSums> Film::read_group_sums() const {
-  std::vector<shared::GroupSums> sums(in_short() ? size_t{groups_} * width_ * height_ : 0);
+  std::vector<shared::GroupSums> sums(is_compact() ? size_t{groups_} * width_ * height_ : 0);
   if (!sums.empty()) group_short_.read(sums.data(), sums.size() * sizeof(shared::GroupSums));
   return sums;
 }

@@ -47,7 +47,7 @@ struct View {
 };
 
 /// How light is kept apart by groups of lights.
-enum class GroupsKept {
+enum class GroupStorage {
   /// Each group has sums by component like the picture's: any mix is what rendering anew would be.
   by_component,
   /// Each group has sums of all components together, rounded to 18 bits without bias
@@ -55,7 +55,7 @@ enum class GroupsKept {
   /// multiplies these by what it makes of the groups' sums, pixel by pixel and half by half: the picture and
   /// its noise are those of the mix, but it is shared out to the components as if all groups were alike in
   /// them.
-  in_short
+  compact
 };
 
 /// The largest width or height of a picture.
@@ -66,21 +66,21 @@ inline constexpr uint32_t k_max_side = 32768;
 /// far as that is free of other things.
 /// `groups`: of lights, that are kept apart.
 void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, uint32_t groups = 1,
-                GroupsKept kept = GroupsKept::by_component);
+                GroupStorage kept = GroupStorage::by_component);
 /// Bytes that a pixel's sums take: 192 for the picture, and where there is more than one group of lights 200
 /// (by component) or 16 (in short) for each.
-uint64_t sum_bytes(uint32_t groups, GroupsKept kept = GroupsKept::by_component);
+uint64_t sum_bytes(uint32_t groups, GroupStorage kept = GroupStorage::by_component);
 
 class Film {
  public:
   /// `groups`: of lights (shaders/shared/lanes.h), 1 to shared::k_most_groups, whose sums are kept apart; the
   /// picture is then their sum, as they are mixed. Throws Error as check_size, or when memory is short.
   Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups = 1,
-       GroupsKept kept = GroupsKept::by_component);
+       GroupStorage kept = GroupStorage::by_component);
   uint32_t groups() const { return groups_; }
-  GroupsKept groups_kept() const { return kept_; }
+  GroupStorage group_storage() const { return kept_; }
   /// Whether it keeps more than one group, all components of one together.
-  bool in_short() const { return groups_ > 1 && kept_ == GroupsKept::in_short; }
+  bool is_compact() const { return groups_ > 1 && kept_ == GroupStorage::compact; }
   /// What each group's light is multiplied by, 1 where nothing is said (and for all of a new film): of a film
   /// of one group, which may have been drawn for more, the one weight there is. Where
   /// groups are kept by component the picture's sums take it up with transport::Wavefront::mix(), and with
@@ -145,7 +145,7 @@ class Film {
   std::vector<vec3> mix_ratios() const;
 
   uint32_t width_, height_, groups_;
-  GroupsKept kept_;
+  GroupStorage kept_;
   bool fits_storage_buffers_ = true;
   using Sums = std::array<gpu::Buffer, k_components>;
   Sums make_sums() const;

@@ -1,6 +1,7 @@
 #include "film/preview.h"
 
 #include <algorithm>
+#include <glm/gtc/packing.hpp>
 #include <utility>
 
 namespace lucerna::film {
@@ -10,12 +11,17 @@ using namespace shared;
 namespace {
 
 constexpr uint32_t k_filter_passes = 4;
+constexpr float k_most_light = 60000;  // as a half holds it
+// Of a filtered picture: mean size of the deviation of 3x3 pixels' means over a pixel's standard error.
+constexpr float k_filter_deviation = 0.65f;
 constexpr uint64_t k_light_bytes = 16 * k_preview_texels;
 
 uint32_t groups(uint64_t items) { return gpu::groups_for(items, 64); }
 
 /// Along a side of so many cells.
 uint32_t change_blocks(uint32_t cells) { return gpu::groups_for(cells, k_preview_change_step); }
+
+uint32_t tile_count(uint32_t pixels) { return gpu::groups_for(pixels, k_preview_tile); }
 
 /// Components that a view shows.
 uint32_t shown_components(const View& view) {
@@ -39,7 +45,8 @@ Preview::Preview(gpu::Device& device, gpu::ShaderCompiler& compiler)
       scatter_(device, compiler, "film/preview_scatter.comp"),
       gather_(device, compiler, "film/preview_gather.comp"),
       recall_(device, compiler, "film/preview_recall.comp"),
-      resolve_(device, compiler, "film/preview_resolve.comp") {}
+      resolve_(device, compiler, "film/preview_resolve.comp"),
+      judge_(device, compiler, "film/preview_judge.comp") {}
 
 bool Preview::fits(const gpu::Limits& limits, uint32_t width, uint32_t height) {
   return uint64_t{width} * height * k_light_bytes <= limits.max_storage_buffer;
@@ -48,6 +55,9 @@ bool Preview::fits(const gpu::Limits& limits, uint32_t width, uint32_t height) {
 void Preview::forget() {
   shown_ = history_.known = history_.recoloured = repainted_ = false;
   moved_camera_.reset();
+  judged_.reset();
+  filtered_shown_.reset();
+  errors_.restart();
 }
 
 void Preview::keep(const vec3& scale, bool repainted, bool same_light) {
@@ -60,6 +70,9 @@ void Preview::keep(const vec3& scale, bool repainted, bool same_light) {
     moved_camera_.reset();
     shown_ = false;
   }
+  judged_.reset();
+  filtered_shown_.reset();
+  errors_.restart();
   history_.scale *= scale;
   history_.recoloured |= repainted;
   history_.same_light &= same_light;
@@ -80,8 +93,9 @@ uint64_t Preview::bytes() const {
   };
   for (const Pixels* p : {&now_, &history_.pixels, &moved_, &draft_}) add(p->light), add(p->surfaces);
   for (const gpu::Buffer* b :
-       {&grid_, &grid_surfaces_, &filtered_, &before_[0], &before_[1], &lost_[0], &lost_[1], &texture_[0],
-        &texture_[1], &noise_, &changes_, &ratios_, &shares_, &depths_, &nearest_})
+       {&grid_,       &grid_surfaces_,   &filtered_,        &before_[0], &before_[1], &lost_[0],    &lost_[1],
+        &texture_[0], &texture_[1],      &noise_,           &changes_,   &ratios_,    &shares_,     &depths_,
+        &nearest_,    &pixels_shown_[0], &pixels_shown_[1], &sums_[0],   &sums_[1],   &draft_sums_, &tiles_})
     add(*b);
   return sum;
 }
@@ -117,16 +131,26 @@ void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
                   .bytes = groups(n) * sizeof(shared::PreviewShares),
                   .memory = gpu::Memory::host});
   for (gpu::Buffer* b : {&depths_, &nearest_}) make(*b, "preview nearest", n * 4);
+  for (gpu::Buffer& b : pixels_shown_) make(b, "preview shown", n * 4);
+  for (gpu::Buffer& b : sums_) make(b, "preview sums", n * 8);
+  make(draft_sums_, "preview draft sums", drafted * 8);
+  gpu::make_room(device_, tiles_,
+                 {.name = "preview tiles",
+                  .bytes = uint64_t{tile_count(width)} * tile_count(height) * sizeof(PreviewTile),
+                  .memory = gpu::Memory::host});
 }
 
-void Preview::pack(gpu::Stream& stream, const Film& film, const Pixels& to, float exposure,
-                   const gpu::Buffer* guide) {
+void Preview::pack(gpu::Stream& stream, const Film& film, const Pixels& to, const View& view,
+                   const gpu::Buffer* guide, const gpu::Buffer& sums) {
   film.bind(resources_);
   resources_.set("guide_surfaces", guide ? *guide : history_.pixels.surfaces);
   resources_.set("Packed", to.light);
   resources_.set("PackedSurfaces", to.surfaces);
-  stream.dispatch(pack_, resources_, PreviewPackPush{film.width(), film.height(), exposure, guide != nullptr},
-                  groups(uint64_t{film.width()} * film.height()));
+  resources_.set("PackedSums", sums);
+  stream.dispatch(
+      pack_, resources_,
+      PreviewPackPush{film.width(), film.height(), view.exposure, guide != nullptr, shown_components(view)},
+      groups(uint64_t{film.width()} * film.height()));
 }
 
 void Preview::move(gpu::Stream& stream, PreviewReprojectPush push) {
@@ -190,12 +214,67 @@ void Preview::recall(gpu::Stream& stream, const Film& film, const View& view, co
        {width_, height_, 0, shown_components(view), view.curve, history_.scale_for(view)});
 }
 
-void Preview::take(gpu::Stream& stream, const Film& film, float exposure, const PreviewCamera& camera) {
+void Preview::take(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera) {
   make_room(film.width(), film.height(), nullptr);
-  pack(stream, film, now_, exposure, nullptr);
+  pack(stream, film, now_, view, nullptr, sums_[0]);
   stream.run();
-  camera_ = camera, exposure_ = exposure;
+  camera_ = camera, exposure_ = view.exposure;
   shown_ = true;
+}
+
+std::span<const PreviewTile> Preview::tiles() const {
+  return {static_cast<const PreviewTile*>(tiles_.mapped()), size_t{tile_count(width_)} * tile_count(height_)};
+}
+
+void Preview::judge_tiles(gpu::Stream& stream, const Film& by, uint32_t step, const gpu::Buffer& shown) {
+  resources_.set("ShownBefore", pixels_shown_[1]);
+  resources_.set("ShownNow", shown);
+  resources_.set("SumsBefore", sums_[1]);
+  resources_.set("SumsNow", sums_[0]);
+  resources_.set("Tiles", tiles_);
+  stream.dispatch(judge_, resources_, PreviewJudgePush{width_, height_, by.width(), by.height(), step},
+                  tile_count(width_) * tile_count(height_));
+}
+
+bool Preview::judge(gpu::Stream& stream, const Film& by, const View& view) {
+  const uint32_t step = width_ / by.width();
+  const Judged now{step, view.exposure, shown_components(view)};
+  const bool measured = judged_ == now && k_preview_tile % step == 0;
+  judge_tiles(stream, by, measured ? step : 0, pixels_shown_[0]);
+  std::swap(pixels_shown_[0], pixels_shown_[1]);
+  std::swap(sums_[0], sums_[1]);
+  judged_ = now;
+  filtered_shown_.reset();
+  return measured;
+}
+
+ShownError Preview::show_filtered(gpu::Stream& stream, const Film& film, std::span<const float> luminances,
+                                  std::span<const float> errors, const View& view) {
+  make_room(film.width(), film.height(), nullptr);
+  std::vector<uint32_t> shown(luminances.size());
+  for (size_t i = 0; i < shown.size(); ++i) {
+    const float light = view.exposure * luminances[i],
+                error = k_filter_deviation * view.exposure * errors[i] / std::max(light, k_preview_dark);
+    shown[i] = glm::packHalf2x16(vec2(std::min(light, k_most_light), std::min(error, 1.0f)));
+  }
+  pixels_shown_[1].write(std::span<const uint32_t>(shown));
+  pack(stream, film, now_, view, nullptr, sums_[1]);
+  judge_tiles(stream, film, 0, pixels_shown_[1]);
+  stream.run();
+  stream.take_times();
+  filtered_shown_ = {view, errors_};
+  judged_.reset();
+  return errors_.judge(tiles(), tile_count(width_), false);
+}
+
+std::optional<ShownError> Preview::judge_filtered(gpu::Stream& stream, const Film& film) {
+  if (!filtered_shown_ || film.width() != width_ || film.height() != height_) return std::nullopt;
+  pack(stream, film, now_, filtered_shown_->view, nullptr, sums_[0]);
+  judge_tiles(stream, film, 1, pixels_shown_[1]);
+  stream.run();
+  stream.take_times();
+  errors_ = filtered_shown_->before;
+  return errors_.judge(tiles(), tile_count(width_), true);
 }
 
 PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film* draft, const View& view,
@@ -213,8 +292,9 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
   const uint32_t step = wide ? k_preview_first_step : k_preview_step;
   const uint32_t across = (width_ + step - 1) / step, down = (height_ + step - 1) / step,
                  cells = across * down;
-  if (sampled != Sampled::none) pack(stream, film, now_, view.exposure, guide);
-  if (draft) pack(stream, *draft, draft_, view.exposure, nullptr);
+  const bool by_draft = sampled == Sampled::none;
+  if (!by_draft) pack(stream, film, now_, view, guide, sums_[0]);
+  if (draft) pack(stream, *draft, draft_, view, nullptr, by_draft ? sums_[0] : draft_sums_);
 
   resources_.set("packed_texels", now_.light);
   resources_.set("surface_texels", now_.surfaces);
@@ -299,6 +379,7 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
   resources_.set("PackedSurfaces", now_.surfaces);
   resources_.set("Picture", film.picture());
   resources_.set("Shares", shares_);
+  resources_.set("Shown", pixels_shown_[0]);
   const PreviewResolvePush resolve{.width = width_,
                                    .height = height_,
                                    .across = across,
@@ -318,6 +399,7 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
                                    .surfaces = surfaces,
                                    .moved = moved};
   stream.dispatch(resolve_, resources_, resolve, groups(pixels()));
+  const bool measured = judge(stream, by_draft && draft ? *draft : film, view);
   stream.run();
   stream.take_times();
   camera_ = camera, exposure_ = view.exposure;
@@ -325,12 +407,11 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
   repainted_ = repainted_ && sampled != Sampled::all;
 
   PreviewShares told;
-  double all = 0, error = 0;
+  double all = 0;
   const auto* sums = static_cast<const shared::PreviewShares*>(shares_.mapped());
   for (uint32_t g = 0; g < groups(pixels()); ++g)
-    all += sums[g].all, told.stale += sums[g].stale, told.filtered += sums[g].filtered,
-        error += sums[g].error;
-  told.error = error / pixels();
+    all += sums[g].all, told.stale += sums[g].stale, told.filtered += sums[g].filtered;
+  told.error = errors_.judge(tiles(), tile_count(width_), measured);
   if (all > 0) told.stale /= all, told.filtered /= all;
   return told;
 }

@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "film/film.h"
+#include "film/shown_error.h"
 #include "shaders/shared/preview.h"
 
 namespace lucerna::film {
@@ -19,10 +20,8 @@ namespace lucerna::film {
 struct PreviewShares {
   double stale = 0;     ///< light from before the last edit, by luminance
   double filtered = 0;  ///< filtered light of the present, by luminance
-  /// Relative error that is expected of a mean over 3x3 pixels: the mean over the picture, each pixel's held
-  /// against shared::k_preview_dark at least and 1 at most. From the noise of the two halves of the samples,
-  /// what filtering may be off by, and how new and older light differ. None: no preview.
-  std::optional<double> error;
+  /// Of the tiles, as samples have judged it that the pictures before had not used. None: no preview.
+  std::optional<ShownError> error;
 };
 
 /// Of the film's pixels, which have samples.
@@ -70,7 +69,14 @@ class Preview {
   void recall(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera);
   /// The film's picture has been shown as it is, with that exposure: keep() is to know it. Every pixel has a
   /// sample. Throws as develop(). The stream is run.
-  void take(gpu::Stream& stream, const Film& film, float exposure, const PreviewCamera& camera);
+  void take(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera);
+  /// The film has been filtered, and that is shown in place of a preview: `luminances` and their standard
+  /// errors, one a pixel. What error is expected of it. Throws as develop(). The stream is run.
+  ShownError show_filtered(gpu::Stream& stream, const Film& film, std::span<const float> luminances,
+                           std::span<const float> errors, const View& view);
+  /// Its error as the samples judge it that the film has got since; nothing if show_filtered() was not the
+  /// last to show something. The stream is run.
+  std::optional<ShownError> judge_filtered(gpu::Stream& stream, const Film& film);
   uint64_t bytes() const;  ///< of device memory
 
  private:
@@ -91,21 +97,42 @@ class Preview {
   };
   void make_pixels(Pixels& to);
   void make_room(uint32_t width, uint32_t height, const Film* draft);
-  void pack(gpu::Stream& stream, const Film& film, const Pixels& to, float exposure,
-            const gpu::Buffer* guide);
+  void pack(gpu::Stream& stream, const Film& film, const Pixels& to, const View& view,
+            const gpu::Buffer* guide, const gpu::Buffer& sums);
+  /// Records; the tiles can be read when the stream has run. Whether the picture before is judged too.
+  bool judge(gpu::Stream& stream, const Film& by, const View& view);
+  void judge_tiles(gpu::Stream& stream, const Film& by, uint32_t step, const gpu::Buffer& shown);
+  std::span<const shared::PreviewTile> tiles() const;
   void move(gpu::Stream& stream, shared::PreviewReprojectPush push);
   void show(gpu::Stream& stream, const Film& film, const Pixels& seen, shared::PreviewRecallPush push);
   const Pixels& history(gpu::Stream& stream, const PreviewCamera& now);
   uint32_t pixels() const { return width_ * height_; }
 
   gpu::Device& device_;
-  gpu::Kernel pack_, halve_, change_, first_filter_, filter_, scatter_, gather_, recall_, resolve_;
+  gpu::Kernel pack_, halve_, change_, first_filter_, filter_, scatter_, gather_, recall_, resolve_, judge_;
   uint32_t width_ = 0, height_ = 0;
   Pixels now_, draft_;
   History history_;
   Pixels moved_;  ///< the history's as they are seen now, where that is from elsewhere
   gpu::Buffer grid_, grid_surfaces_, filtered_, before_[2], lost_[2], texture_[2], noise_, changes_, ratios_,
       shares_, depths_, nearest_;
+  /// What was shown last and before, and what samples there were then.
+  gpu::Buffer pixels_shown_[2], sums_[2], draft_sums_, tiles_;
+  struct Judged {
+    uint32_t step;  ///< of the film's pixels, in the picture's
+    float exposure;
+    uint32_t show;
+    bool operator==(const Judged&) const = default;
+  };
+  std::optional<Judged> judged_;  ///< of pixels_shown_[1] and sums_[1]
+  ShownJudge errors_;
+  /// Of a filtered picture: how it is shown, and errors_ without its own measurements, which are made again
+  /// from its beginning.
+  struct FilteredShown {
+    View view;
+    ShownJudge before;
+  };
+  std::optional<FilteredShown> filtered_shown_;
   gpu::Resources resources_;
   PreviewCamera camera_;
   std::optional<PreviewCamera> moved_camera_;  ///< of `moved_`

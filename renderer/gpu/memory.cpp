@@ -11,8 +11,9 @@ namespace lucerna::gpu {
 namespace {
 
 constexpr VkDeviceSize k_block_bytes = 8ull << 20;
-constexpr VkDeviceSize k_worth_asking = 64ull << 20;  ///< from here on, the host is asked what it has left
-constexpr VkDeviceSize k_small_bytes = 1ull << 20;    ///< below this, a buffer shares a block
+constexpr VkDeviceSize k_check_host_above = 64ull
+                                            << 20;  ///< from here on, the host is asked what it has left
+constexpr VkDeviceSize k_small_bytes = 1ull << 20;  ///< below this, a buffer shares a block
 
 VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment) {
   return (value + alignment - 1) / alignment * alignment;
@@ -97,7 +98,7 @@ VkResult Allocator::allocate_memory(VkDeviceSize bytes, uint32_t type, bool map,
   // now.
   if (bytes > largest_allocation_ || heap_used_[heap] + bytes > memory_.memoryHeaps[heap].size)
     return VK_ERROR_OUT_OF_DEVICE_MEMORY;
-  if (map_device_memory_ && bytes >= k_worth_asking && bytes > host_bytes_available())
+  if (map_device_memory_ && bytes >= k_check_host_above && bytes > host_bytes_available())
     return VK_ERROR_OUT_OF_DEVICE_MEMORY;
   VkMemoryAllocateInfo info{VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO, nullptr, bytes, type};
   VkResult result = vk_.vkAllocateMemory(device_, &info, nullptr, &memory);

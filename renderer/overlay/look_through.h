@@ -2,7 +2,7 @@
 // What the picture's pixels show through glass and in mirrors: the first surface behind them that scatters
 // light diffusely, where light that is stored on surfaces can lie. Each ray goes the way that most of the
 // light goes (shaders/overlay/look.comp); what is seen in rough metal or through frosted glass is no surface.
-// Shaders read it by shaders/overlay/asking.glsl.
+// Shaders read it by shaders/overlay/lookup_place.glsl.
 #include "overlay/canvas.h"
 #include "overlay/sight.h"
 

@@ -1,7 +1,8 @@
 #pragma once
 // Looks at what the picture's pixels show: rays through their centres, and the surfaces that these meet, as
 // paths meet them. The film cannot say: its depths are means over a pixel, which lie off the plane of a floor
-// seen at a slant, and its normals are those of normal maps. Shaders read it by shaders/overlay/asking.glsl.
+// seen at a slant, and its normals are those of normal maps. Shaders read it by
+// shaders/overlay/lookup_place.glsl.
 //
 // One point a pixel, or every second, third ... pixel both ways where the picture has more than
 // k_most_points.

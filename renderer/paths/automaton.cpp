@@ -350,7 +350,7 @@ bool matches(const std::string& expression, std::string_view word) { return Matc
 namespace {
 
 /// For each state the components (bits) that lookups bring, there or further on.
-std::vector<uint32_t> brought(const Automaton& automaton, const LookupRoutes& routes) {
+std::vector<uint32_t> looked_up_components(const Automaton& automaton, const LookupRoutes& routes) {
   std::vector<uint32_t> here(automaton.states.size(), 0);
   if (routes.component.empty()) return here;
   for (size_t s = 0; s < here.size(); ++s)
@@ -376,7 +376,7 @@ std::vector<uint32_t> brought(const Automaton& automaton, const LookupRoutes& ro
 std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const LookupRoutes& routes,
                            bool met) {
   std::vector<uint32_t> packed;
-  const std::vector<uint32_t> looked_up = brought(automaton, routes);
+  const std::vector<uint32_t> looked_up = looked_up_components(automaton, routes);
   // States without a D so far: reached from the eye by G and S alone.
   std::set<uint8_t> mirrors{0};
   for (bool changed = true; changed;) {
@@ -405,11 +405,11 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const L
   for (size_t i = 0; i < automaton.states.size(); ++i) {
     const auto& s = automaton.states[i];
     const uint32_t component = here[i] != 0 ? s.accept : k_component_count;
-    uint32_t left = (met ? further[i] : 0) | looked_up[i];
-    for (const uint8_t next : s.next) left |= further[next];
-    packed.push_back(s.next[0] | s.next[1] << 8 | s.next[2] << 16 | component << 24 | (left ? 1u << 27 : 0u) |
-                     (mirrors.count(static_cast<uint8_t>(i)) ? 1u << 28 : 0u) |
-                     (left ? static_cast<uint32_t>(std::countr_zero(left)) : 0u) << 29);
+    uint32_t further_on = (met ? further[i] : 0) | looked_up[i];
+    for (const uint8_t next : s.next) further_on |= further[next];
+    packed.push_back(s.next[0] | s.next[1] << 8 | s.next[2] << 16 | component << 24 |
+                     (further_on ? 1u << 27 : 0u) | (mirrors.count(static_cast<uint8_t>(i)) ? 1u << 28 : 0u) |
+                     (further_on ? static_cast<uint32_t>(std::countr_zero(further_on)) : 0u) << 29);
   }
   return packed;
 }
@@ -433,21 +433,22 @@ LookupRoutes routes_of(const Automaton& automaton, uint32_t enabled, uint32_t ca
     const uint8_t state = *open.begin();
     open.erase(open.begin());
     const uint8_t d = automaton.after(state, Event::diffuse), dd = automaton.after(d, Event::diffuse);
-    const std::array<uint8_t, k_part_count> brings{
+    const std::array<uint8_t, k_part_count> component_of{
         automaton.states[d].accept, automaton.states[dd].accept,
         automaton.states[automaton.after(dd, Event::diffuse)].accept,
         automaton.states[automaton.after(d, Event::specular)].accept};
     const auto within = [](uint8_t component, uint32_t set) {
       return component != k_no_component && (set >> component & 1u) != 0;
     };
-    const bool left = (within(brings[1], enabled) && !within(brings[1], cached)) ||
-                      (within(brings[2], enabled) && !within(brings[2], cached));
-    const bool any = within(brings[1], cached) || within(brings[2], cached);
-    const bool looks = any && !left;
+    const bool traced_on = (within(component_of[1], enabled) && !within(component_of[1], cached)) ||
+                           (within(component_of[2], enabled) && !within(component_of[2], cached));
+    const bool any = within(component_of[1], cached) || within(component_of[2], cached);
+    const bool looks = any && !traced_on;
     for (uint32_t p = 1; looks && p < k_part_count; ++p)
-      if (within(brings[p], cached)) routes.component[state][p] = brings[p], routes.parts |= 1u << p;
-    if (direct && looks && within(brings[0], enabled))
-      routes.component[state][0] = brings[0], routes.parts |= 1u;
+      if (within(component_of[p], cached))
+        routes.component[state][p] = component_of[p], routes.parts |= 1u << p;
+    if (direct && looks && within(component_of[0], enabled))
+      routes.component[state][0] = component_of[0], routes.parts |= 1u;
     for (const Event e : {Event::diffuse, Event::glossy, Event::specular}) {
       if (e == Event::diffuse && looks && !onward) continue;
       const uint8_t next = automaton.after(state, e);

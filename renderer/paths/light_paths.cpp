@@ -18,9 +18,9 @@ LightAutomaton reverse(const Automaton& automaton) {
     }
     return it->second;
   };
-  std::vector<uint8_t> straight;
-  for (const Automaton::State& s : automaton.states) straight.push_back(s.accept);
-  state_of(straight);
+  std::vector<uint8_t> unscattered;
+  for (const Automaton::State& s : automaton.states) unscattered.push_back(s.accept);
+  state_of(unscattered);
   for (size_t i = 0; i < out.states.size(); ++i)
     for (int e = 0; e < k_scatter_events; ++e) {
       // The event stands in front of all that the light path has met before.
@@ -57,7 +57,8 @@ std::vector<uint32_t> pack(const LightAutomaton& automaton, uint32_t parts, uint
   return packed;
 }
 
-LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_t own, uint32_t straight) {
+LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_t own,
+                           uint32_t directly_visible_by_other) {
   own &= enabled;
   const auto within = [](uint8_t component, uint32_t set) {
     return component != k_no_component && (set >> component & 1u) != 0;
@@ -73,24 +74,24 @@ LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_
     const auto [state, before] = open.front();
     open.pop_front();
     const uint8_t d = automaton.after(state, Event::diffuse), dd = automaton.after(d, Event::diffuse);
-    const std::array<uint8_t, k_part_count> brings{
+    const std::array<uint8_t, k_part_count> component{
         automaton.states[d].accept, automaton.states[dd].accept,
         automaton.states[automaton.after(dd, Event::diffuse)].accept,
         automaton.states[automaton.after(d, Event::specular)].accept};
     // What a further diffuse event leads to is somebody else's: that one's paths go on, and with them what
     // would be looked up here.
-    const bool passed_on = brings[1] != brings[2] && within(brings[1], enabled & ~own);
-    uint32_t looked = before;
+    const bool passed_on = component[1] != component[2] && within(component[1], enabled & ~own);
+    uint32_t looked_up = before;
     for (uint32_t p = 1; p < k_part_count; ++p) {
-      if (!within(brings[p], own & ~before) || (p == 2 && passed_on)) continue;
-      if (state == 0 && p == k_caustic_part && within(brings[p], straight)) continue;
-      routes.component[state][p] = brings[p];
+      if (!within(component[p], own & ~before) || (p == 2 && passed_on)) continue;
+      if (state == 0 && p == k_caustic_part && within(component[p], directly_visible_by_other)) continue;
+      routes.component[state][p] = component[p];
       routes.parts |= 1u << p;
-      looked |= 1u << brings[p];
+      looked_up |= 1u << component[p];
     }
     for (const Event e : {Event::diffuse, Event::glossy, Event::specular}) {
       const uint8_t next = automaton.after(state, e);
-      const uint32_t done = e == Event::diffuse ? looked : before;
+      const uint32_t done = e == Event::diffuse ? looked_up : before;
       const auto [it, fresh] = seen.emplace(next, done);
       if (fresh) open.emplace_back(next, done);
     }

@@ -37,7 +37,8 @@ std::vector<uint32_t> pack(const LightAutomaton& automaton, uint32_t parts, uint
 /// which goes on from there, tertiary light is looked up at the vertex that this leads to (final gathering).
 /// A path that has been looked up goes on for the components that are traced. `traced`: enabled but not own.
 /// `straight`: of own, the components of which light tracing brings what camera_routes() says.
-LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_t own, uint32_t straight = 0);
+LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_t own,
+                           uint32_t directly_visible_by_other = 0);
 
 /// Where paths from the lights are joined straight to the camera (light tracing): nothing is looked up, and
 /// of the `own` components paths from the eye no longer bring what light has done that has met mirrors and

@@ -88,9 +88,10 @@ std::vector<std::string> unreachable_light(const Plan& plan, const scene::Scene&
   std::vector<std::string> missing, settings, lines;
   for (const size_t c : {size_t{2}, k_caustic}) {
     const solvers::SolverInfo *solver = plan.solver[c], *rest = plan.rest[c];
-    if (!solver || (rest && rest->finds_points) || (solver->finds_points && !solver->straight_only)) continue;
+    if (!solver || (rest && rest->finds_points) || (solver->finds_points && !solver->directly_visible_only))
+      continue;
     const std::string name = paths::k_component_names[c];
-    if (solver->straight_only) {
+    if (solver->directly_visible_only) {
       lines.push_back(fmt::format(
           "{}: {} light of point, spot and directional lights is missing where it is seen in a mirror or "
           "through glass: {} connects to directly visible surfaces only; set components.{}={}+photons to "

@@ -15,8 +15,8 @@ namespace lucerna::plan {
 
 struct Plan {
   std::array<const solvers::SolverInfo*, paths::k_component_count> solver{};  ///< null: off
-  /// Where that brings only what the camera sees straight (SolverInfo::straight_only): who looks the rest up;
-  /// null: paths from the eye bring it.
+  /// Where that brings only what the camera sees straight (SolverInfo::directly_visible_only): who looks the
+  /// rest up; null: paths from the eye bring it.
   std::array<const solvers::SolverInfo*, paths::k_component_count> rest{};
   /// Components that are computed (bit i).
   uint32_t enabled() const;

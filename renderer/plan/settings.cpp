@@ -22,11 +22,11 @@ OptionInfo component_option(int c) {
     if (solver->serves[size_t(c)]) choices.push_back(solver->name);
   const std::string fallback = choices.front();
   // Who brings but what the camera sees straight leaves the rest to paths, or to somebody who looks it up.
-  for (const solvers::SolverInfo* straight : solvers::registered())
+  for (const solvers::SolverInfo* visible : solvers::registered())
     for (const solvers::SolverInfo* rest : solvers::registered())
-      if (straight->straight_only && straight->serves[size_t(c)] && rest->looked_up &&
+      if (visible->directly_visible_only && visible->serves[size_t(c)] && rest->looked_up &&
           rest->serves[size_t(c)])
-        choices.push_back(straight->name + "+" + rest->name);
+        choices.push_back(visible->name + "+" + rest->name);
   choices.push_back("off");
   const std::string key = std::string("components.") + paths::k_component_names[size_t(c)];
   const std::string help = fmt::format("Solver of the {} component: {}.", paths::k_component_names[size_t(c)],

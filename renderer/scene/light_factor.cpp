@@ -34,9 +34,9 @@ std::optional<vec3> quotient(const vec3& after, const vec3& before) {
 }
 
 /// The factors that lights tell of so far.
-class Told {
+class GroupFactors {
  public:
-  explicit Told(size_t groups) : factors_(groups) {}
+  explicit GroupFactors(size_t groups) : factors_(groups) {}
   /// False where it contradicts what others of the group have told.
   bool add(size_t group, const std::optional<vec3>& factor) {
     if (!factor || group >= factors_.size() || (factors_[group] && *factors_[group] != *factor)) return false;
@@ -55,18 +55,18 @@ class Told {
   std::vector<std::optional<vec3>> factors_;
 };
 
-bool tell_lamps(const Scene& before, const Scene& after, const LightGroups* groups, Told& told) {
+bool add_lamps(const Scene& before, const Scene& after, const LightGroups* groups, GroupFactors& found) {
   for (size_t i = 0; i < before.lights.size(); ++i) {
     const Light &l0 = before.lights[i], &l1 = after.lights[i];
     if (strength(l0) == vec3(0) && strength(l1) == vec3(0)) continue;
     const std::optional<vec3> own = quotient(strength(l1), strength(l0));
     if (own && !same_but_strength(l0, l1) && *own != vec3(0)) return false;
-    if (!told.add(groups ? groups->lamps[i] : 0, own)) return false;
+    if (!found.add(groups ? groups->lamps[i] : 0, own)) return false;
   }
   return true;
 }
 
-bool tell_surfaces(const Scene& before, const Scene& after, const LightGroups* groups, Told& told) {
+bool add_surfaces(const Scene& before, const Scene& after, const LightGroups* groups, GroupFactors& found) {
   for (size_t i = 0; i < before.instances.size(); ++i) {
     const auto& primitives = before.meshes[before.instances[i].mesh].primitives;
     for (size_t p = 0; p < primitives.size(); ++p) {
@@ -75,21 +75,21 @@ bool tell_surfaces(const Scene& before, const Scene& after, const LightGroups* g
       if (strength(m0) == vec3(0) && strength(m1) == vec3(0)) continue;
       if (!is_light(m0) && !is_light(m1)) continue;
       if (groups && groups->surfaces[i].empty()) return false;
-      if (!told.add(groups ? groups->surfaces[i][p] : 0, quotient(strength(m1), strength(m0)))) return false;
+      if (!found.add(groups ? groups->surfaces[i][p] : 0, quotient(strength(m1), strength(m0)))) return false;
     }
   }
   return true;
 }
 
-bool tell_environment(const Environment& before, const Environment& after, const LightGroups* groups,
-                      Told& told) {
+bool add_environment(const Environment& before, const Environment& after, const LightGroups* groups,
+                     GroupFactors& found) {
   if (!emits(before) && !emits(after)) return true;
   const bool same =
       before.image == after.image && before.radiance == after.radiance && before.rotation == after.rotation;
   if (!same || before.scale <= 0) return false;
   const vec3 factor(after.scale / before.scale);
-  return told.add(groups ? groups->sky : 0, factor) &&
-         (!groups || !groups->has_sun || told.add(groups->sun, factor));
+  return found.add(groups ? groups->sky : 0, factor) &&
+         (!groups || !groups->has_sun || found.add(groups->sun, factor));
 }
 
 }  // namespace
@@ -101,10 +101,10 @@ std::optional<std::vector<vec3>> light_factors(const Scene& before, const Scene&
                   after.materials.end(),
                   [](const Material& a, const Material& b) { return same_but_strength(a, b); }))
     return std::nullopt;
-  Told told(groups ? groups->groups.size() : 1);
-  const bool known = tell_lamps(before, after, groups, told) && tell_surfaces(before, after, groups, told) &&
-                     tell_environment(before.environment, after.environment, groups, told);
-  return known ? told.all() : std::nullopt;
+  GroupFactors found(groups ? groups->groups.size() : 1);
+  const bool known = add_lamps(before, after, groups, found) && add_surfaces(before, after, groups, found) &&
+                     add_environment(before.environment, after.environment, groups, found);
+  return known ? found.all() : std::nullopt;
 }
 
 bool is_multiplied(const Scene& before, const Scene& after, const LightGroups& groups,

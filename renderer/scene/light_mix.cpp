@@ -185,7 +185,7 @@ Scene mixed_scene(const Scene& scene, const LightGroups& groups, const LightMix&
   for (size_t i = 0; i < mixed.lights.size(); ++i) mixed.lights[i].intensity *= weights[groups.lamps[i]];
   mix_environment(mixed, groups, weights);
   std::vector<int> taken(scene.materials.size(), -1);  // group, by material
-  std::vector<bool> told(scene.materials.size());
+  std::vector<bool> warned(scene.materials.size());
   for (size_t i = 0; i < scene.instances.size(); ++i)
     for (size_t p = 0; p < groups.surfaces[i].size(); ++p) {
       const Id material = scene.meshes[scene.instances[i].mesh].primitives[p].material;
@@ -196,8 +196,9 @@ Scene mixed_scene(const Scene& scene, const LightGroups& groups, const LightMix&
         taken[material] = group;
         m.emission *= weights[size_t(group)];
         if (m.unlit) m.base_color *= vec4(weights[size_t(group)], 1);
-      } else if (messages && !told[material] && weights[size_t(taken[material])] != weights[size_t(group)]) {
-        told[material] = true;
+      } else if (messages && !warned[material] &&
+                 weights[size_t(taken[material])] != weights[size_t(group)]) {
+        warned[material] = true;
         messages->push_back(fmt::format(
             "material '{}' shines in the groups '{}' and '{}', which are mixed apart: it takes the first's "
             "mix",

@@ -32,7 +32,7 @@ bool Display::take(gpu::Stream& stream, const film::Film& film) {
   bool taken = false;
   ++version_;
   if (plain_ && film::Preview::fits(device_.info().limits, film.width(), film.height())) try {
-      preview_.take(stream, film, plain_->exposure, plain_->camera);
+      preview_.take(stream, film, plain_->shown, plain_->camera);
       taken = true;
     } catch (const Error&) {
       preview_.forget();  // no memory: the next picture begins with nothing
@@ -43,7 +43,22 @@ bool Display::take(gpu::Stream& stream, const film::Film& film) {
 
 void Display::plain(const Engine& engine, const PictureView& view, const film::View& shown) {
   shares_ = {};
-  plain_ = {preview_camera(engine.frame(view, view.width, view.height)), shown.exposure};
+  plain_ = {preview_camera(engine.frame(view, view.width, view.height)), shown};
+}
+
+void Display::show_filtered(gpu::Stream& stream, const film::Film& film, const film::FilterError& error,
+                            const film::View& shown) {
+  filtered_error_ = film::ShownError{error.tile_median, error.tile_worst_tenth};
+  if (!film::Preview::fits(device_.info().limits, film.width(), film.height())) return;
+  try {
+    filtered_error_ = preview_.show_filtered(stream, film, error.luminances, error.pixels, shown);
+  } catch (const Error&) {
+    stream.discard();  // no memory: the filter's own estimate stays
+  }
+}
+
+void Display::judge_filtered(gpu::Stream& stream, const film::Film& film) {
+  if (const auto error = preview_.judge_filtered(stream, film)) filtered_error_ = error;
 }
 
 void Display::warm(gpu::Stream& stream, const film::Film& film) {

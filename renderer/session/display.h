@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "film/filter/filter_error.h"
 #include "film/preview.h"
 #include "scene/change.h"
 #include "session/draft_plan.h"
@@ -53,6 +54,12 @@ class Display {
   uint64_t version() const { return version_; }
   /// Of the picture developed last.
   film::PreviewShares shares() const { return shares_; }
+  /// The film has been filtered, and that is shown.
+  void show_filtered(gpu::Stream& stream, const film::Film& film, const film::FilterError& error,
+                     const film::View& shown);
+  /// The error of that picture is estimated again, by the samples that the film has got since.
+  void judge_filtered(gpu::Stream& stream, const film::Film& film);
+  std::optional<film::ShownError> filtered_error() const { return filtered_error_; }
   /// It was developed without a preview.
   void plain(const Engine& engine, const PictureView& view, const film::View& shown);
 
@@ -63,12 +70,13 @@ class Display {
   DraftPlan plan_;
   PixelSight sight_;
   film::PreviewShares shares_;
+  std::optional<film::ShownError> filtered_error_;
   bool developed_ = false, warm_ = false;
   uint64_t version_ = 0;
   /// How the picture was shown that is not a preview.
   struct Plain {
     film::PreviewCamera camera;
-    float exposure = 1;
+    film::View shown;
   };
   std::optional<Plain> plain_;
 };

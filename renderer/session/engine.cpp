@@ -25,7 +25,7 @@ void merge(paths::LookupRoutes& into, const paths::LookupRoutes& more) {
 }
 
 /// Components (bits) that lookups bring.
-uint32_t brought(const paths::LookupRoutes& routes) {
+uint32_t looked_up_components(const paths::LookupRoutes& routes) {
   uint32_t bits = 0;
   for (const auto& by_part : routes.component)
     for (const uint8_t component : by_part)
@@ -79,19 +79,19 @@ void to_paths(plan::Plan& plan, uint32_t components) {
 solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
                       const solvers::SolverInfo& solver, const plan::Settings& settings,
                       const upload::Effects& effects) {
-  uint32_t lent = 0, borrowing = 0;
+  uint32_t provided = 0, consuming = 0;
   for (const solvers::SolverInfo* other : plan.at_work()) {
     if (other == &solver) continue;
-    if (other->lends) lent |= plan.components_of(*other);
-    if (other->borrows) borrowing |= plan.components_of(*other);
+    if (other->provides_lookups) provided |= plan.components_of(*other);
+    if (other->consumes_lookups) consuming |= plan.components_of(*other);
   }
   return {.automaton = automaton,
           .settings = settings,
           .enabled = plan.enabled(),
           .own = plan.components_of(solver),
-          .straight = plan.rests_of(solver),
-          .lent = lent,
-          .borrowing = borrowing,
+          .directly_visible_by_other = plan.rests_of(solver),
+          .provided = provided,
+          .consuming = consuming,
           .effects = effects};
 }
 
@@ -164,13 +164,13 @@ bool Engine::serves(const plan::Plan& plan, const plan::Settings& settings, cons
 void Engine::adopt(const Engine& before, const scene::Changes& changes) {
   for (const auto& solver : solvers_)
     if (const solvers::Solver* old = before.find(solver->info().name);
-        old && !solvers::spoiled_by(solver->info(), changes).places)
+        old && !solvers::invalidated_by(solver->info(), changes).places)
       solver->adopt(*wavefront_, *old);
 }
 
 void Engine::adopt(const solvers::Solver& before, const scene::Changes& since) {
   solvers::Solver* own = find(before.info().name);
-  if (!own || solvers::spoiled_by(own->info(), since).places) return;
+  if (!own || solvers::invalidated_by(own->info(), since).places) return;
   own->adopt(*wavefront_, before);
   missed_[own] = since;
 }
@@ -181,12 +181,12 @@ void Engine::begin(const PictureView& picture, const scene::Changes& changes,
   route(picture.settings, picture.world.flat.effects);
   for (const auto& solver : solvers_)
     with(*solver, picture, [&](solvers::Picture own) {
-      solvers::Spoils spoils = solvers::spoiled_by(solver->info(), changes);
+      solvers::Invalidation invalidated = solvers::invalidated_by(solver->info(), changes);
       if (const auto missed = missed_.find(solver.get()); missed != missed_.end())
-        spoils |= solvers::spoiled_by(solver->info(), missed->second);
+        invalidated |= solvers::invalidated_by(solver->info(), missed->second);
       else
         own.light_factors = light_factors;
-      solver->begin(own, spoils);
+      solver->begin(own, invalidated);
     });
   missed_.clear();
   // At the beginning nothing is learned, of the world that the engine was made for.
@@ -272,7 +272,7 @@ shared::Frame Engine::pilot_frame(const PictureView& picture, uint32_t width, ui
   plan::Plan all = plan_;
   for (size_t c = 0; c < all.solver.size(); ++c) all.solver[c] = solvers::find("path"), all.rest[c] = nullptr;
   const solvers::Routing traced = routing(all, picture.settings, picture.world.flat.effects);
-  shared::Frame frame = frame_of({.here = traced, .left = traced}, picture, width, height);
+  shared::Frame frame = frame_of({.here = traced, .delegated = traced}, picture, width, height);
   frame.seed ^= 0x6c6c6c6cu;  // samples that no picture has
   frame.max_depth = std::min(frame.max_depth, shared::k_learned_vertices);
   return frame;
@@ -285,10 +285,10 @@ bool Engine::waits() const {
 
 bool Engine::prepare(solvers::Solver& solver, const PictureView& picture,
                      const std::function<bool()>& cancel) {
-  const uint32_t before = solver.left();
+  const uint32_t before = solver.delegated_components();
   const bool went = with(
       solver, picture, [&](const solvers::Picture& own) { return solver.prepare(*wavefront_, own, cancel); });
-  if (solver.left() != before) {
+  if (solver.delegated_components() != before) {
     route(picture.settings, picture.world.flat.effects);
     wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
   }
@@ -297,18 +297,18 @@ bool Engine::prepare(solvers::Solver& solver, const PictureView& picture,
 
 void Engine::route(const plan::Settings& settings, const upload::Effects& effects) {
   plan::Plan here = plan_;
-  for (const auto& solver : solvers_) to_paths(here, solver->left());
+  for (const auto& solver : solvers_) to_paths(here, solver->delegated_components());
   routes_ = routes_of(here, settings, effects);
 }
 
 Engine::Routes Engine::routes_of(const plan::Plan& here, const plan::Settings& settings,
                                  const upload::Effects& effects) const {
-  Routes routes{.here = routing(here, settings, effects), .left = {}};
-  plan::Plan left = here;
+  Routes routes{.here = routing(here, settings, effects), .delegated = {}};
+  plan::Plan delegated = here;
   for (const solvers::SolverInfo* info : here.at_work())
-    if (const auto leaves = solvers::type_of(*info).leaves)
-      to_paths(left, leaves(task_of(automaton_, here, *info, settings, effects)));
-  if (left.solver != here.solver) routes.left = routing(left, settings, effects);
+    if (const auto delegable_components = solvers::type_of(*info).delegable_components)
+      to_paths(delegated, delegable_components(task_of(automaton_, here, *info, settings, effects)));
+  if (delegated.solver != here.solver) routes.delegated = routing(delegated, settings, effects);
   return routes;
 }
 
@@ -323,10 +323,10 @@ solvers::Routing Engine::routing(const plan::Plan& plan, const plan::Settings& s
     const auto routing_of = solvers::type_of(*info).routing;
     if (!routing_of) continue;
     const solvers::Routing own = routing_of(task_of(automaton_, plan, *info, settings, effects));
-    claim(by, *info, brought(own.lookups) & ~own.through);
+    claim(by, *info, looked_up_components(own.lookups) & ~own.through);
     merge(all.lookups, own.lookups);
     all.fallback |= own.fallback;
-    always |= brought(own.lookups) & ~own.fallback;
+    always |= looked_up_components(own.lookups) & ~own.fallback;
     if (!own.gather.component.empty()) merge(all.gather, own.gather);
   }
   // Paths that one lookup has left alone still find another's.
@@ -344,7 +344,7 @@ shared::Frame Engine::draft_frame(const PictureView& picture, uint32_t width, ui
   for (const auto& solver : solvers_) {
     const uint32_t missing =
         with(*solver, picture, [&](const solvers::Picture& own) { return solver->missing(own); });
-    to_paths(here, solver->left() | missing);
+    to_paths(here, solver->delegated_components() | missing);
     all_missing |= missing;
   }
   if (all_missing == 0) return frame(picture, width, height);
@@ -362,7 +362,9 @@ shared::Frame Engine::frame_of(const Routes& routes, const PictureView& picture,
                              .height = height,
                              .frame = {}};
   shared::Frame frame = own.frame_for(routes.here, routes.here.lookups.traced);
-  if (routes.left) transport::set_left(frame, own.frame_for(*routes.left, routes.left->lookups.traced));
+  if (routes.delegated)
+    transport::set_delegated_tables(frame,
+                                    own.frame_for(*routes.delegated, routes.delegated->lookups.traced));
   return frame;
 }
 

@@ -115,7 +115,8 @@ class Engine {
                            const upload::Effects& effects) const;
   struct Routes {
     solvers::Routing here;
-    std::optional<solvers::Routing> left;  ///< ... where solvers leave light to paths (SolverType::leaves)
+    std::optional<solvers::Routing>
+        delegated;  ///< ... where solvers leave light to paths (SolverType::delegable_components)
   };
   Routes routes_of(const plan::Plan& here, const plan::Settings& settings,
                    const upload::Effects& effects) const;

@@ -10,7 +10,7 @@ void KeptSolvers::replace(Engine& before, const Engine& after, const scene::Chan
   std::erase_if(kept_, [&](const Kept& k) { return after.find(k.solver->info().name) != nullptr; });
   for (std::unique_ptr<solvers::Solver>& solver : before.release_solvers()) {
     const solvers::SolverInfo& info = solver->info();
-    if (!info.file || after.find(info.name) || solvers::spoiled_by(info, changes).places) continue;
+    if (!info.file || after.find(info.name) || solvers::invalidated_by(info, changes).places) continue;
     std::erase_if(kept_, [&](const Kept& k) { return &k.solver->info() == &info; });
     kept_.push_back({std::move(solver), {}});
   }
@@ -18,7 +18,8 @@ void KeptSolvers::replace(Engine& before, const Engine& after, const scene::Chan
 
 void KeptSolvers::note(const scene::Changes& changes) {
   for (Kept& k : kept_) k.since |= changes;
-  std::erase_if(kept_, [](const Kept& k) { return solvers::spoiled_by(k.solver->info(), k.since).places; });
+  std::erase_if(kept_,
+                [](const Kept& k) { return solvers::invalidated_by(k.solver->info(), k.since).places; });
 }
 
 void KeptSolvers::hand_to(Engine& engine, const scene::Changes& changes) const {

@@ -35,7 +35,8 @@ std::string obstacle(const plan::Plan& plan, const plan::Settings& settings) {
 /// ... because of how many there are.
 std::string obstacle(const plan::Settings& settings, const scene::LightGroups& groups, uint64_t pixels,
                      uint64_t memory) {
-  const uint64_t bytes = pixels * film::sum_bytes(uint32_t(groups.groups.size()), film::GroupsKept::in_short);
+  const uint64_t bytes =
+      pixels * film::sum_bytes(uint32_t(groups.groups.size()), film::GroupStorage::compact);
   if (settings.text("relight.enabled") == "auto" && bytes > memory / k_share)
     return fmt::format("{} groups would take {} MiB; relight.enabled=compact takes them",
                        groups.groups.size(), bytes >> 20);
@@ -73,9 +74,9 @@ Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
   const bool one = r.groups->groups.size() == 1;
   if (r.why_not.empty() && !one) r.why_not = obstacle(plan, settings);
   if (r.why_not.empty() && !one) r.why_not = obstacle(settings, *r.groups, pixels, memory);
-  r.apart = r.why_not.empty();
-  if (settings.text("relight.enabled") == "on") r.kept = film::GroupsKept::by_component;
-  if (r.apart) {
+  r.separate = r.why_not.empty();
+  if (settings.text("relight.enabled") == "on") r.kept = film::GroupStorage::by_component;
+  if (r.separate) {
     r.weights = scene::mix_weights(mix, *r.groups);
   } else if (!scene::is_neutral(mix, *r.groups)) {
     r.lit = std::make_shared<const scene::Scene>(scene::mixed_scene(*scene, *r.groups, mix, &r.messages));
@@ -95,7 +96,7 @@ void weigh(Relight& relight, const scene::LightMix& mix) {
 
 bool write_mix(Relight& relight, std::shared_ptr<const scene::Scene> scene, const scene::Scene& lit,
                const plan::Settings& settings, const std::string& text) {
-  if (!relight.apart || !relight.groups) return false;
+  if (!relight.separate || !relight.groups) return false;
   const scene::LightGroups groups = scene::group_lights(
       *scene, scene::parse_group_rules(settings.text("relight.groups")), *relight.scene, *relight.groups);
   if (groups != *relight.groups) return false;
@@ -117,7 +118,7 @@ bool write_mix(Relight& relight, std::shared_ptr<const scene::Scene> scene, cons
 }
 
 void keep_written(Relight& relight, const Relight& before) {
-  if (before.written.empty() || !relight.apart || relight.scene != before.scene ||
+  if (before.written.empty() || !relight.separate || relight.scene != before.scene ||
       *relight.groups != *before.groups)
     return;
   relight.written = before.written, relight.baked = before.baked, relight.lit = before.lit;

@@ -13,13 +13,13 @@
 namespace lucerna::session {
 
 struct Relight {
-  std::shared_ptr<const scene::LightGroups> groups;    ///< null where nobody asks for them
-  std::shared_ptr<const scene::Scene> scene;           ///< that they are of
-  bool apart = false;                                  ///< a mix costs no ray
-  film::GroupsKept kept = film::GroupsKept::in_short;  ///< how, where it is
-  std::string why_not;                                 ///< where it is not: the reason, for people
-  std::vector<vec3> weights;                           ///< by group
-  std::shared_ptr<const scene::Scene> lit;             ///< what is to be traced
+  std::shared_ptr<const scene::LightGroups> groups;       ///< null where nobody asks for them
+  std::shared_ptr<const scene::Scene> scene;              ///< that they are of
+  bool separate = false;                                  ///< a mix costs no ray
+  film::GroupStorage kept = film::GroupStorage::compact;  ///< how, where it is
+  std::string why_not;                                    ///< where it is not: the reason, for people
+  std::vector<vec3> weights;                              ///< by group
+  std::shared_ptr<const scene::Scene> lit;                ///< what is to be traced
   std::string baked;  ///< what of the settings `lit` was made with; "": it is the scene itself
   /// By group, what the scene's lights are of those of `lit`, which a mix was written into; none: the same.
   /// Part of the weights.

@@ -69,7 +69,7 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
   const plan::Plan plan = plan::make_plan(settings);
   Relight relight = make_relight(plan, settings, scene, width_, height_);
   World world = make_world(*device_, std::move(scene), relight.lit, settings.text("tracer"),
-                           wanted_apart(plan, settings, relight), progress);
+                           wanted_separation(plan, settings, relight), progress);
   report_progress(progress, 0.9f, "compiling kernels");
   std::unique_ptr<Engine> engine = make_engine(world, plan, settings, changes);
   Films films =
@@ -81,7 +81,7 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
   settings_ = std::move(settings);
   camera_ = std::move(camera);
   take(std::move(relight));
-  heed_settings();
+  notify_settings_changed();
   restart(changes);
 }
 
@@ -94,14 +94,14 @@ Relight Renderer::make_relight(const plan::Plan& plan, const plan::Settings& set
   return relight;
 }
 
-upload::LightsApart Renderer::wanted_apart(const plan::Plan& plan, const plan::Settings& settings,
-                                           const Relight& relight) const {
+upload::LightSeparation Renderer::wanted_separation(const plan::Plan& plan, const plan::Settings& settings,
+                                                    const Relight& relight) const {
   float threshold = wanted_sun_threshold(automaton_, plan, settings);
   // Of one group the film's own sums are all there is to keep.
-  const bool several = relight.apart && relight.groups->groups.size() > 1;
+  const bool several = relight.separate && relight.groups->groups.size() > 1;
   if (several && relight.groups->has_sun) threshold = scene::k_sun_threshold;
   return {threshold, several ? relight.groups : nullptr,
-          !several || relight.kept == film::GroupsKept::by_component};
+          !several || relight.kept == film::GroupStorage::by_component};
 }
 
 void Renderer::take(Relight relight) {
@@ -168,7 +168,7 @@ void Renderer::reload_shaders() {
   use(std::move(engine), scene::Change::shaders);
   display_ = std::move(display), shown_ = {};
   window_filter_.reset();
-  heed_settings();
+  notify_settings_changed();
   restart(scene::Change::shaders);
 }
 
@@ -176,15 +176,15 @@ uint32_t Renderer::enabled_components() const { return engine_ ? engine_->plan()
 
 namespace {
 
-film::GroupsKept kept_of(const upload::Effects& effects) {
-  return effects.group_components ? film::GroupsKept::by_component : film::GroupsKept::in_short;
+film::GroupStorage kept_of(const upload::Effects& effects) {
+  return effects.group_components ? film::GroupStorage::by_component : film::GroupStorage::compact;
 }
 
 }  // namespace
 
 bool Renderer::keeps(const film::Film& film, const upload::Effects& effects) {
   return film.groups() == effects.light_groups &&
-         (film.groups() == 1 || film.groups_kept() == kept_of(effects));
+         (film.groups() == 1 || film.group_storage() == kept_of(effects));
 }
 
 Renderer::Films Renderer::make_films(uint32_t width, uint32_t height, const upload::Effects& effects) const {
@@ -318,9 +318,9 @@ std::vector<film::TileError> Renderer::tile_errors() const {
   return tiles;
 }
 
-void Renderer::heed_settings() {
+void Renderer::notify_settings_changed() {
   for (const auto& solver : engine_->solvers()) {
-    solver->heed(settings_, options_.interactive);
+    solver->on_settings_changed(settings_, options_.interactive);
     solver->look_at(looked_at_);
   }
 }
@@ -331,7 +331,7 @@ void Renderer::apply_settings() {
   for (const auto& [key, value] : settings_.all())
     if (applied_[key] != value) changes.settings.insert(key);
   const auto changed = [&](const char* key) { return changes.settings.contains(key); };
-  if (relight_.apart && changes.settings == std::set<std::string>{"relight.mix"}) {
+  if (relight_.separate && changes.settings == std::set<std::string>{"relight.mix"}) {
     try {
       Relight other = relight_;
       session::remix(other, settings_.text("relight.mix"));
@@ -364,13 +364,13 @@ void Renderer::apply_settings() {
       return;
     }
     again |= apply_plan(changes);
-    remixed = relight_.apart && changed("relight.mix");
+    remixed = relight_.separate && changed("relight.mix");
     camera_ = camera;
   } catch (...) {
     for (const std::string& key : changes.settings) settings_.set(key, applied_[key]);
     throw;
   }
-  heed_settings();
+  notify_settings_changed();
   kept_.note(changes);
   if (changed("samples") && !again) sampling_.uniform().set_samples(uint32_t(settings_.integer("samples")));
   if (changed("sampling.mode") && !again)
@@ -387,7 +387,7 @@ void Renderer::apply_settings() {
 bool Renderer::apply_plan(scene::Changes& changes) {
   const plan::Plan plan = plan::make_plan(settings_);
   Relight relight = make_relight(plan, settings_, world_.scene, width_, height_);
-  const upload::LightsApart apart = wanted_apart(plan, settings_, relight);
+  const upload::LightSeparation separation = wanted_separation(plan, settings_, relight);
   // Where light is not kept apart another mix is another light of all lamps.
   const bool relit = relight.baked != relight_.baked;
   if (relit)
@@ -395,26 +395,26 @@ bool Renderer::apply_plan(scene::Changes& changes) {
       changes.edits.insert(c);
   if (!relit) relight.lit = world_.lit;
   std::optional<WorldEdit> edit;
-  if (relit || apart != upload::lights_apart(world_.flat))
-    edit.emplace(*device_, world_, world_.scene, relight.lit, apart, relit);
+  if (relit || separation != upload::light_separation(world_.flat))
+    edit.emplace(*device_, world_, world_.scene, relight.lit, separation, relit);
   const auto changed = [&](const char* key) { return changes.settings.contains(key); };
-  bool anew = !engine_->serves(plan, settings_, world_) || changed("sampling.coherent") ||
-              changed("film.background") ||
-              (changed("sampling.tile") && settings_.boolean("sampling.coherent"));
+  bool rebuild = !engine_->serves(plan, settings_, world_) || changed("sampling.coherent") ||
+                 changed("film.background") ||
+                 (changed("sampling.tile") && settings_.boolean("sampling.coherent"));
   for (const std::string& key : changes.settings)
     if (const solvers::SolverInfo* owner = solvers::owner_of(key); owner && engine_->find(owner->name))
-      anew |= plan::find_option(key)->restarts;
+      rebuild |= plan::find_option(key)->restarts;
   Films films =
       keeps(*film_, world_.flat.effects) ? Films{} : make_films(width_, height_, world_.flat.effects);
-  if (anew)
+  if (rebuild)
     use(make_engine(world_, plan, settings_, changes), changes);
   else
     engine_->set_plan(plan);
   if (films.picture) use(std::move(films));
   if (edit) edit->keep();
-  if (edit && !anew) engine_->wavefront().rebind(*world_.device);
+  if (edit && !rebuild) engine_->wavefront().rebind(*world_.device);
   take(std::move(relight));
-  return anew || relit;
+  return rebuild || relit;
 }
 
 void Renderer::set_size(uint32_t width, uint32_t height) {
@@ -423,16 +423,16 @@ void Renderer::set_size(uint32_t width, uint32_t height) {
   if (engine_) {
     // Larger pictures may leave no memory for light by groups.
     Relight relight = make_relight(engine_->plan(), settings_, world_.scene, width, height);
-    const upload::LightsApart apart = wanted_apart(engine_->plan(), settings_, relight);
+    const upload::LightSeparation separation = wanted_separation(engine_->plan(), settings_, relight);
     std::optional<WorldEdit> edit;
     const bool relit = relight.baked != relight_.baked;
     if (!relit) relight.lit = world_.lit;
-    if (relit || apart != upload::lights_apart(world_.flat))
-      edit.emplace(*device_, world_, world_.scene, relight.lit, apart, relit);
+    if (relit || separation != upload::light_separation(world_.flat))
+      edit.emplace(*device_, world_, world_.scene, relight.lit, separation, relit);
     Films films = make_films(width, height, world_.flat.effects);
     if (edit && !engine_->serves(engine_->plan(), settings_, world_)) {
       use(make_engine(world_, engine_->plan(), settings_, scene::Change::size), scene::Change::size);
-      heed_settings();
+      notify_settings_changed();
     } else if (edit) {
       engine_->wavefront().rebind(*world_.device);
     }
@@ -466,6 +466,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   engine_->begin_samples(picture_view());
   const bool prepares = preparing(), learns = engine_->learns(samples());
   const bool progress = render_item(cancel);
+  judge_filtered();
   render_s_ += timer.seconds();
   if (display_) display_->plan().worked(timer.seconds());
   if (display_ && samples() > 0) {
@@ -491,10 +492,10 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
   }
   // As soon as every pixel has a sample, so that the picture does not wait, and before errors are told.
   if (solvers::Solver* solver = samples() > 0 ? engine_->owing_errors(*film_) : nullptr) {
-    const bool anew = errors_restart_ != restarts_ || errors_of_ != solver;
+    const bool restarted = errors_restart_ != restarts_ || errors_of_ != solver;
     errors_restart_ = restarts_, errors_of_ = solver;
     return engine_->with(*solver, view, [&](const solvers::Picture& picture) {
-      return solver->estimate_errors(wavefront, *film_, picture, anew, cancel);
+      return solver->estimate_errors(wavefront, *film_, picture, restarted, cancel);
     });
   }
   if (const std::optional<bool> went = refine(cancel)) return *went;
@@ -576,7 +577,9 @@ bool Renderer::draw_draft(const std::function<bool()>& cancel) {
   if (std::exchange(draft_preparing_, prepares) && !prepares) display_->light_changed();
   const bool filled = samples() > 0;
   const bool sight = !filled && previewed(view()) && display_->sight_wanted(*engine_, picture_view());
-  const DraftPlan::Next what = display_->plan().next(prepares, filled, sight, display_->shares().error);
+  const DraftPlan::Next what = display_->plan().next(
+      prepares, filled, sight,
+      display_->shares().error ? std::optional(display_->shares().error->median) : std::nullopt);
   if (what == DraftPlan::Next::nothing) return false;
   clock_.go();
   const Timer timer;

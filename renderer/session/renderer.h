@@ -209,8 +209,8 @@ class Renderer {
   bool preparing() const { return engine_ && engine_->unready(); }
   /// ... and waits for a command.
   bool waits() const { return engine_ && engine_->waits(); }
-  /// That is to end as soon as it can, with what there is (solvers::Solver::make_do).
-  void make_do();
+  /// That is to end as soon as it can, with what there is (solvers::Solver::finish_early).
+  void finish_early();
   /// One of SolverInfo::commands; nothing where the solver is not at work.
   void solver_command(const std::string& name, const std::string& command);
   /// Writes the work of a solver (SolverInfo::file), once it is ready. Throws Error located at `file`: the
@@ -267,8 +267,8 @@ class Renderer {
   Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
                        std::shared_ptr<const scene::Scene> scene, uint32_t width, uint32_t height) const;
   /// How lights are to be told apart.
-  upload::LightsApart wanted_apart(const plan::Plan& plan, const plan::Settings& settings,
-                                   const Relight& relight) const;
+  upload::LightSeparation wanted_separation(const plan::Plan& plan, const plan::Settings& settings,
+                                            const Relight& relight) const;
   /// Takes it up, and tells what is new of its messages.
   void take(Relight relight);
   /// The film's picture follows another mix.
@@ -299,6 +299,7 @@ class Renderer {
   FilterJob filter_job() const;
   /// A piece of the window's filtered picture. When there is no memory for it there will be none.
   void filter_piece(const std::function<bool()>& cancel);
+  void judge_filtered();
   /// The window's filtered picture, where that view shows it; null: there is none.
   const Filtered* shown_filtered(const film::View& view) const;
   void forget_filtered();
@@ -324,7 +325,7 @@ class Renderer {
   /// Takes up the plan that the settings make, with new kernels and solvers where it takes any: then true. On
   /// failure throws Error and everything stays.
   bool apply_plan(scene::Changes& changes);
-  void heed_settings();  ///< tells the solvers
+  void notify_settings_changed();  ///< tells the solvers
   bool render_item(const std::function<bool()>& cancel);
   /// Where further work on what paths read takes more from the picture's squared error than as many further
   /// samples do: a piece of it, and whether that was done.
@@ -356,6 +357,7 @@ class Renderer {
   std::unique_ptr<PictureFilter> window_filter_;  ///< made when it is called for
   std::optional<Filtered> shown_filtered_;        ///< what it has made last of the picture
   bool filter_fails_ = false, filter_news_ = false;
+  uint64_t judged_paths_ = 0;                 ///< when the error of shown_filtered_ was estimated last
   double filter_s_ = 0, filter_piece_s_ = 0;  ///< that filtering took: last, and up to now
   double filtered_at_s_ = 0;                  ///< render_s_ then
   std::unique_ptr<Display> display_;          ///< null in batch

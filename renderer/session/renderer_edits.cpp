@@ -112,23 +112,23 @@ void Renderer::set_lights(const LightsEdit& e) {
 
 void Renderer::edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& changes, bool factors) {
   Relight relight = make_relight(engine_->plan(), settings_, edited, width_, height_);
-  const bool by_group = relight.apart && relight_.apart && *relight.groups == *relight_.groups;
+  const bool by_group = relight.separate && relight_.separate && *relight.groups == *relight_.groups;
   const std::optional<std::vector<vec3>> light =
       scene::light_factors(*world_.lit, *relight.lit, by_group ? relight.groups.get() : nullptr);
   // Of materials nothing but what they emit is another.
   const scene::Changes what = light && factors ? scene::Changes(scene::Change::lamp) : changes;
   WorldEdit trial(*device_, world_, std::move(edited), relight.lit,
-                  wanted_apart(engine_->plan(), settings_, relight),
+                  wanted_separation(engine_->plan(), settings_, relight),
                   factors || relight.baked != relight_.baked);
-  const bool anew = !engine_->serves(engine_->plan(), settings_, world_);
+  const bool rebuild = !engine_->serves(engine_->plan(), settings_, world_);
   Films films =
       keeps(*film_, world_.flat.effects) ? Films{} : make_films(width_, height_, world_.flat.effects);
-  if (anew) use(make_engine(world_, engine_->plan(), settings_, what), what);
+  if (rebuild) use(make_engine(world_, engine_->plan(), settings_, what), what);
   trial.keep();
   if (films.picture) use(std::move(films));
   take(std::move(relight));
-  if (anew)
-    heed_settings();
+  if (rebuild)
+    notify_settings_changed();
   else
     engine_->wavefront().rebind(*world_.device);
   restart(what, light);

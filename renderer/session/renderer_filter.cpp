@@ -14,6 +14,8 @@ constexpr uint32_t k_first_samples = 8;
 // of tracing that filtering it has taken.
 constexpr uint64_t k_more_samples = 2;
 constexpr double k_more_seconds = 3;
+// The filtered picture's error is estimated again when there are so many times the samples.
+constexpr double k_more_to_judge = 1.2;
 
 }  // namespace
 
@@ -82,8 +84,20 @@ void Renderer::filter_piece(const std::function<bool()>& cancel) {
   filter_piece_s_ += timer.seconds();
   if (window_filter_->working()) return;
   shown_filtered_ = window_filter_->take();
+  engine_->wavefront().uncounted([&] {
+    display_->show_filtered(engine_->wavefront().stream(), *film_, shown_filtered_->error, view());
+  });
+  judged_paths_ = shown_filtered_->paths;
   filter_s_ = filter_piece_s_, filtered_at_s_ = render_s_;
   filter_news_ = true;
+}
+
+void Renderer::judge_filtered() {
+  if (!shown_filtered_ || !display_ || mix_pending_) return;
+  const double pixels = double(film_->width()) * film_->height(), paths = double(stats().paths);
+  if (paths < k_more_to_judge * double(judged_paths_) || paths < double(judged_paths_) + pixels) return;
+  engine_->wavefront().uncounted([&] { display_->judge_filtered(engine_->wavefront().stream(), *film_); });
+  judged_paths_ = stats().paths;
 }
 
 void Renderer::forget_filtered() {
@@ -94,8 +108,8 @@ void Renderer::forget_filtered() {
 
 film::PreviewShares Renderer::preview_shares() const {
   if (!display_) return {};
-  if (const Filtered* f = engine_ && film_ ? shown_filtered(view()) : nullptr)
-    return {.stale = 0, .filtered = 1, .error = f->error.tile_median};
+  if (engine_ && film_ && shown_filtered(view()))
+    return {.stale = 0, .filtered = 1, .error = display_->filtered_error()};
   return display_->shares();
 }
 

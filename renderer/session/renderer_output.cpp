@@ -193,7 +193,7 @@ void add_group_layers(film::FilmImage& out, const film::Film& film, const Religh
     std::replace(name.begin() + 6, name.end(), '.', '_');
     // Which may make it another group's.
     while (!used.insert(name).second) name += '_';
-    if (film.in_short()) {
+    if (film.is_compact()) {
       add_light_layer(out, name, film.read_group_sum(g), relight.weights[g]);
       continue;
     }
@@ -219,7 +219,7 @@ film::FilmImage Renderer::film_image() {
   for (int c = 0; c < film::k_components; ++c)
     film::add_plane(out, std::string(paths::k_component_names[c]) + ".", "RGB", image.components[c]);
   if (settings_.boolean("relight.layers")) {
-    if (relight_.apart)
+    if (relight_.separate)
       add_group_layers(out, *film_, relight_);
     else
       log::warning("relight.layers: the EXR has no layers of groups of lights: {}", relight_.why_not);

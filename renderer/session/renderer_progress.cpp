@@ -64,8 +64,8 @@ void Renderer::note_progress(bool at_once) {
   entry.samples = double(s.paths) / (double(film_->width()) * film_->height());
   entry.component_s[0] = entry.device_s;
   for (int c = 0; c < paths::k_component_count; ++c) entry.component_s[c + 1] = 1e-3 * s.component_ms[c];
-  entry.told = samples() >= 2;
-  if (entry.told) {
+  entry.has_error = samples() >= 2;
+  if (entry.has_error) {
     const film::ImageError error = image_error();
     for (int k = 0; k < stats::k_layers; ++k)
       entry.error[k] = error.seen(k), entry.of_mean.error[k] = error.relative(k);

@@ -136,10 +136,10 @@ void Renderer::solver_load(const std::string& name, const std::filesystem::path&
   restart(scene::Changes{});
 }
 
-void Renderer::make_do() {
+void Renderer::finish_early() {
   if (!engine_) return;
   for (const auto& solver : engine_->solvers())
-    if (!solver->ready()) solver->make_do();
+    if (!solver->ready()) solver->finish_early();
 }
 
 }  // namespace lucerna::session

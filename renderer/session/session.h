@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "film/exposure.h"
+#include "film/shown_error.h"
 #include "plan/settings.h"
 #include "scene/io/load.h"
 #include "scene/scene.h"
@@ -25,8 +26,11 @@ namespace lucerna::session {
 inline constexpr int k_components = 4;  ///< primary, secondary, tertiary, caustic
 extern const std::array<const char*, k_components> k_component_names;
 
-/// Relative error (film::PreviewShares::error) below which a picture is good to work with.
-inline constexpr double k_usable_error = 0.15;
+/// Relative errors of tiles below which a picture is good to work with.
+inline constexpr film::ShownError k_usable_error{.median = 0.15, .worst_tenth = 0.3};
+inline bool usable(const film::ShownError& e) {
+  return e.median < k_usable_error.median && e.worst_tenth < k_usable_error.worst_tenth;
+}
 
 struct ComponentStatus {
   std::string solver = "path";  ///< "path" or "off"
@@ -67,8 +71,8 @@ struct Snapshot {
   bool coarse = false;             ///< some of the picture still is the coarse first image
   /// Of what is shown, by luminance, 0..1: light from before the last edit; filtered light of the present.
   double stale = 0, filtered = 0;
-  /// Of what is shown, where that is a preview: film::PreviewShares::error.
-  std::optional<double> shown_error;
+  /// Of what is shown, where that is a preview or filtered.
+  std::optional<film::ShownError> shown_error;
   /// Why the light of groups of lights is not kept apart, so that a mix of them lights the picture anew; ""
   /// where it is.
   std::string lights_together;

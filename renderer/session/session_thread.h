@@ -178,17 +178,17 @@ struct Session::Impl {
   stats::WorkPace pace;  // of what is prepared
 
   /// From the reports of the solvers and the time that their work has taken so far.
-  void tell_preparing() {
+  void update_preparing() {
     next.preparing.clear(), next.preparing_done = -1, next.preparing_left.reset();
-    const auto told = std::find_if(next.reports.begin(), next.reports.end(),
-                                   [](const auto& report) { return !report->preparing.empty(); });
-    if (told == next.reports.end()) {
+    const auto preparing = std::find_if(next.reports.begin(), next.reports.end(),
+                                        [](const auto& report) { return !report->preparing.empty(); });
+    if (preparing == next.reports.end()) {
       pace = {};
       return;
     }
-    next.preparing = (*told)->preparing;
-    if (!(*told)->progress) return;
-    const solvers::Report::Progress& progress = *(*told)->progress;
+    next.preparing = (*preparing)->preparing;
+    if (!(*preparing)->progress) return;
+    const solvers::Report::Progress& progress = *(*preparing)->progress;
     next.preparing_done = progress.done;
     // The solver is not at work all the time: pictures are shown and preview samples drawn between.
     const double done_ms = progress.left_ms * progress.done / std::max(1e-9, 1 - progress.done);
@@ -219,7 +219,7 @@ struct Session::Impl {
     next.finished = r.done();
     next.seconds = r.seconds();
     next.reports = r.reports();
-    tell_preparing();
+    update_preparing();
     next.path_pace = r.path_pace();
     next.camera = r.camera();
     next.tracer = r.tracer_name();

@@ -18,12 +18,12 @@ transport::HostTrace World::trace() const {
 
 World make_world(gpu::Device& device, std::shared_ptr<const scene::Scene> scene,
                  std::shared_ptr<const scene::Scene> lit, const std::string& tracer,
-                 const upload::LightsApart& apart, const Progress& progress) {
+                 const upload::LightSeparation& separation, const Progress& progress) {
   World world;
   world.scene = std::move(scene);
   world.lit = std::move(lit);
   report_progress(progress, 0, "flattening the scene");
-  world.flat = upload::flatten(*world.lit, apart);
+  world.flat = upload::flatten(*world.lit, separation);
   report_progress(progress, 0.2f, "building the BVH");
   const bvh::Triangles triangles{world.flat.positions, world.flat.non_opaque};
   bvh::BvhData tree;
@@ -40,15 +40,16 @@ World make_world(gpu::Device& device, std::shared_ptr<const scene::Scene> scene,
 }
 
 WorldEdit::WorldEdit(gpu::Device& device, World& world, std::shared_ptr<const scene::Scene> edited,
-                     std::shared_ptr<const scene::Scene> lit, const upload::LightsApart& apart, bool factors)
+                     std::shared_ptr<const scene::Scene> lit, const upload::LightSeparation& separation,
+                     bool factors)
     : world_(world),
       scene_(world.scene),
       lit_(world.lit),
       effects_(world.flat.effects),
-      apart_(upload::lights_apart(world.flat)) {
+      separation_(upload::light_separation(world.flat)) {
   world_.scene = std::move(edited);
   world_.lit = std::move(lit);
-  upload::set_lights_apart(world_.flat, apart);
+  upload::set_light_separation(world_.flat, separation);
   try_out(device, factors);
 }
 
@@ -82,7 +83,7 @@ void WorldEdit::put_back() noexcept {
   if (lights_out_) static_cast<upload::FlatLights&>(world_.flat) = std::move(lights_);
   if (materials_out_) static_cast<upload::FlatMaterials&>(world_.flat) = std::move(materials_);
   world_.flat.effects = effects_;
-  upload::set_lights_apart(world_.flat, apart_);
+  upload::set_light_separation(world_.flat, separation_);
   world_.scene = scene_;
   world_.lit = lit_;
 }

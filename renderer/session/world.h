@@ -29,7 +29,7 @@ struct World {
 /// `tracer`: the setting. Throws Error: too large, no memory, cancelled.
 World make_world(gpu::Device& device, std::shared_ptr<const scene::Scene> scene,
                  std::shared_ptr<const scene::Scene> lit, const std::string& tracer,
-                 const upload::LightsApart& apart, const Progress& progress);
+                 const upload::LightSeparation& separation, const Progress& progress);
 
 /// Tells how far it is; throws Error "cancelled" when that is the answer.
 void report_progress(const Progress& progress, float fraction, const std::string& what);
@@ -40,7 +40,7 @@ class WorldEdit {
  public:
   /// `factors`: those of materials differ. Throws Error: no memory; the world is then as before.
   WorldEdit(gpu::Device& device, World& world, std::shared_ptr<const scene::Scene> edited,
-            std::shared_ptr<const scene::Scene> lit, const upload::LightsApart& apart, bool factors);
+            std::shared_ptr<const scene::Scene> lit, const upload::LightSeparation& separation, bool factors);
   ~WorldEdit();
   WorldEdit(const WorldEdit&) = delete;
   WorldEdit& operator=(const WorldEdit&) = delete;
@@ -55,7 +55,7 @@ class WorldEdit {
   upload::FlatLights lights_;
   upload::FlatMaterials materials_;
   upload::Effects effects_;
-  upload::LightsApart apart_;
+  upload::LightSeparation separation_;
   upload::LightBuffers light_buffers_;
   upload::MaterialBuffers material_buffers_;
   bool lights_out_ = false, materials_out_ = false, kept_ = false;

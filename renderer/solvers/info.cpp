@@ -8,20 +8,21 @@ const CommandInfo* find_command(const SolverInfo& solver, std::string_view name)
   return nullptr;
 }
 
-Spoils spoiled_by(const SolverInfo& solver, scene::Change edit) {
+Invalidation invalidated_by(const SolverInfo& solver, scene::Change edit) {
   for (const ChangeRow& row : solver.changes)
-    if (const auto* what = std::get_if<scene::Change>(&row.what); what && *what == edit) return row.spoils;
-  return k_spoils_all;
+    if (const auto* what = std::get_if<scene::Change>(&row.change); what && *what == edit)
+      return row.invalidates;
+  return k_invalidates_all;
 }
 
-Spoils spoiled_by(const SolverInfo& solver, std::string_view key) {
+Invalidation invalidated_by(const SolverInfo& solver, std::string_view key) {
   const ChangeRow* best = nullptr;
   size_t length = 0;
   for (const ChangeRow& row : solver.changes)
-    if (const auto* head = std::get_if<std::string_view>(&row.what);
+    if (const auto* head = std::get_if<std::string_view>(&row.change);
         head && key.starts_with(*head) && (!best || head->size() > length))
       best = &row, length = head->size();
-  return best ? best->spoils : k_spoils_all;
+  return best ? best->invalidates : k_invalidates_all;
 }
 
 }  // namespace lucerna::solvers

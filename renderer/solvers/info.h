@@ -18,29 +18,29 @@ namespace lucerna::solvers {
 inline constexpr int k_components = 4;  ///< primary, secondary, tertiary, caustic
 
 /// What a change spoils of a solver's work; each without the ones before it.
-struct Spoils {
+struct Invalidation {
   bool coverage = false;  ///< what there is holds, but something may be missing: more is added
   bool light = false;     ///< places hold, and their light is computed anew
   bool places = false;    ///< all is made anew
-  Spoils& operator|=(const Spoils& o) {
+  Invalidation& operator|=(const Invalidation& o) {
     coverage |= o.coverage, light |= o.light, places |= o.places;
     return *this;
   }
-  bool operator==(const Spoils&) const = default;
+  bool operator==(const Invalidation&) const = default;
   bool any() const { return coverage || light || places; }
 };
-inline constexpr Spoils k_spoils_nothing{};
-inline constexpr Spoils k_spoils_coverage{.coverage = true};
-inline constexpr Spoils k_spoils_light{.light = true};
-inline constexpr Spoils k_spoils_light_and_coverage{.coverage = true, .light = true};
-inline constexpr Spoils k_spoils_all{.coverage = true, .light = true, .places = true};
+inline constexpr Invalidation k_invalidates_nothing{};
+inline constexpr Invalidation k_invalidates_coverage{.coverage = true};
+inline constexpr Invalidation k_invalidates_light{.light = true};
+inline constexpr Invalidation k_invalidates_light_and_coverage{.coverage = true, .light = true};
+inline constexpr Invalidation k_invalidates_all{.coverage = true, .light = true, .places = true};
 
 /// One row of a solver's table of changes.
 struct ChangeRow {
   /// An edit, or the settings whose keys begin with this ("cache.rays", "film."); of several rows the longest
   /// counts.
-  std::variant<scene::Change, std::string_view> what;
-  Spoils spoils;
+  std::variant<scene::Change, std::string_view> change;
+  Invalidation invalidates;
   std::string_view why;
 };
 
@@ -51,7 +51,7 @@ struct ViewInfo {
   char shortcut = 0;   ///< key in the window, 'A' to 'Z'; 0: none
   /// Of a choice: the values that the key goes through, in a ring; none: all of them.
   std::vector<std::string> ring;
-  bool asks_pointer = false;  ///< while it is on, a pointer at rest in the picture asks what lies there
+  bool inspects_pointer = false;  ///< while it is on, a pointer at rest in the picture asks what lies there
   std::vector<std::string> refined_by{};  ///< choices that the menu offers while it is on
 };
 
@@ -96,14 +96,15 @@ struct SolverInfo {
   bool looked_up = false;
   /// Whether it brings no more of a component than what the camera sees straight, without mirrors and glass
   /// between: the rest is path traced, or looked up by another solver (components.X = NAME+OTHER).
-  bool straight_only = false;
+  bool directly_visible_only = false;
   /// Whether it finds light of points and directions behind what refracts or mirrors it, which paths from the
   /// eye cannot aim at.
   bool finds_points = false;
   /// Whether rays that another solver traces to prepare its own light may end in lookups of this one's; and
   /// whether this one's do, where it computes secondary light and the other one tertiary light.
-  bool lends = false, borrows = false;
-  /// Whether its light comes by groups of lights where films keep them in short (film::GroupsKept::in_short).
+  bool provides_lookups = false, consumes_lookups = false;
+  /// Whether its light comes by groups of lights where films keep them in short
+  /// (film::GroupStorage::compact).
   bool by_groups = false;
   std::vector<OptionInfo> options{};
   std::vector<ChangeRow> changes{};
@@ -122,10 +123,10 @@ struct SolverInfo {
 
 /// Null when there is no such command.
 const CommandInfo* find_command(const SolverInfo& solver, std::string_view name);
-/// By the solver's own rows: of an edit, k_spoils_all where there is no row.
-Spoils spoiled_by(const SolverInfo& solver, scene::Change edit);
-/// Of a setting that is the solver's own or nobody's: k_spoils_all where no row fits. Settings of another
-/// solver spoil nothing; the registry knows whose they are (registry.h).
-Spoils spoiled_by(const SolverInfo& solver, std::string_view key);
+/// By the solver's own rows: of an edit, k_invalidates_all where there is no row.
+Invalidation invalidated_by(const SolverInfo& solver, scene::Change edit);
+/// Of a setting that is the solver's own or nobody's: k_invalidates_all where no row fits. Settings of
+/// another solver spoil nothing; the registry knows whose they are (registry.h).
+Invalidation invalidated_by(const SolverInfo& solver, std::string_view key);
 
 }  // namespace lucerna::solvers

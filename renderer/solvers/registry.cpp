@@ -63,15 +63,15 @@ const SolverInfo* owner_of(std::string_view key) {
   return nullptr;
 }
 
-Spoils spoiled_by_setting(const SolverInfo& solver, std::string_view key) {
+Invalidation invalidated_by_setting(const SolverInfo& solver, std::string_view key) {
   const SolverInfo* owner = owner_of(key);
-  return owner && owner != &solver ? k_spoils_nothing : spoiled_by(solver, key);
+  return owner && owner != &solver ? k_invalidates_nothing : invalidated_by(solver, key);
 }
 
-Spoils spoiled_by(const SolverInfo& solver, const scene::Changes& changes) {
-  Spoils all;
-  for (const scene::Change edit : changes.edits) all |= spoiled_by(solver, edit);
-  for (const std::string& key : changes.settings) all |= spoiled_by_setting(solver, key);
+Invalidation invalidated_by(const SolverInfo& solver, const scene::Changes& changes) {
+  Invalidation all;
+  for (const scene::Change edit : changes.edits) all |= invalidated_by(solver, edit);
+  for (const std::string& key : changes.settings) all |= invalidated_by_setting(solver, key);
   return all;
 }
 

@@ -24,8 +24,8 @@ bool chooses(std::string_view choice, std::string_view solver);
 /// Whose option that is; null: nobody's alone.
 const SolverInfo* owner_of(std::string_view key);
 /// What a setting that changes spoils of a solver's work. Another solver's settings spoil nothing.
-Spoils spoiled_by_setting(const SolverInfo& solver, std::string_view key);
+Invalidation invalidated_by_setting(const SolverInfo& solver, std::string_view key);
 /// Of several changes at once.
-Spoils spoiled_by(const SolverInfo& solver, const scene::Changes& changes);
+Invalidation invalidated_by(const SolverInfo& solver, const scene::Changes& changes);
 
 }  // namespace lucerna::solvers

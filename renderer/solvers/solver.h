@@ -29,11 +29,11 @@ namespace lucerna::solvers {
 struct Task {
   const paths::Automaton& automaton;
   const OptionValues& settings;
-  uint32_t enabled = 0;     ///< components that anybody computes
-  uint32_t own = 0;         ///< of these, this solver
-  uint32_t straight = 0;    ///< of own: what the camera sees straight of it another one brings
-  uint32_t lent = 0;        ///< that others compute who lend their lookups (SolverInfo::lends)
-  uint32_t borrowing = 0;   ///< that others compute who borrow those
+  uint32_t enabled = 0;                    ///< components that anybody computes
+  uint32_t own = 0;                        ///< of these, this solver
+  uint32_t directly_visible_by_other = 0;  ///< of own: what the camera sees straight of it another one brings
+  uint32_t provided = 0;    ///< that others compute who lend their lookups (SolverInfo::provides_lookups)
+  uint32_t consuming = 0;   ///< that others compute who borrow those
   upload::Effects effects;  ///< what the scene calls for
   const gpu::Defines* scene_defines =
       nullptr;  ///< of kernels that know its surfaces and lights; when it is made
@@ -98,14 +98,16 @@ class Solver {
   /// call all is.
   virtual void adopt(transport::Wavefront& wavefront, const Solver& before) { (void)wavefront, (void)before; }
   /// The picture begins anew. `spoils`: what changes since the last one leave of this solver's work.
-  virtual void begin(const Picture& picture, Spoils spoils) = 0;
+  virtual void begin(const Picture& picture, Invalidation invalidated) = 0;
   /// After any setting has changed, whether or not the picture begins anew. `interactive`: somebody is there
   /// to lead preparation from step to step, so that it may wait.
-  virtual void heed(const OptionValues& settings, bool interactive) { (void)settings, (void)interactive; }
+  virtual void on_settings_changed(const OptionValues& settings, bool interactive) {
+    (void)settings, (void)interactive;
+  }
   virtual bool ready() const { return true; }
   /// Components (of Task::own) that it has found to be better left to paths from the eye in this picture:
   /// its lookups bring none of their light. May change in begin() and prepare().
-  virtual uint32_t left() const { return 0; }
+  virtual uint32_t delegated_components() const { return 0; }
   /// Preparation waits for a command.
   virtual bool waits() const { return false; }
   /// One bounded piece of preparation, cancellable between bounces; on return the wavefront's frame is the
@@ -117,7 +119,7 @@ class Solver {
 
   /// Preparation has had the time that it may take: what can be left out is left to paths, so that it ends
   /// soon, or at once.
-  virtual void make_do() {}
+  virtual void finish_early() {}
 
   // By and by: what paths read has a noise that samples do not take away, and as they grow more it is to be
   // less.
@@ -170,8 +172,8 @@ class Solver {
     return false;
   }
   virtual bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const Picture& picture,
-                               bool anew, const Cancel& cancel) {
-    (void)wavefront, (void)film, (void)picture, (void)anew, (void)cancel;
+                               bool restarted, const Cancel& cancel) {
+    (void)wavefront, (void)film, (void)picture, (void)restarted, (void)cancel;
     return true;
   }
 
@@ -219,8 +221,8 @@ struct SolverType {
   std::unique_ptr<Solver> (*make)(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots,
                                   const Task& task) = nullptr;
   /// Components (of Task::own) that it may leave to paths from the eye in parts of the picture, which its
-  /// defines() and bind() tell camera.comp of (LUCERNA_LEFT_TO_PATHS, left_regions). Null: none.
-  uint32_t (*leaves)(const Task& task) = nullptr;
+  /// defines() and bind() tell camera.comp of (LUCERNA_DELEGATED_REGIONS, delegated_regions). Null: none.
+  uint32_t (*delegable_components)(const Task& task) = nullptr;
   /// Paths in flight that it needs at least.
   uint32_t least_slots = 0;
   /// upload::FlatScene::sun_threshold that it asks for; 0 or null: none. Task::effects are not known yet.

@@ -38,7 +38,7 @@ Outlook::Outlook(const Ledger& ledger) {
   const double now = entries.back().samples;
   std::vector<const Entry*> lines;
   for (const Entry& e : entries)
-    if (e.told && e.error[0] > 0 && e.samples >= std::max(k_first_line, now / k_window) &&
+    if (e.has_error && e.error[0] > 0 && e.samples >= std::max(k_first_line, now / k_window) &&
         (lines.empty() || e.samples > lines.back()->samples))
       lines.push_back(&e);
   if (lines.size() < 3 || lines.back() != &entries.back()) return;
@@ -151,16 +151,16 @@ double paths_target(const Ledger& ledger, double target) {
 
 std::optional<Band> seconds_to(const Ledger& ledger, double target) {
   const auto& entries = ledger.entries();
-  if (entries.empty() || !entries.back().told || !(target > 0)) return std::nullopt;
+  if (entries.empty() || !entries.back().has_error || !(target > 0)) return std::nullopt;
   target = paths_target(ledger, target);
   if (!(target > 0)) return std::nullopt;
   // Reached for good: after the last line that is over the target.
   size_t reached = entries.size();
-  while (reached > 0 && entries[reached - 1].told && entries[reached - 1].error[0] <= target) --reached;
+  while (reached > 0 && entries[reached - 1].has_error && entries[reached - 1].error[0] <= target) --reached;
   if (reached < entries.size()) {
     const Entry& under = entries[reached];
     double s = under.wall_s;
-    if (reached > 0 && entries[reached - 1].told && under.error[0] > 0) {
+    if (reached > 0 && entries[reached - 1].has_error && under.error[0] > 0) {
       const Entry& over = entries[reached - 1];
       const double part = std::log(over.error[0] / target) / std::log(over.error[0] / under.error[0]);
       s = over.wall_s + part * (under.wall_s - over.wall_s);

@@ -33,13 +33,13 @@ std::string Ledger::csv() const {
     text += fmt::format("{},{},{},{},{},{},{},{}", e.wall_s, e.render_s, e.device_s, e.prepared_s, e.paths,
                         e.rays, e.prepared_rays, e.samples);
     for (const auto* errors : {&e.error, &e.of_mean.error})
-      for (const double x : *errors) text += e.told ? fmt::format(",{}", x) : ",";
+      for (const double x : *errors) text += e.has_error ? fmt::format(",{}", x) : ",";
     for (int k = 0; k < k_layers; ++k) text += e.truth ? fmt::format(",{}", (*e.truth)[k]) : ",";
     for (const double x : e.component_s) text += fmt::format(",{}", x);
-    text += e.told ? fmt::format(",{},{},{},{},{},{},{},{}", e.records, e.interpolation, e.sum(),
-                                 e.of_mean.records, e.of_mean.interpolation, e.of_mean.sum(), e.tile_median,
-                                 e.tile_worst_tenth)
-                   : ",,,,,,,,";
+    text += e.has_error ? fmt::format(",{},{},{},{},{},{},{},{}", e.records, e.interpolation, e.sum(),
+                                      e.of_mean.records, e.of_mean.interpolation, e.of_mean.sum(),
+                                      e.tile_median, e.tile_worst_tenth)
+                        : ",,,,,,,,";
     text += e.total_rays
                 ? fmt::format(",{},{},{}\n", e.total_rays->low, e.total_rays->middle, e.total_rays->high)
                 : ",,,\n";

@@ -31,7 +31,7 @@ struct Entry {
   uint64_t paths = 0, rays = 0;
   double samples = 0;  ///< a pixel, on average
   /// Whether every pixel has samples in both halves of the film; otherwise errors are not known, and 0.
-  bool told = false;
+  bool has_error = false;
   /// Noise of the paths, estimated, as it is seen (film::ImageError::seen).
   std::array<double, k_layers> error{};
   double degrees = 0;  ///< of freedom of error[0]^2 (film::ImageError::seen_degrees)

@@ -12,7 +12,7 @@ namespace lucerna::transport {
 /// aimed. By the root of it, so that what is dim where nothing else is has paths too, and with a floor: a
 /// tenth of what is aimed is for all pairs alike, and three more for those that have brought anything.
 /// `least_unaimed`: share that paths that are not aimed keep at least. Sums to 1.
-std::vector<double> aim_shares(std::span<const double> worth, double least_unaimed);
+std::vector<double> aim_shares(std::span<const double> contribution, double least_unaimed);
 /// ... where aimed paths bring all that is wanted, and what they miss are chance paths to the same places;
 inline constexpr double k_least_unaimed_of_caustics = 1.0 / 7;
 /// ... where others bring all light but caustics;
@@ -27,7 +27,7 @@ inline constexpr double k_least_unaimed_from_afar = 0.6;
 /// another fifth for those that have brought anything. So a lamp in a house has paths beside the sun, which
 /// lights all that is outside.
 std::vector<double> light_weights(std::span<const std::vector<uint32_t>> groups,
-                                  std::span<const double> power, std::span<const double> worth);
+                                  std::span<const double> power, std::span<const double> contribution);
 
 /// A pilot's paths, all in a round of no sample.
 inline constexpr uint32_t k_pilot_paths = 1u << 14, k_pilot_paths_a_stratum = 8;

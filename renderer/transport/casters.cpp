@@ -14,7 +14,7 @@ using namespace shared;
 namespace {
 
 constexpr int k_bins = 16;
-constexpr float k_worth = 0.95f;  ///< of the surface of a box its parts' may have together
+constexpr float k_most_surface = 0.95f;  ///< of the surface of a box its parts' may have together
 constexpr float k_least_metal = 0.05f, k_least_transmission = 0.05f, k_most_roughness = 0.5f;
 
 float surface(const Box& b) {
@@ -41,7 +41,7 @@ int bin_of(const Cluster& c, const Box& thing, int axis) {
 Cluster make_cluster(std::span<const Box> all, std::vector<uint32_t> things) {
   Cluster c{.things = std::move(things), .box = {}, .centres = {}, .cut = {}};
   for (const uint32_t i : c.things) c.box.grow(all[i]), c.centres.grow(all[i].centre());
-  float best = k_worth * surface(c.box);
+  float best = k_most_surface * surface(c.box);
   for (int axis = 0; axis < 3; ++axis) {
     if (c.centres.size()[axis] <= 0) continue;
     std::array<Box, k_bins> bins;

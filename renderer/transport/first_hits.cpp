@@ -32,7 +32,7 @@ Box widened(const Box& b, float by) {
 
 std::vector<Box> nested_boxes(std::vector<FirstHit> places, float extent) {
   double sum = 0;
-  for (const FirstHit& p : places) sum += p.worth;
+  for (const FirstHit& p : places) sum += p.contribution;
   if (!(sum > 0)) return {};
   vec3 middle;
   for (int axis = 0; axis < 3; ++axis) {
@@ -40,7 +40,7 @@ std::vector<Box> nested_boxes(std::vector<FirstHit> places, float extent) {
               [&](const FirstHit& a, const FirstHit& b) { return a.place[axis] < b.place[axis]; });
     double before = 0;
     for (const FirstHit& p : places)
-      if ((before += p.worth) >= 0.5 * sum) {
+      if ((before += p.contribution) >= 0.5 * sum) {
         middle[axis] = p.place[axis];
         break;
       }
@@ -54,7 +54,7 @@ std::vector<Box> nested_boxes(std::vector<FirstHit> places, float extent) {
   double before = 0;
   for (const auto& [distance, i] : order) {
     box.grow(places[i].place);
-    before += places[i].worth;
+    before += places[i].contribution;
     if (before < k_nested_parts[boxes.size()] * sum) continue;
     boxes.push_back(widened(box, k_wider * greatest(box.size())));
     if (boxes.size() == k_nested_parts.size()) break;
@@ -69,14 +69,14 @@ std::vector<Box> nested_boxes(std::vector<FirstHit> places, float extent) {
 
 std::vector<Box> first_hit_boxes(std::vector<FirstHit> hits) {
   std::stable_sort(hits.begin(), hits.end(),
-                   [](const FirstHit& a, const FirstHit& b) { return a.worth > b.worth; });
+                   [](const FirstHit& a, const FirstHit& b) { return a.contribution > b.contribution; });
   double sum = 0, before = 0;
-  for (const FirstHit& h : hits) sum += h.worth;
+  for (const FirstHit& h : hits) sum += h.contribution;
   std::vector<Box> places;
   Box all;
   for (const FirstHit& h : hits) {
-    if (h.worth <= 0 || before >= k_part * sum) break;
-    before += h.worth;
+    if (h.contribution <= 0 || before >= k_part * sum) break;
+    before += h.contribution;
     places.push_back({h.place, h.place});
     all.grow(h.place);
   }

@@ -12,7 +12,7 @@ namespace lucerna::transport {
 /// Where a path from a light has met its first diffuse surface, and what it has brought to the picture since.
 struct FirstHit {
   vec3 place{0};  ///< [m]
-  double worth = 0;
+  double contribution = 0;
 };
 
 inline constexpr uint32_t k_most_first_hit_boxes = 16;

@@ -72,8 +72,8 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   return f;
 }
 
-void set_left(shared::Frame& frame, const shared::Frame& other) {
-  constexpr uint32_t k_here = shared::k_left_states;
+void set_delegated_tables(shared::Frame& frame, const shared::Frame& other) {
+  constexpr uint32_t k_here = shared::k_delegated_states;
   for (uint32_t s = 0; s < k_here; ++s)
     frame.automaton[k_here + s] = other.automaton[s] + (k_here | k_here << 8 | k_here << 16);
 }

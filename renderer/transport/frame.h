@@ -21,8 +21,8 @@ struct FrameOptions {
   paths::LookupRoutes gather;
 };
 
-/// Paths that begin in shared::k_left_states go by the automaton of `other`.
-void set_left(shared::Frame& frame, const shared::Frame& other);
+/// Paths that begin in shared::k_delegated_states go by the automaton of `other`.
+void set_delegated_tables(shared::Frame& frame, const shared::Frame& other);
 
 shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& camera,
                          const paths::Automaton& automaton, const FrameOptions& options);

@@ -17,9 +17,9 @@ struct Wavefront::Impl {
   HostTrace host_trace;
   uint32_t slots;
   bool transparent = false;
-  uint32_t groups = 1;    // of lights, that are kept apart
-  bool in_short = false;  // ... all components of one together
-  bool tells_bias = false;
+  uint32_t groups = 1;          // of lights, that are kept apart
+  bool compact_groups = false;  // ... all components of one together
+  bool writes_bias = false;
   uint32_t enabled = 15;
   std::vector<uint64_t> in_queue;  // a bit a slot
   uint8_t first_account = 0;
@@ -43,7 +43,7 @@ struct Wavefront::Impl {
         host_trace(std::move(trace)),
         slots(n),
         groups(effects.light_groups),
-        in_short(effects.groups_in_short()) {
+        compact_groups(effects.has_compact_groups()) {
     const gpu::Memory queue_memory = host_trace ? gpu::Memory::host : gpu::Memory::device;
     const auto make = [&](const char* name, uint64_t bytes, gpu::Memory memory) {
       return gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory});
@@ -56,7 +56,7 @@ struct Wavefront::Impl {
     rays = texels("rays", uint64_t(n) * sizeof(Ray), queue_memory);
     hits = texels("hits", uint64_t(n) * sizeof(Hit), queue_memory);
     paths = texels("path states", uint64_t(n) * sizeof(PathState), gpu::Memory::device);
-    const uint64_t lanes = in_short ? k_component_count + groups : k_component_count * groups;
+    const uint64_t lanes = compact_groups ? k_component_count + groups : k_component_count * groups;
     radiance = texels("path radiance", uint64_t(n) * 16 * lanes, gpu::Memory::device);
     features = texels("path features", uint64_t(n) * 32, gpu::Memory::device);
     shadow_rays = texels("shadow rays", uint64_t(n) * sizeof(Ray), queue_memory);
@@ -225,7 +225,7 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   const Timer timer;
   gpu::Defines defines = scene.defines();
   for (const auto& [name, value] : extra_defines) defines[name] = value;
-  w.tells_bias = defines.contains("LUCERNA_LOOKUP_BIAS");
+  w.writes_bias = defines.contains("LUCERNA_LOOKUP_BIAS");
   w.camera = gpu::Kernel(device, compiler, "transport/camera.comp", defines);
   w.shade = gpu::Kernel(device, compiler, "transport/shade.comp", defines);
   w.shadow = gpu::Kernel(device, compiler, "transport/shadow.comp", defines);
@@ -235,7 +235,7 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   gpu::Defines images = adding;
   images["LUCERNA_FILM_IMAGES"] = "1";
   w.film_add_images = gpu::Kernel(device, compiler, "film/add.comp", images);
-  if (w.in_short) {
+  if (w.compact_groups) {
     w.groups_add = gpu::Kernel(device, compiler, "film/add_groups.comp", adding);
     w.groups_add_images = gpu::Kernel(device, compiler, "film/add_groups.comp", images);
     adding["LUCERNA_FILM_UNMIXED"] = images["LUCERNA_FILM_UNMIXED"] = "1";
@@ -309,7 +309,7 @@ bool Wavefront::try_out(const schedule::WorkItem& item, film::Film& film,
 }
 
 void Wavefront::Impl::add(film::Film& film, uint32_t pixels, uint32_t samples) {
-  if (tells_bias) film.make_room_for_lookup_bias(stream);
+  if (writes_bias) film.make_room_for_lookup_bias(stream);
   film.bind(film_resources);
   const bool fits = film.fits_storage_buffers();
   FilmPush push{film.width(), film.height(), pixels, samples, 0, film.quick()};
@@ -319,9 +319,9 @@ void Wavefront::Impl::add(film::Film& film, uint32_t pixels, uint32_t samples) {
   }
   if (film.groups() != groups)
     throw_error("transport", "a film of {} groups of lights, paths of {}", film.groups(), groups);
-  if (film.in_short() != in_short)
+  if (film.is_compact() != compact_groups)
     throw_error("transport", "a film and paths that keep groups of lights in different ways");
-  if (in_short) {
+  if (compact_groups) {
     // The picture's sums are of the light as it is; readers mix them.
     stream.dispatch(fits ? unmixed_add : unmixed_add_images, film_resources, push, workgroups(pixels),
                     "film");
@@ -335,7 +335,7 @@ void Wavefront::Impl::add(film::Film& film, uint32_t pixels, uint32_t samples) {
 }
 
 void Wavefront::mix(film::Film& film) {
-  if (film.groups() == 1 || film.in_short()) return;
+  if (film.groups() == 1 || film.is_compact()) return;
   impl_->add(film, 64 * film.blocks(), 0);
   impl_->run_and_account(nullptr, nullptr);
 }

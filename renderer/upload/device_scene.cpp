@@ -140,11 +140,11 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_EMISSIVE", e.emissive);
   set("LUCERNA_PLAIN_EMITTERS", e.plain_emitters);
   set("LUCERNA_ENVIRONMENT_MAP", e.environment_map);
-  set("LUCERNA_SKY_APART", e.sky_apart);
+  set("LUCERNA_SEPARATE_SKY", e.separate_sky);
   set("LUCERNA_SUN", e.sun);
   d["LUCERNA_LAMP_CANDIDATES"] = std::to_string(e.lamp_candidates);
   d["LUCERNA_LIGHT_GROUPS"] = std::to_string(e.light_groups);
-  set("LUCERNA_GROUP_SUMS", e.groups_in_short());
+  set("LUCERNA_GROUP_SUMS", e.has_compact_groups());
   set("LUCERNA_SPECULAR", e.specular);
   set("LUCERNA_SOLID_GLASS", e.solid_glass);
   set("LUCERNA_THIN_GLASS", e.thin_glass);

@@ -65,11 +65,11 @@ struct EnvironmentWeights {
   std::vector<uint8_t> is_sun;             ///< by texel
 };
 
-EnvironmentWeights environment_weights(const EnvironmentMap& map, bool sun_apart, double threshold) {
+EnvironmentWeights environment_weights(const EnvironmentMap& map, bool separate_sun, double threshold) {
   EnvironmentWeights weights;
   std::vector<double> y = luminances(map);
   weights.is_sun.resize(y.size());
-  if (sun_apart) {
+  if (separate_sun) {
     weights.is_sun = sun_texels(y, map.width, map.height, threshold);
     std::vector<double> of_sun(y.size());
     for (size_t i = 0; i < y.size(); ++i)

@@ -186,28 +186,28 @@ void flatten_textures(const scene::Scene& scene, FlatScene& flat) {
 
 }  // namespace
 
-LightsApart lights_apart(const FlatScene& flat) {
+LightSeparation light_separation(const FlatScene& flat) {
   return {flat.sun_threshold, flat.groups, flat.group_components};
 }
 
-void set_lights_apart(FlatScene& flat, const LightsApart& apart) {
-  flat.sun_threshold = apart.sun_threshold;
-  flat.groups = apart.groups;
-  flat.group_components = apart.group_components;
+void set_light_separation(FlatScene& flat, const LightSeparation& separation) {
+  flat.sun_threshold = separation.sun_threshold;
+  flat.groups = separation.groups;
+  flat.group_components = separation.group_components;
 }
 
-FlatScene flatten(const scene::Scene& scene, const LightsApart& apart) {
+FlatScene flatten(const scene::Scene& scene, const LightSeparation& separation) {
   FlatScene flat;
   flatten_geometry(scene, flat);
   flatten_factors(scene, flat);
   flatten_textures(scene, flat);
-  set_lights_apart(flat, apart);
+  set_light_separation(flat, separation);
   flatten_lights(scene, flat);
   return flat;
 }
 
 FlatScene flatten(const scene::Scene& scene, float sun_threshold) {
-  return flatten(scene, LightsApart{.sun_threshold = sun_threshold, .groups = {}});
+  return flatten(scene, LightSeparation{.sun_threshold = sun_threshold, .groups = {}});
 }
 
 }  // namespace lucerna::upload

@@ -23,18 +23,18 @@ struct Effects {
   bool plain_emitters = true;  ///< no emissive surface has a texture of emission or is transparent by alpha
   /// Lamps that a light sample is drawn from by what each sends there, besides its power; 0: there are few.
   uint32_t lamp_candidates = 0;
-  bool sky_apart = false, sun = false;  ///< FlatScene::sun_threshold; texels that are brighter
-  uint32_t media = 0;                   ///< that solids hold, where any absorbs (upload/media.h)
-  uint32_t light_groups = 1;            ///< that are kept apart (FlatScene::groups)
-  bool group_components = true;         ///< ... by component, too
-  bool uv_transforms = false;           ///< a use of a texture that is scaled, turned or shifted
-  bool tex_nearest = false;             ///< a texture that is not filtered
-  bool tex_wraps = false;               ///< a texture that does not repeat
+  bool separate_sky = false, sun = false;  ///< FlatScene::sun_threshold; texels that are brighter
+  uint32_t media = 0;                      ///< that solids hold, where any absorbs (upload/media.h)
+  uint32_t light_groups = 1;               ///< that are kept apart (FlatScene::groups)
+  bool group_components = true;            ///< ... by component, too
+  bool uv_transforms = false;              ///< a use of a texture that is scaled, turned or shifted
+  bool tex_nearest = false;                ///< a texture that is not filtered
+  bool tex_wraps = false;                  ///< a texture that does not repeat
   std::array<uint32_t, shared::k_hit_kinds> kinds{};  ///< features, by kind of hits (upload/material_kinds.h)
   std::array<uint32_t, shared::k_texture_uses> texture_buckets{};  ///< by use: bit b: bucket b may be read
   bool transparent() const { return alpha || thin_glass; }
-  /// Groups of lights are kept apart, all components of one together (film::GroupsKept::in_short).
-  bool groups_in_short() const { return light_groups > 1 && !group_components; }
+  /// Groups of lights are kept apart, all components of one together (film::GroupStorage::compact).
+  bool has_compact_groups() const { return light_groups > 1 && !group_components; }
 };
 
 /// A texture array: pages of one size and format that hold textures of all sizes (upload/textures.h).
@@ -107,7 +107,7 @@ struct FlatScene : FlatLights, FlatMaterials {
   /// its mean luminance.
   float sun_threshold = 0;
   std::shared_ptr<const scene::LightGroups> groups;  ///< whose light is kept apart; null: no groups are
-  bool group_components = true;  ///< by component, too; else all light of a group in one (film::GroupsKept)
+  bool group_components = true;  ///< by component, too; else all light of a group in one (film::GroupStorage)
   vec3 scene_centre{0};
   float scene_radius = 1;  ///< of a sphere around that which holds all surfaces
   /// The same without what stands far away from the rest (scene::core_of()): what sizes are measured by,
@@ -118,20 +118,20 @@ struct FlatScene : FlatLights, FlatMaterials {
 };
 
 /// How lights are told apart: FlatScene's fields of these names.
-struct LightsApart {
+struct LightSeparation {
   float sun_threshold = 0;
   std::shared_ptr<const scene::LightGroups> groups;
   bool group_components = true;
-  bool operator==(const LightsApart& o) const {
+  bool operator==(const LightSeparation& o) const {
     return sun_threshold == o.sun_threshold && group_components == o.group_components &&
            (groups == o.groups || (groups && o.groups && *groups == *o.groups));
   }
 };
-LightsApart lights_apart(const FlatScene& flat);
-void set_lights_apart(FlatScene& flat, const LightsApart& apart);
+LightSeparation light_separation(const FlatScene& flat);
+void set_light_separation(FlatScene& flat, const LightSeparation& separation);
 
 /// Everything. Throws Error when the scene exceeds what indices or texture arrays can hold.
-FlatScene flatten(const scene::Scene& scene, const LightsApart& apart);
+FlatScene flatten(const scene::Scene& scene, const LightSeparation& separation);
 FlatScene flatten(const scene::Scene& scene, float sun_threshold = 0);
 /// Materials without their textures only (after an edit that leaves textures, alpha mode and transmission as
 /// they were); flatten_lights() then, if emission has changed. `flat` must come from the same scene.

@@ -38,7 +38,8 @@ LightTexels lamp_texels(const scene::Light& l, uint32_t kind) {
 uint32_t group_of(const FlatScene& flat, const LightEntry& entry, const std::vector<uint8_t>& surfaces) {
   if (entry.kind == k_light_triangle) return surfaces[entry.index];
   // Where the sky is apart the entry is the sun's.
-  if (entry.kind == k_light_environment) return flat.effects.sky_apart ? flat.groups->sun : flat.groups->sky;
+  if (entry.kind == k_light_environment)
+    return flat.effects.separate_sky ? flat.groups->sun : flat.groups->sky;
   return entry.index == scene::k_none ? 0 : flat.groups->lamps[entry.index];
 }
 

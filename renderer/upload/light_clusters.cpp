@@ -324,7 +324,7 @@ bool has_sky(const FlatScene& flat) {
 }  // namespace
 
 bool has_light_clusters(const FlatScene& flat) {
-  if (flat.effects.sky_apart || flat.entries.empty()) return false;
+  if (flat.effects.separate_sky || flat.entries.empty()) return false;
   return flat.entries.size() > 1 || has_sky(flat) || flat.entries[0].kind == shared::k_light_triangle;
 }
 

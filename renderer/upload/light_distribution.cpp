@@ -130,10 +130,10 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   add_lamps(scene, disk, choice);
   for (const scene::Light& lamp : scene.lights) d.lamp_names.push_back(lamp.name);
   const bool lit = environment_shines(scene.environment);
-  const bool sun_apart = lit && flat.sun_threshold > 0;
+  const bool separate_sun = lit && flat.sun_threshold > 0;
   double environment = 0, sun = 0;
   if (lit) {
-    d.environment = environment_tables(scene, sun_apart ? flat.sun_threshold : 0, flat.environment);
+    d.environment = environment_tables(scene, separate_sun ? flat.sun_threshold : 0, flat.environment);
     // Mean radiance times solid angle through the scene's disk.
     const auto power = [&](double sum) {
       return sum * 2 * k_pi / EnvironmentMap(scene).width * scene.environment.scale * disk;
@@ -144,7 +144,7 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   const bool has_sun = sun > 0;
   const double sky_power = environment, sun_power = sun;
   balance(choice, environment, sun);
-  if (sun_apart) {
+  if (separate_sun) {
     const double all = environment + sun + std::accumulate(choice.weights.begin(), choice.weights.end(), 0.0);
     if (all > 0) d.environment_light_pmf = float(environment / all);
     d.sky_power = sky_power;
@@ -167,7 +167,7 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   flat.effects.lights = !d.entries.empty();
   flat.effects.emissive = emissive;
   flat.effects.environment_map = lit;
-  flat.effects.sky_apart = sun_apart;
+  flat.effects.separate_sky = separate_sun;
   flat.effects.sun = has_sun;
   flat.effects.light_groups = flat.groups ? uint32_t(flat.groups->groups.size()) : 1;
   flat.effects.group_components = flat.group_components;

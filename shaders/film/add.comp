@@ -47,7 +47,7 @@ void add_mixed(inout FilmHalf h, FilmHalf of_group, vec3 weight) {
 #endif
 
 // What sample `slot` brings of a component.
-vec3 brought_of(uint slot, uint component) {
+vec3 light_of_component(uint slot, uint component) {
 #if LUCERNA_FILM_LANES
   return texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(push.group, component)))).rgb;
 #elif LUCERNA_GROUP_SUMS && !LUCERNA_FILM_UNMIXED
@@ -108,11 +108,11 @@ void main() {
     uint slot = index + i * push.pixel_count;
     bool even = ((block.first_sample + i) & 1u) == 0u;
     for (uint c = 0u; c < k_component_count; ++c) {
-      vec3 brought = brought_of(slot, c);
+      vec3 light = light_of_component(slot, c);
       if (even) {
-        add(sums[c].even, brought);
+        add(sums[c].even, light);
       } else {
-        add(sums[c].odd, brought);
+        add(sums[c].odd, light);
       }
     }
 #if LUCERNA_LOOKUP_BIAS

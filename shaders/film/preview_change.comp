@@ -24,8 +24,8 @@ vec4 belief(vec4 off, vec4 spread, vec4 expected) {
 
 // What sums say of the ratio where `known` is known without them.
 vec4 ratio_of(vec4 now, vec4 before, vec4 spread, vec4 expected, vec4 known) {
-  vec4 off = now - known * before, told = min(now / max(before, vec4(1e-20)), vec4(k_most_ratio));
-  return mix(known, mix(known, told, belief(off * off, spread, expected)), greaterThan(before, vec4(0.0)));
+  vec4 off = now - known * before, measured = min(now / max(before, vec4(1e-20)), vec4(k_most_ratio));
+  return mix(known, mix(known, measured, belief(off * off, spread, expected)), greaterThan(before, vec4(0.0)));
 }
 
 void main() {

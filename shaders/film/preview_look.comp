@@ -32,9 +32,9 @@ void main() {
   Surface surface = make_surface(ray, hit);
   float travelled = path.travelled + hit.t;
   SightStep on = sight_step(surface, ray.direction);
-  if (!on.cut_out && emits(surface)) on.straight = on.turned = false;
+  if (!on.cut_out && emits(surface)) on.undeflected = on.turned = false;
   on.turned = on.turned && path_depth(path) < frame.max_depth;
-  if (!on.straight && !on.turned) {
+  if (!on.undeflected && !on.turned) {
     vec3 normal = surface.front ? surface.normal_s : -surface.normal_s;
     vec3 first = camera_direction(camera_shift(vec2(path.pixel % frame.width, path.pixel / frame.width) + 0.5)), turned = first - ray.direction;
     if ((path.nulls & 1u) != 0u && dot(turned, turned) > 0.0) normal = reflect(normal, normalize(turned));

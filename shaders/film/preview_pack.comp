@@ -6,6 +6,7 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewPackPush push; };
 layout(scalar) writeonly buffer Packed { vec4 packed[]; };
 layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
+layout(scalar) writeonly buffer PackedSums { vec2 packed_sums[]; };  // sum of the luminance of what is shown, samples
 uniform samplerBuffer guide_surfaces;
 
 void main() {
@@ -15,13 +16,16 @@ void main() {
   float n = float(max(count, 1u)), even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
   PreviewLight light;
   FilmRatio ratio = film_ratio(pixel);
+  float shown = 0.0;
   for (uint c = 0u; c < k_component_count; ++c) {
     FilmPixel p = film_load(c, pixel, ratio);
     vec3 a = p.even.sum + p.even.compensation, b = p.odd.sum + p.odd.compensation;
     float noise = count < 2u ? -1.0 : 0.5 * abs(luminance(a) / even - luminance(b) / odd);
     light.of[c] = push.exposure * vec4((a + b) / n, noise);
     if (count < 2u) light.of[c].w = -1.0;
+    if ((push.show >> c & 1u) != 0u) shown += push.exposure * luminance(a + b);
   }
+  packed_sums[pixel] = vec2(shown, float(count));
   LUCERNA_PREVIEW_STORE(packed, pixel, light)
   vec4 albedo = texelFetch(film_albedo, int(pixel)), normal = texelFetch(film_normal, int(pixel));
   PreviewSurface s;

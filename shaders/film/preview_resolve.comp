@@ -18,6 +18,8 @@ layout(scalar) writeonly buffer Packed { vec4 packed[]; };
 layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
 layout(scalar) writeonly buffer Picture { uint picture[]; };
 layout(scalar) writeonly buffer Shares { PreviewShares shares[]; };
+// Halves: luminance of what is shown, and its expected relative error over a mean of 3x3 pixels (1 at most).
+layout(scalar) writeonly buffer Shown { uint shown_pixels[]; };
 
 // Squares of a difference, over its variance, up to which it is taken for chance: noise of few paths has far outliers, and
 // where no light has changed nearly all of what is different is one.
@@ -186,7 +188,7 @@ bool isolated(ivec2 at, PreviewSurface here) {
 
 void main() {
   uint pixel = global_index(), lane = gl_LocalInvocationIndex;
-  vec4 told = vec4(0.0);
+  vec4 shares = vec4(0.0);
   if (pixel < push.width * push.height) {
     vec4 surface = vec4(-1.0, 0.0, 0.0, 0.0);
     PreviewLight own;
@@ -322,22 +324,23 @@ void main() {
       result.of[c] = vec4(now, nothing && !has_old ? -1.0 : left);
       if ((push.show >> c & 1u) != 0u) color += now;
       float showing = float(push.show >> c & 1u), shown = luminance(now) * showing;
-      told.xyz += vec3(shown, keep * shown, amount * (1.0 - keep) * shown);
+      shares.xyz += vec3(shown, keep * shown, amount * (1.0 - keep) * shown);
       // Pixels' own samples are independent; what is filtered, or was there before, errs alike in pixels side by side.
       variance += showing * (square(1.0 - keep) * (square((1.0 - amount) * noise[c]) / 9.0 + square(amount * smooth_error)) + of_before);
       unknown = unknown || (nothing && !has_old);
     }
     told.xyz = min(told.xyz, vec3(4.0));
     told.w = unknown ? 1.0 : min(k_mean_deviation * sqrt(variance) / max(luminance(color), k_preview_dark), 1.0);
+    shown_pixels[pixel] = packHalf2x16(vec2(min(luminance(color), 60000.0), told.w));
     LUCERNA_PREVIEW_STORE(packed, pixel, result)
     picture[pixel] = picture_packed(tone_map(color, push.curve));
   }
-  group_shares[lane] = told;
+  group_shares[lane] = shares;
   barrier();
   if (lane == 0u) {
     vec4 sum = vec4(0.0);
     for (uint i = 0u; i < 64u; ++i) sum += group_shares[i];
     uint group = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-    if (group < (push.width * push.height + 63u) / 64u) shares[group] = PreviewShares(sum.x, sum.y, sum.z, sum.w);
+    if (group < (push.width * push.height + 63u) / 64u) shares[group] = PreviewShares(sum.x, sum.y, sum.z);
   }
 }

@@ -15,7 +15,7 @@ void main() {
   vec4 place = texelFetch(record_texels, at), shape = texelFetch(record_texels, at + 3);
   if (bound >= shape.w) return;
   shrink_record(index, place, shape, bound / shape.w);
-  float told = texelFetch(record_texels, at + 2).w;
+  float texel = texelFetch(record_texels, at + 2).w;
   bool crowds = index >= push.undecided && bound < push.crowd * least_radius(place.xyz);
-  records[at + 2].w = record_flags(told, crowds);
+  records[at + 2].w = record_flags(texel, crowds);
 }

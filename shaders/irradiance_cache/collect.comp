@@ -27,7 +27,7 @@ void main() {
 #else
   int slot = int(slot_of(index) * k_candidate_texels);
   vec4 place = texelFetch(candidate_texels, slot), facing = texelFetch(candidate_texels, slot + 1);
-  uint told = uint(place.w) - 1u, origin = told % k_candidate_media, own_media = told / k_candidate_media;
+  uint origin_code = uint(place.w) - 1u, origin = origin_code % k_candidate_media, own_media = origin_code / k_candidate_media;
   float reach = origin == k_origin_recursive ? max(push.spacing, push.spacing_beyond) : push.spacing;
 #endif
   float seen = push.parallel != 0u ? 1.0 : distance(place.xyz, push.eye);

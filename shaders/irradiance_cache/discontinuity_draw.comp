@@ -14,11 +14,11 @@ void main() {
   uint pixel = global_index();
   if (pixel >= push.width * push.height) return;
   uvec2 xy = uvec2(pixel % push.width, pixel / push.width) / push.stride;
-  bool asks = texelFetch(surface_texels, int((xy.y * push.across + xy.x) * k_surface_texels)).w >= 0.0;
+  bool diffuse = texelFetch(surface_texels, int((xy.y * push.across + xy.x) * k_surface_texels)).w >= 0.0;
   uint cells = (push.across + (1u << push.level) - 1u) >> push.level;
   uvec2 cell = xy >> push.level;
   float detail = details[push.first + cell.y * cells + cell.x];
   vec3 color = picture_color(picture[pixel]);
-  color = asks ? mix(color, ramp_color(k_ramp_magma, detail), 0.88) : 0.25 * color;
+  color = diffuse ? mix(color, ramp_color(k_ramp_magma, detail), 0.88) : 0.25 * color;
   picture[pixel] = picture_packed(color);
 }

@@ -25,16 +25,16 @@ void main() {
   int at = int(record * k_record_texels);
   vec4 place = texelFetch(record_texels, at), bends = texelFetch(record_texels, at + 4);
   vec3 normal = texelFetch(record_texels, at + 1).xyz;
-  vec4 told = texelFetch(record_texels, at + 2);
+  vec4 texel = texelFetch(record_texels, at + 2);
   float holds_nothing = texelFetch(record_texels, at + 5).y;
   Principal p = principal_curvatures(bends.xyz);
 
   float least = least_radius(place.xyz);
   float bends_by = p.strongest / max(max(bends.w, push.dark), 1e-30);
   float minor = bends_by > 0.0 ? push.reach * inversesqrt(sqrt(bends_by * p.ratio)) : push.most;
-  minor = min(minor, holds_nothing > 0.0 ? push.near * holds_nothing : push.near_tried * told.y);
+  minor = min(minor, holds_nothing > 0.0 ? push.near * holds_nothing : push.near_tried * texel.y);
   // By what is near alone, so that it does not hang on the light.
-  bool crowds = record_flagged_crowded(told.w) || push.near * told.y < push.crowd * least;
+  bool crowds = record_flagged_crowded(texel.w) || push.near * texel.y < push.crowd * least;
   float major = crowds ? least : clamp(p.ratio * minor, least, push.most);
   minor = crowds ? least : clamp(minor, least, push.most);
   vec3 tangent, bitangent;
@@ -43,5 +43,5 @@ void main() {
   records[at].w = major;
   records[at + 3] = vec4(along * sqrt(max(0.0, 1.0 / square(minor) - 1.0 / square(major))), minor);
   spheres[record] = vec4(place.xyz, major);
-  records[at + 2].w = record_flags(told.w, crowds);
+  records[at + 2].w = record_flags(texel.w, crowds);
 }

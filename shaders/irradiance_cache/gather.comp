@@ -69,7 +69,7 @@ void main() {
 
   // Earlier levels weigh by their rays.
   int at = int(record * k_record_texels);
-  vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1), told = texelFetch(record_texels, at + 2);
+  vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1), texel = texelFetch(record_texels, at + 2);
   float rays = float(push.rays_before) + cells;
   float now = cells / rays, then = push.rays_before == 0u ? 0.0 : 1.0 - now;
   // Within a cell the variance is at most that between neighbouring cells, of which half the squared difference tells.
@@ -78,8 +78,8 @@ void main() {
   records[at + 1].w = inverse > 0.0 ? 1.0 / inverse : k_infinity;
   float nearest = inverse_most > 0.0 ? 1.0 / inverse_most : k_infinity;
   records[at + 2].x = uintBitsToFloat(push.rays_before + m * n);
-  records[at + 2].y = then > 0.0 ? min(told.y, nearest) : nearest;
-  records[at + 2].z = sqrt(square(now * error) + (then > 0.0 ? square(then * told.z) : 0.0));
+  records[at + 2].y = then > 0.0 ? min(texel.y, nearest) : nearest;
+  records[at + 2].z = sqrt(square(now * error) + (then > 0.0 ? square(then * texel.z) : 0.0));
 
   // What is nearer than the record reaches changes within its reach, not along all of it: its slope there is no slope for
   // the whole disc, and one ray that meets a crack would else tilt the light of all. In the first level, which says how far
@@ -121,6 +121,6 @@ void main() {
     irradiance[to + 1] = now * vec4(rotation_t.yz, rotation_b.xy) + (fresh ? vec4(0.0) : then * o1);
     irradiance[to + 2] = now * vec4(rotation_b.z, translation_t) + (fresh ? vec4(0.0) : then * o2);
     vec3 slope_b = now * translation_b + (fresh ? vec3(0.0) : then * o3.xyz);
-    irradiance[to + 3] = vec4(slope_b, min(k_of_nearest * (fresh ? nearest : min(told.y, nearest)), k_record_slope_most));
+    irradiance[to + 3] = vec4(slope_b, min(k_of_nearest * (fresh ? nearest : min(texel.y, nearest)), k_record_slope_most));
   }
 }

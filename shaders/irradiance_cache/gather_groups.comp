@@ -9,7 +9,7 @@
 uniform samplerBuffer irradiance_texels;
 layout(scalar) writeonly buffer RecordGroups { uvec4 record_groups[]; };
 
-vec3 brought(uint slot, uint part) { return texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(0u, part)))).rgb; }
+vec3 light_of_part(uint slot, uint part) { return texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(0u, part)))).rgb; }
 bool wanted(uint part) { return (push.parts >> part & 1u) != 0u; }
 
 void main() {
@@ -23,14 +23,14 @@ void main() {
   for (uint cell = 0u; cell < m * n; ++cell) {
     uint slot = cell_slot(cell % m, cell / m, entry);
     for (uint p = k_part_direct + 1u; p < k_part_count; ++p)
-      if (wanted(p)) all += brought(slot, p);
+      if (wanted(p)) all += light_of_part(slot, p);
     uint lit = groups_lit(slot);
     // The sky's group has what comes straight from the sky as well.
-    vec3 straight = wanted(k_part_direct) ? brought(slot, k_part_direct) : vec3(0.0);
+    vec3 direct = wanted(k_part_direct) ? light_of_part(slot, k_part_direct) : vec3(0.0);
     for (uint i = 0u; i < 4u; ++i) {
       uint group = first + i;
       vec3 light = (lit >> group & 1u) != 0u ? group_light(slot, group) : vec3(0.0);
-      of_group[i] += group == frame.sky_group ? max(light - straight, vec3(0.0)) : light;
+      of_group[i] += group == frame.sky_group ? max(light - direct, vec3(0.0)) : light;
     }
   }
   // Earlier levels weigh by their rays.

@@ -70,7 +70,7 @@ void main() {
   Read all_next_other = read_at(next_other, cache_range(next_other.x, both_next));
   range = cache_range(next.x, both_next && all_next_other.weights > 0.0);
   Read all_next = read_at(next, range);
-  float brings = min(k_returned * all_next.light / max(all_one.light, 1e-30), k_importance_most);
-  float other_brings = min(k_returned * all_next_other.light / max(all_other.light, 1e-30), k_importance_most);
-  add(next, all_next, range, next_other, all_next_other, brings * other_brings);
+  float ratio = min(k_returned * all_next.light / max(all_one.light, 1e-30), k_importance_most);
+  float other_ratio = min(k_returned * all_next_other.light / max(all_other.light, 1e-30), k_importance_most);
+  add(next, all_next, range, next_other, all_next_other, ratio * other_ratio);
 }

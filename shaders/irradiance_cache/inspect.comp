@@ -3,7 +3,7 @@
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "irradiance_cache/seen.glsl"
-#include "overlay/asking.glsl"
+#include "overlay/lookup_place.glsl"
 #include "shaders/shared/irradiance_cache/inspect.h"
 layout(local_size_x = 1) in;
 layout(push_constant, scalar) uniform Push { InspectPush push; };
@@ -15,8 +15,8 @@ layout(scalar) buffer Inspection {
 void main() {
   if (global_index() > 0u) return;
   Seen seen = seen_at(push.pixel, push.width, push.height);
-  Asking a = asking_at(push.pixel, push.width, push.grid, seen);
-  if (a.asks) seen.position = a.position, seen.normal = a.normal;
+  LookupPlace a = lookup_place(push.pixel, push.width, push.grid, seen);
+  if (a.diffuse) seen.position = a.position, seen.normal = a.normal;
   uint count = 0u, under = k_no_record;
   Nearest nearest = nothing_near();
   float nearest_disc = k_infinity;
@@ -44,6 +44,6 @@ void main() {
   }
   bool gathers = paths_gather(nearest);
   if (gathers) count = 0u;
-  uint asks = a.answerable ? k_asks : a.asks ? k_asks_in_vain : k_asks_nothing;
-  header = InspectHeader(seen.solid ? 1u : 0u, asks, count, gathers ? 1u : 0u, under, seen.size, seen.depth, seen.position, seen.normal, under_at);
+  uint lookup = a.answerable ? k_lookup_possible : a.diffuse ? k_lookup_too_steep : k_lookup_none;
+  header = InspectHeader(seen.solid ? 1u : 0u, lookup, count, gathers ? 1u : 0u, under, seen.size, seen.depth, seen.position, seen.normal, under_at);
 }

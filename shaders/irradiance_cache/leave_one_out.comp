@@ -42,10 +42,10 @@ void main() {
     squares += weight * square(1.0 - weight);
     for (uint g = 0u; g < k_record_lanes / 4u; ++g) noise[g] += weight * record_error(other) * record_signs(other, g);
   }
-  bool told = weights > 0.0;
+  bool estimated = weights > 0.0;
   float at_border = 1.0 / max(squares / max(weights, 1e-30), k_least_square);
   int at = int(record * k_residual_texels);
-  residuals[at] = vec4(told ? at_border * (others / weights / light - 1.0) : 0.0, 0.0, 0.0, 0.0);
+  residuals[at] = vec4(estimated ? at_border * (others / weights / light - 1.0) : 0.0, 0.0, 0.0, 0.0);
   for (uint g = 0u; g < k_record_lanes / 4u; ++g)
-    residuals[at + 1 + int(g)] = told ? at_border * (noise[g] / weights - record_error(record) * record_signs(record, g)) / light : vec4(0.0);
+    residuals[at + 1 + int(g)] = estimated ? at_border * (noise[g] / weights - record_error(record) * record_signs(record, g)) / light : vec4(0.0);
 }

@@ -1,7 +1,7 @@
 // What a lookup costs: one at every surface that the camera sees, as paths make them. Only to be timed.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
-#include "overlay/asking.glsl"
+#include "overlay/lookup_place.glsl"
 #include "shaders/shared/irradiance_cache/inspect.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { OverlapPush push; };
@@ -10,7 +10,7 @@ layout(scalar) writeonly buffer LookedUp { float looked_up[]; };
 void main() {
   uint pixel = global_index();
   if (pixel >= push.width * push.height) return;
-  Asking a = asking_at(pixel, push.width, push.grid, seen_at(pixel, push.width, push.height));
+  LookupPlace a = lookup_place(pixel, push.width, push.grid, seen_at(pixel, push.width, push.height));
   Cached found = cache_lookup(a.position, a.normal, a.normal, 0u, a.answerable, 0.0);
   float light = 0.0;
   for (uint p = 0u; p < k_part_count; ++p) light += luminance(found.part[p]);

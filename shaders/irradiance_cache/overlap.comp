@@ -2,7 +2,7 @@
 // order.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
-#include "overlay/asking.glsl"
+#include "overlay/lookup_place.glsl"
 #include "shaders/shared/irradiance_cache/inspect.h"
 #include "lib/wide_sum.glsl"
 layout(local_size_x = 64) in;
@@ -12,7 +12,7 @@ layout(scalar) buffer Overlap { OverlapCounts counts; };
 void main() {
   uint pixel = global_index();
   if (pixel >= push.width * push.height) return;
-  Asking a = asking_at(pixel, push.width, push.grid, seen_at(pixel, push.width, push.height));
+  LookupPlace a = lookup_place(pixel, push.width, push.grid, seen_at(pixel, push.width, push.height));
   uint overlap = 0u;
   Nearest nearest = nothing_near();
   OctreeRange range = cache_range(a.position, a.answerable);
@@ -27,7 +27,7 @@ void main() {
   }
   bool gathers = paths_gather(nearest);
   if (gathers) overlap = 0u;
-  if (!a.asks) return;
+  if (!a.diffuse) return;
   atomicAdd(counts.pixels[min(overlap, k_overlap_bins - 1u)], 1u);
   if (gathers) atomicAdd(counts.gathered, 1u);
   ADD_TO_WIDE_SUM(counts.records, overlap);

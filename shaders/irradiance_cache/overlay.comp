@@ -5,7 +5,7 @@
 #include "lib/picture.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "irradiance_cache/seen.glsl"
-#include "overlay/asking.glsl"
+#include "overlay/lookup_place.glsl"
 #include "irradiance_cache/ink.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { OverlayPush push; };
@@ -16,11 +16,11 @@ void main() {
   if (pixel >= push.width * push.height) return;
   Seen seen = seen_at(pixel, push.width, push.height);
 
-  Asking a = asking_at(pixel, push.width, push.grid, seen);
+  LookupPlace a = lookup_place(pixel, push.width, push.grid, seen);
   uint overlap = 0u;
   Nearest nearest = nothing_near();
   vec4 over = vec4(0.0);  // premultiplied
-  OctreeRange range = cache_range(a.asks ? a.position : seen.position, a.asks || seen.solid);
+  OctreeRange range = cache_range(a.diffuse ? a.position : seen.position, a.diffuse || seen.solid);
   for (uint i = range.first; i < range.last; ++i) {
     uint record = octree_sphere(i);
     int at = int(record * k_record_texels);
@@ -41,7 +41,7 @@ void main() {
     over += (1.0 - over.a) * vec4(ink * alpha, alpha);
   }
   vec3 color = picture_color(picture[pixel]);
-  if (push.overlap != 0u && a.asks) {
+  if (push.overlap != 0u && a.diffuse) {
     // One colour a count up to the scale's end, none served in red, none needed because paths gather in grey.
     vec3 ink = paths_gather(nearest) ? k_gathered_ink : overlap == 0u ? k_unserved_ink : ramp_color(k_ramp_viridis, float(overlap) / push.overlap_most);
     color = mix(color, ink, 0.8);

@@ -20,14 +20,14 @@ void main() {
   for (uint i = range.first; i < range.last; ++i) {
     uint other = octree_sphere(i);
     vec4 place = octree_copy(i), facing = texelFetch(record_texels, int(other * k_record_texels + 1u));
-    vec4 told = texelFetch(record_texels, int(other * k_record_texels + 4u));
+    vec4 hessian = texelFetch(record_texels, int(other * k_record_texels + 4u));
     float weight = other == own ? 0.0 : record_weight(x, n, place, facing, record_shape(other, place));
     // Its Hessian as a form on this record's plane.
     vec3 t, b;
     make_basis(facing.xyz, t, b);
     vec2 u = vec2(dot(tangent, t), dot(tangent, b)), v = vec2(dot(bitangent, t), dot(bitangent, b));
-    mat2 h = mat2(told.x, told.y, told.y, told.z);
-    sum += weight > 0.0 ? weight * vec4(dot(u, h * u), dot(u, h * v), dot(v, h * v), told.w) : vec4(0.0);
+    mat2 h = mat2(hessian.x, hessian.y, hessian.y, hessian.z);
+    sum += weight > 0.0 ? weight * vec4(dot(u, h * u), dot(u, h * v), dot(v, h * v), hessian.w) : vec4(0.0);
     weights += weight;
   }
   pooled[index] = sum / weights;

@@ -26,7 +26,7 @@ struct ErrorSums {
 void propagate(inout ErrorSums sum, vec4 note, vec4 facing, float share) {
   uint bits = floatBitsToUint(note.w), state = (bits - 1u) % k_note_media, media = (bits - 1u) / k_note_media;
   bool there = bits != 0u && share > 0.0;
-  vec3 brings = throughput_unpack(floatBitsToUint(facing.w));
+  vec3 throughput = throughput_unpack(floatBitsToUint(facing.w));
   uint routes = cache.routes[there ? state : 0u];
   ErrorSums here;
   for (uint g = 0u; g < k_groups; ++g) here.noise[g] = here.interpolation_noise[g] = vec4(0.0);
@@ -39,7 +39,7 @@ void propagate(inout ErrorSums sum, vec4 note, vec4 facing, float share) {
     uint record = octree_sphere(i);
     float light = 0.0;
     for (uint p = 0u; p < k_part_count; ++p)
-      light += (routes >> (4u * p) & 15u) < k_component_count ? luminance(brings * record_light(record, p)) : 0.0;
+      light += (routes >> (4u * p) & 15u) < k_component_count ? luminance(throughput * record_light(record, p)) : 0.0;
     weights += weight;
     light *= weight;
     float error = light * record_error(record) / max(record_luminance(record), 1e-30);

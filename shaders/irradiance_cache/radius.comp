@@ -15,13 +15,13 @@ void main() {
   if (index >= push.count) return;
   int at = int((push.first + index) * k_record_texels);
   vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1);
-  vec4 told = texelFetch(record_texels, at + 2);
+  vec4 texel = texelFetch(record_texels, at + 2);
   float least = least_radius(place.xyz);
-  float holds_nothing = push.near * told.y;
-  bool crowds = record_flagged_crowded(told.w) || holds_nothing < push.crowd * least;
+  float holds_nothing = push.near * texel.y;
+  bool crowds = record_flagged_crowded(texel.w) || holds_nothing < push.crowd * least;
   float radius = crowds ? least : max(min(push.error * facing.w, min(push.most, holds_nothing)), least);
   records[at].w = radius;
   records[at + 3] = vec4(0.0, 0.0, 0.0, radius);
   spheres[push.first + index] = vec4(place.xyz, radius);
-  records[at + 2].w = record_flags(told.w, crowds);
+  records[at + 2].w = record_flags(texel.w, crowds);
 }

@@ -15,8 +15,8 @@ void main() {
   vec4 facing = texelFetch(candidate_texels, int(slot * k_candidate_texels + 1u));
   float depth = max(dot(place.xyz - frame.camera_origin, frame.camera_forward), 0.0);
   uint at = (push.first + slot) * k_surface_texels;
-  uint told = uint(abs(place.w)), media = (max(told, 1u) - 1u) / k_candidate_media;
-  bool met = told > 0u && (told - 1u) % k_candidate_media == k_origin_screen, fits = place.w > 0.0 && media < k_surface_media;
+  uint origin_code = uint(abs(place.w)), media = (max(origin_code, 1u) - 1u) / k_candidate_media;
+  bool met = origin_code > 0u && (origin_code - 1u) % k_candidate_media == k_origin_screen, fits = place.w > 0.0 && media < k_surface_media;
   surfaces[at] = met ? vec4(place.xyz, fits ? depth : k_surface_bent) : vec4(0.0, 0.0, 0.0, k_surface_none);
   uint bits = floatBitsToUint(facing.w) | (fits ? media << k_surface_media_shift : 0u);
   surfaces[at + 1u] = met ? vec4(facing.xyz, uintBitsToFloat(bits)) : vec4(0.0);

@@ -24,7 +24,7 @@ struct cache_Vertex {
 bool cache_propagates() { return cache.probing == k_probe_errors || cache.probing == k_probe_errors_beyond; }
 // Beyond the lookup, where what records' rays read is noted.
 // The same states twice over: what records bring is nobody's choice but theirs.
-uint cache_state_of(VertexIn v) { return v.state % k_left_states; }
+uint cache_state_of(VertexIn v) { return v.state % k_delegated_states; }
 bool cache_next_read(uint state) { return cache.probing == k_probe_next && state >= k_fallback_state; }
 // By which a record is drawn.
 float record_lot(VertexIn v) { return sample_2d(v.random, k_pad_record + v.depth).x; }
@@ -57,7 +57,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
 #endif
   for (int facing = 0; facing < k_cache_sides; ++facing) {
     vec3 albedo = v.path.throughput * (facing == 0 ? v.bsdf.diffuse_albedo : v.bsdf.transmitted_albedo) * k_inv_pi;
-    bool asks = x.looks && max3(albedo) > 0.0;
+    bool looks_up = x.looks && max3(albedo) > 0.0;
     // What lies on that side of the surface.
     uint media = 0u;
 #if LUCERNA_VOLUMES
@@ -66,10 +66,10 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
     float sign = facing == 0 ? 1.0 : -1.0;
     // Records hold light of paths whose first event is theirs.
     bool too_long = v.depth > 0u && frame.max_depth < k_deep_paths;
-    Cached found = cache_draw(v.surface.position, sign * x.smooth_side, sign * v.to_world[2], media, asks && !too_long, record_lot(v));
-    bool missing = asks && found.weight <= 0.0;
+    Cached found = cache_draw(v.surface.position, sign * x.smooth_side, sign * v.to_world[2], media, looks_up && !too_long, record_lot(v));
+    bool missing = looks_up && found.weight <= 0.0;
     // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
-    bool notes = !too_long && ((missing && found.guide == k_no_guide) || (asks && notes_all)) && cache.probing != k_probe_none && !cache_propagates() &&
+    bool notes = !too_long && ((missing && found.guide == k_no_guide) || (looks_up && notes_all)) && cache.probing != k_probe_none && !cache_propagates() &&
                  (cache.probing != k_probe_next || next_read) && !(beyond && cache_coin(v));
     bool servable = cache_can_serve(sign * x.smooth_side, sign * v.to_world[2]);
     if (notes && (servable || screen)) {

@@ -408,7 +408,7 @@ bool bsdf_glossy(Bsdf b) {
 }
 
 // Straight transmission past shadow rays: of a smooth thin wall; 0 for everything else.
-vec3 bsdf_straight(Bsdf b, float mu) {
+vec3 bsdf_undeflected(Bsdf b, float mu) {
 #if LUCERNA_THIN_GLASS
   if (b.delta && !b.solid) return b.glass * b.tint * (1.0 - glass_fresnel(b, mu));
 #endif
@@ -416,7 +416,7 @@ vec3 bsdf_straight(Bsdf b, float mu) {
 }
 // Probability of that null event among a path's ways. Whether it happens is decided by a number of its own (null_sampler),
 // before bsdf_sample, which draws from the others alone.
-float bsdf_straight_probability(Bsdf b, float mu) {
+float bsdf_undeflected_probability(Bsdf b, float mu) {
 #if LUCERNA_THIN_GLASS
   if (b.delta && !b.solid) return b.p_glass * (1.0 - glass_choice(glass_fresnel(b, mu)));
 #endif
@@ -435,7 +435,7 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec3 cosine, vec2 lobe) {
   s.pdf = 0.0;
   float at = lobe.x;
 #if LUCERNA_THIN_GLASS
-  at *= 1.0 - bsdf_straight_probability(b, wo.z);  // the last share of the lobes
+  at *= 1.0 - bsdf_undeflected_probability(b, wo.z);  // the last share of the lobes
 #endif
   s.wi = cosine;
   bool through = at >= b.p_diffuse && at < b.p_diffuse + b.p_transmitted;

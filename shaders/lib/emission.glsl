@@ -255,7 +255,7 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
 #if LUCERNA_ENVIRONMENT_MAP
   if (kind == k_light_environment) {
     vec3 towards;
-#if LUCERNA_SKY_APART
+#if LUCERNA_SEPARATE_SKY
     towards = environment_in_cell(sky_or_sun_cell(sky, floatBitsToUint(b.x), detail), u_direction);
     Environment around = environment_radiance(towards);
     emitted = sky ? around.sky : around.sun;

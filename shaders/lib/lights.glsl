@@ -135,7 +135,7 @@ vec3 environment_in_cell(uint cell, vec2 u) {
 }
 #endif
 
-#if LUCERNA_SKY_APART
+#if LUCERNA_SEPARATE_SKY
 #include "lib/sky.glsl"
 #else
 // Radiance that arrives from direction -d, and the density with which sample_light chooses d.
@@ -325,7 +325,7 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   // By numbers that lamps have no other use for, so that these are as even.
   light = draw_lamp(light, position, normal, detail.x, u.x, pmf);
 #endif
-#if LUCERNA_SKY_APART
+#if LUCERNA_SEPARATE_SKY
   uint sky_end = uint(sky_share * 4294967040.0);
   s.sky = detail.y < sky_end || sky_share >= 1.0;
   // What is left of the number is even again.
@@ -339,7 +339,7 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
 #if LUCERNA_LIGHT_GROUPS > 1
   s.group = group_of_light(at, s.sky);
 #endif
-#if LUCERNA_SKY_APART
+#if LUCERNA_SEPARATE_SKY
   if (s.sky) kind = k_light_environment;
 #endif
   // Point and spot: irradiance I/d^2.
@@ -385,7 +385,7 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   if (kind == k_light_environment) {
     s.distance = k_infinity;
     s.delta = false;
-#if LUCERNA_SKY_APART
+#if LUCERNA_SEPARATE_SKY
     s.direction = environment_in_cell(sky_or_sun_cell(s.sky, floatBitsToUint(b.x), detail), u);
     Environment e = environment_radiance(s.direction);
     s.radiance = s.sky ? e.sky : e.sun;

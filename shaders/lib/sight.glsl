@@ -4,7 +4,7 @@
 #include "lib/surface.glsl"
 
 struct SightStep {
-  bool straight;   // on as it came: the surface is cut out there, or a thin wall of smooth glass
+  bool undeflected;   // on as it came: the surface is cut out there, or a thin wall of smooth glass
   bool cut_out;    // the former
   bool turned;     // mirrored or refracted; neither: what is met there is what is seen, or it is rough and shows no surface
   bool mirrored;   // if turned
@@ -15,15 +15,15 @@ struct SightStep {
 SightStep sight_step(Surface surface, vec3 direction) {
   SightStep s = SightStep(false, false, false, false, false, direction);
 #if LUCERNA_ALPHA
-  s.straight = s.cut_out = surface_coverage(surface) < 0.5;
+  s.undeflected = s.cut_out = surface_coverage(surface) < 0.5;
   if (s.cut_out) return s;
 #endif
   mat3 to_world = shading_frame(surface, -direction);
   vec3 wo = -direction * to_world;  // transposed
   Bsdf bsdf = make_bsdf(surface.parameters, wo.z);
 #if LUCERNA_THIN_GLASS
-  s.straight = bsdf_straight_probability(bsdf, wo.z) > 0.5;
-  if (s.straight) return s;
+  s.undeflected = bsdf_undeflected_probability(bsdf, wo.z) > 0.5;
+  if (s.undeflected) return s;
 #endif
   s.diffuse = max3(bsdf.diffuse_albedo + bsdf.transmitted_albedo) > 0.0;
   if (s.diffuse) return s;

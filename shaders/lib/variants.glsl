@@ -17,8 +17,8 @@
 #ifndef LUCERNA_ENVIRONMENT_MAP
 #define LUCERNA_ENVIRONMENT_MAP 0
 #endif
-#ifndef LUCERNA_SKY_APART
-#define LUCERNA_SKY_APART 0
+#ifndef LUCERNA_SEPARATE_SKY
+#define LUCERNA_SEPARATE_SKY 0
 #endif
 #ifndef LUCERNA_SUN
 #define LUCERNA_SUN 0
@@ -189,8 +189,8 @@
 #endif
 
 // Photons: where they are not worth their time paths from the eye bring the light instead.
-#ifndef LUCERNA_LEFT_TO_PATHS
-#define LUCERNA_LEFT_TO_PATHS 0
+#ifndef LUCERNA_DELEGATED_REGIONS
+#define LUCERNA_DELEGATED_REGIONS 0
 #endif
 
 // The tracer (lib/bvh.glsl).

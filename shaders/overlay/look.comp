@@ -22,8 +22,8 @@ void main() {
     return;
   }
   if (path_depth(path) >= frame.max_depth) return;
-  if (!on.straight) path.nulls = 1u;  // not straight any more
+  if (!on.undeflected) path.nulls = 1u;  // not straight any more
   path.bits += 1u << k_path_events_shift;
-  if (!on.straight && !on.turned) return;
+  if (!on.undeflected && !on.turned) return;
   queue_ray(slot, path, offset_origin(surface, on.direction), on.direction);
 }

@@ -1,6 +1,6 @@
 // The photons that count at what one pixel shows, by one invocation.
 #include "lib/invocation.glsl"
-#include "overlay/asking.glsl"
+#include "overlay/lookup_place.glsl"
 #include "photons/photon.glsl"
 const uint k_photons_around = k_photon_most_candidates;
 #include "photons/around.glsl"
@@ -21,8 +21,8 @@ void photon_met(vec4 a, vec4 b, vec3 wi, float kernel) {
 
 void main() {
   if (global_index() > 0u) return;
-  Asking seen = asking_at(push.pixel, push.width, push.grid, seen_at(push.pixel, push.width, push.height));
-  Around around = photons_around(seen.position, seen.normal, seen.asks);
+  LookupPlace seen = lookup_place(push.pixel, push.width, push.grid, seen_at(push.pixel, push.width, push.height));
+  Around around = photons_around(seen.position, seen.normal, seen.diffuse);
   header = PhotonInspectHeader(seen.position, photon_radius(seen.position), seen.normal, around.area, around.irradiance, around.density,
-                               seen.asks ? 1u : 0u, listed, 0u, 0u);
+                               seen.diffuse ? 1u : 0u, listed, 0u, 0u);
 }

@@ -16,7 +16,7 @@ const uint k_irradiance_texels = 1u + k_group_count;
 const uint k_irradiance_texels = 1u;
 #endif
 
-bool irradiance_asked(uint state) { return (irradiance.states[state >> 5] >> (state & 31u) & 1u) != 0u; }
+bool reads_irradiance(uint state) { return (irradiance.states[state >> 5] >> (state & 31u) & 1u) != 0u; }
 
 // Brings what is known here of the diffuse lobe's tertiary light; whether anything is. What light brings that comes through the
 // surface is not known.

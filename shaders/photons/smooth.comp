@@ -4,7 +4,7 @@
 #include "shaders/shared/photons/inspect.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PhotonSmoothPush push; };
-uniform samplerBuffer surface_texels;  // of every pixel, as overlay/asking.glsl reads them
+uniform samplerBuffer surface_texels;  // of every pixel, as overlay/lookup_place.glsl reads them
 layout(scalar) readonly buffer PhotonDensities { float densities[]; };
 layout(scalar) writeonly buffer PhotonSmoothed { float smoothed[]; };
 layout(scalar) buffer PhotonDensityMost { uint density_most; };

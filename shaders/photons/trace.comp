@@ -55,9 +55,9 @@ void main() {
     if (at < photon_counts[k_photons_capacity]) {
       photon_list[at] = p;
       photon_ids[at] = path.pixel << k_photon_id_events | (depth & k_most_light_events);
-      if (photons.tells_radiance != 0u)
+      if (photons.stores_radiance != 0u)
         photon_radiances[at] = min(luminance(v.arriving) / max(path.pdf, 1e-37), k_radiance_unmet);
-      if (photons.tells_surface != 0u)
+      if (photons.stores_surface != 0u)
         photon_surfaces[at] = PhotonSurface(hit.prim << 1 | (dot(ray.direction, v.surface.normal_g) > 0.0 ? 1u : 0u), barycentric_pack(hit));
     }
   }

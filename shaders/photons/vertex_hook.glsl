@@ -41,9 +41,9 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
 #if LUCERNA_PHOTON_IRRADIANCE
   some = some || irradiance.triangles > 0u;
 #endif
-  if (reads && some && v.state % k_left_states >= k_gather_state) vertex.from = k_known_state;
+  if (reads && some && v.state % k_delegated_states >= k_gather_state) vertex.from = k_known_state;
 #if LUCERNA_PHOTON_IRRADIANCE
-  if (reads && irradiance_asked(v.state)) {
+  if (reads && reads_irradiance(v.state)) {
     bool known = irradiance_read(v, o);
     if (!known) vertex.from = k_fallback_state;
     // Where nothing is known the path goes on for all but the light that no path finds.
@@ -107,13 +107,13 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
         // Its facet is turned into this one's plane: the cosine that the flux is divided by is that to the photon's own facet.
         wi = reflected ? turn_along(wi, side, v.side) : turn_along(wi, front, v.surface.normal_g);
         vec3 flux = diffuse_of_flux(v.bsdf, v.to_world, v.surface.normal_g, wi, reflected) * b.rgb, light = flux * photon_kernel(d2, r);
-        bool brought = part > 0u && (components >> 4u * part & 15u) < k_component_count;
-        found_flat += brought ? flux * photon_flat_kernel(r) : vec3(0.0);
+        bool contributes = part > 0u && (components >> 4u * part & 15u) < k_component_count;
+        found_flat += contributes ? flux * photon_flat_kernel(r) : vec3(0.0);
         found_1 += part == 1u ? light : vec3(0.0);
         found_2 += part == 2u ? light : vec3(0.0);
         found_3 += part == 3u ? light : vec3(0.0);
 #if LUCERNA_GROUP_SUMS
-        uint group = brought ? bits >> k_photon_group_shift : k_group_count;
+        uint group = contributes ? bits >> k_photon_group_shift : k_group_count;
         [[unroll]] for (uint g = 0u; g < k_group_count; ++g) by_group[g] += group == g ? light : vec3(0.0);
 #endif
       }
@@ -146,7 +146,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
 vec3 photons_cosine(VertexIn v, inout photons_Vertex x, vec2 u, vec3 cosine) { return cosine; }
 void photons_weigh(VertexIn v, photons_Vertex x, vec3 direction, inout BsdfSample b) {}
 uint photons_state(VertexIn v, photons_Vertex x, BsdfSample b, uint state) {
-  uint block = v.state - v.state % k_left_states;
+  uint block = v.state - v.state % k_delegated_states;
   return x.from != 0u && b.event == k_event_diffuse ? block + x.from + state % k_gather_state : state;
 }
 void photons_leave(VertexIn v, inout photons_Vertex x, Leaving l, inout vec3 throughput, inout bool go_on) {}

@@ -32,6 +32,7 @@ struct PreviewPackPush {
   uint width, height;
   float exposure;
   uint guided;  ///< not 0: where there are no samples the surface is known otherwise
+  uint show;    ///< bit i: component i is part of what is shown
 };
 
 struct PreviewHalvePush {
@@ -98,12 +99,25 @@ struct PreviewResolvePush {
   uint moved;            ///< not 0: what was shown before was seen from elsewhere
 };
 
+LUCERNA_CONST uint k_preview_tile = 16u;  ///< pixels along the side of a tile of which errors are estimated
+struct PreviewJudgePush {
+  uint width, height;            ///< of the picture
+  uint film_width, film_height;  ///< of the film whose new samples judge it
+  uint step;                     ///< pixels along the side of one of the film's; 0: there are no new samples
+};
+/// A tile of what is shown. Errors are relative: of means over a few pixels, over their luminance or k_preview_dark.
+struct PreviewTile {
+  float error;     ///< expected of what is shown now: mean over its pixels
+  float expected;  ///< of what was shown before: mean square of the expected errors
+  float square;    ///< ... and square of the tile's mean error by samples taken since; below 0 by chance
+  float noise;     ///< variance of the tile's mean of these samples, relative; below 0: there are none
+};
+
 /// Pixels darker than this, of white, err in proportion to it.
 LUCERNA_CONST float k_preview_dark = 0.02f;
-/// Sums over a workgroup's pixels, of luminance: all, and what of it is older light or filtered; and of the relative
-/// errors that are expected of a mean over 3x3 pixels (1 at most).
+/// Sums over a workgroup's pixels, of luminance: all, and what of it is older light or filtered.
 struct PreviewShares {
-  float all, stale, filtered, error;
+  float all, stale, filtered;
 };
 
 LUCERNA_SHARED_END

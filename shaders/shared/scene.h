@@ -83,7 +83,7 @@ LUCERNA_CONST uint k_light_environment = 4u;
 // environment_texels: one a texel: (radiance rgb, density of the directions through it as environment_alias chooses
 // them, per solid angle). environment_alias: like light_alias.
 //
-// Where records hold the environment's light (LUCERNA_SKY_APART) it is two emitters: the sun, texels brighter than a
+// Where records hold the environment's light (LUCERNA_SEPARATE_SKY) it is two emitters: the sun, texels brighter than a
 // threshold, and the sky, the others; filtered between texels, each has its share of a direction's radiance. The density
 // and the alias table above are then the sky's, the density's sign bit tells a texel of the sun, and the sky is no entry of
 // scene_lights: light samples choose it with a probability of its own. The sun (LUCERNA_SUN) is the entry of

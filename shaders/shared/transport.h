@@ -16,13 +16,13 @@ LUCERNA_CONST uint k_known_state = 24u;
 /// In which nothing can be brought any more: in place of the eye's own among those, which no path is in that has looked up.
 LUCERNA_CONST uint k_dead_state = 24u;
 /// From here on the same once more, of paths in pixels where light that a solver brings elsewhere is left to paths from the
-/// eye (solvers::SolverType::leaves).
-LUCERNA_CONST uint k_left_states = 32u;
+/// eye (solvers::SolverType::delegable_components).
+LUCERNA_CONST uint k_delegated_states = 32u;
 LUCERNA_CONST uint k_automaton_states = 64u;
 
-// Of a path since its last scattering event, where records hold the sky's light (LUCERNA_SKY_APART):
+// Of a path since its last scattering event, where records hold the sky's light (LUCERNA_SEPARATE_SKY):
 LUCERNA_CONST uint k_path_sky_only = 1u << 6;     ///< a record's first ray: of all lights it sees the sky alone
-LUCERNA_CONST uint k_path_sky_unasked = 1u << 7;  ///< light samples at the last vertex were of other lights only
+LUCERNA_CONST uint k_path_sky_not_sampled = 1u << 7;  ///< light samples at the last vertex were of other lights only
 LUCERNA_CONST uint k_path_sky_known = 1u << 8;    ///< what the ray would bring of the sky has been looked up
 LUCERNA_CONST uint k_path_branched = 1u << 31;    ///< a vertex of it is followed by several branches; no other will be
 LUCERNA_CONST uint k_path_state_mask = 0x3fu;

@@ -9,8 +9,8 @@
 layout(scalar) readonly buffer SplatBlock { SplatFrame splat_frame; };
 uniform samplerBuffer splat_picture;
 #endif
-#if LUCERNA_LEFT_TO_PATHS
-#include "lib/left_regions.glsl"
+#if LUCERNA_DELEGATED_REGIONS
+#include "lib/delegated_regions.glsl"
 #endif
 
 void main() {
@@ -38,10 +38,10 @@ void main() {
   p.pixel = inside ? pixel : 0xffffffffu;
   p.sample_index = sample_index;
   p.bits = 0u;
-#if LUCERNA_LEFT_TO_PATHS
+#if LUCERNA_DELEGATED_REGIONS
   // A coin of its own: either way of computing is right in the mean, whatever else is drawn.
   uint coin = hash_combine(hash_combine(pixel, sample_index), frame.seed ^ 0x2c1b3c6du);
-  if (float(coin >> 8) * (1.0 / 16777216.0) < left_share(place)) p.bits = k_left_states;
+  if (float(coin >> 8) * (1.0 / 16777216.0) < delegated_share(place)) p.bits = k_delegated_states;
 #endif
   p.media = 0u;
 #if LUCERNA_VOLUMES
@@ -60,16 +60,16 @@ void main() {
     uvec2 size = uvec2(splat_frame.width, splat_frame.height);
     bool same = size == uvec2(frame.width, frame.height);
     uvec2 at = same ? xy : min(uvec2(place * vec2(size)), size - 1u);
-    vec4 brought = texelFetch(splat_picture, int(at.y * size.x + at.x));
-    radiance[radiance_texel(slot, lane_of(0u, splat_frame.component))].rgb = brought.rgb;
+    vec4 splat = texelFetch(splat_picture, int(at.y * size.x + at.x));
+    radiance[radiance_texel(slot, lane_of(0u, splat_frame.component))].rgb = splat.rgb;
 #if LUCERNA_GROUP_SUMS
     // Each colour's light is that of its group. Where two are of one group its texel is written twice alike.
-    uvec3 groups = uvec3(floatBitsToUint(brought.a)) >> (k_splat_owner_bits * uvec3(0u, 1u, 2u)) &
+    uvec3 groups = uvec3(floatBitsToUint(splat.a)) >> (k_splat_owner_bits * uvec3(0u, 1u, 2u)) &
                    ((1u << k_splat_owner_bits) - 1u);
     uint lit = 0u;
     for (int c = 0; c < 3; ++c) {
-      if (brought[c] > 0.0) {
-        vec3 of_group = mix(vec3(0.0), brought.rgb, equal(groups, uvec3(groups[c])));
+      if (splat[c] > 0.0) {
+        vec3 of_group = mix(vec3(0.0), splat.rgb, equal(groups, uvec3(groups[c])));
         radiance[radiance_texel(slot, k_component_count + groups[c])].rgb = of_group;
         lit |= 1u << groups[c];
       }

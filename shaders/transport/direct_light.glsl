@@ -1,6 +1,6 @@
 // Direct light, for shade.comp: emitters that a path meets and emitters that a vertex samples, weighted against each other.
 //
-// Where records hold the sky's light (LUCERNA_SKY_APART), a vertex whose diffuse lobe has looked it up (sky_known) brings it
+// Where records hold the sky's light (LUCERNA_SEPARATE_SKY), a vertex whose diffuse lobe has looked it up (sky_known) brings it
 // by neither strategy: its light samples give the sky to the glossy lobe alone, and what a diffuse ray meets of the sky is
 // left out. The sun and all other lights are sampled as ever.
 #ifndef LUCERNA_TRANSPORT_DIRECT_LIGHT
@@ -17,17 +17,17 @@ float mis_weight(float mine, float other) {
 // Of what a path's ray meets that light samples of its last vertex would have found with density pdf.
 float met_weight(PathState path, float pdf) { return path.pdf > 0.0 ? mis_weight(path.pdf, pdf) : 1.0; }
 
-#if LUCERNA_SKY_APART
+#if LUCERNA_SEPARATE_SKY
 // Probability of the sky among the lights that the path's last vertex sampled.
-float sky_share_before(PathState path) { return (path.bits & k_path_sky_unasked) != 0u ? 0.0 : frame.environment_light_pmf; }
+float sky_share_before(PathState path) { return (path.bits & k_path_sky_not_sampled) != 0u ? 0.0 : frame.environment_light_pmf; }
 // ... and of a vertex itself: where the diffuse lobe knows the sky and nothing glossy asks for it, none.
-bool sky_unasked(Bsdf bsdf, bool sky_known) { return sky_known && !bsdf_glossy(bsdf); }
+bool sky_not_sampled(Bsdf bsdf, bool sky_known) { return sky_known && !bsdf_glossy(bsdf); }
 #endif
 
 // k_path_sky_* of a path that leaves a vertex by that event.
 uint sky_bits(Bsdf bsdf, bool sky_known, uint event) {
-#if LUCERNA_SKY_APART
-  return (sky_unasked(bsdf, sky_known) ? k_path_sky_unasked : 0u) | (sky_known && event == k_event_diffuse ? k_path_sky_known : 0u);
+#if LUCERNA_SEPARATE_SKY
+  return (sky_not_sampled(bsdf, sky_known) ? k_path_sky_not_sampled : 0u) | (sky_known && event == k_event_diffuse ? k_path_sky_known : 0u);
 #else
   return 0u;
 #endif
@@ -72,7 +72,7 @@ void record_light_met(uint slot, PathState path, vec3 light, float pdf, uint clu
 // What a path that leaves the scene brings; where groups of lights are kept apart, without the sun's part.
 vec3 environment_met(uint slot, PathState path, vec3 direction, out vec3 sun) {
   sun = vec3(0.0);
-#if LUCERNA_SKY_APART
+#if LUCERNA_SEPARATE_SKY
   Environment e = environment_radiance(direction);
   float sky_share = sky_share_before(path);
   vec3 light = (path.bits & k_path_sky_known) != 0u ? vec3(0.0) : e.sky * met_weight(path, e.pdf_sky * sky_share);
@@ -103,7 +103,7 @@ vec3 environment_met(uint slot, PathState path, vec3 direction, out vec3 sun) {
 
 // Of an emissive surface that light samples find with density pdf; the sky apart, with its share of it.
 float emissive_weight(PathState path, float pdf) {
-#if LUCERNA_SKY_APART
+#if LUCERNA_SEPARATE_SKY
   return (path.bits & k_path_sky_only) != 0u ? 0.0 : met_weight(path, pdf * (1.0 - sky_share_before(path)));
 #else
   return met_weight(path, pdf);
@@ -138,8 +138,8 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
   uint component_g = automaton_component(automaton_after(state, k_event_glossy));
   vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
   float sky_share = 0.0;
-#if LUCERNA_SKY_APART
-  sky_share = sky_unasked(bsdf, sky_known) ? 0.0 : frame.environment_light_pmf;
+#if LUCERNA_SEPARATE_SKY
+  sky_share = sky_not_sampled(bsdf, sky_known) ? 0.0 : frame.environment_light_pmf;
 #endif
   LightSample l = sample_light(surface.position, to_world[2], sample_vertex_bits(random, depth, k_pad_light_choice).x,
                                sample_vertex(random, depth, k_pad_light_uv),
@@ -169,17 +169,17 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
   shadow.glossy = component_g < k_component_count ? arrives * f.glossy : vec3(0.0);
   shadow.lanes = lane_of(l.group, component_d) | lane_of(l.group, component_g) << 8;
   shadow.tag = 0u;
-#if LUCERNA_SKY_APART
+#if LUCERNA_SEPARATE_SKY
   if (l.sky && sky_known) shadow.diffuse = vec3(0.0);
 #endif
   bool finite = is_finite(shadow.diffuse) && is_finite(shadow.glossy);
-  bool worth = wanted && sides_agree && l.pdf > 0.0 && (!finite || max3(shadow.diffuse) + max3(shadow.glossy) > 0.0);
-  if (worth && !finite) atomicAdd(counters[k_counter_dropped], 1u);
+  bool contributes = wanted && sides_agree && l.pdf > 0.0 && (!finite || max3(shadow.diffuse) + max3(shadow.glossy) > 0.0);
+  if (contributes && !finite) atomicAdd(counters[k_counter_dropped], 1u);
 #if LUCERNA_LEARNED
   for (uint once = 0u; once < (frame.learning != 0u && wanted && path.nulls == 0u && depth < k_learned_vertices ? 1u : 0u); ++once)
-    record_light_sample(slot, path, surface.position, to_world[2], l, f, worth && finite, shadow);
+    record_light_sample(slot, path, surface.position, to_world[2], l, f, contributes && finite, shadow);
 #endif
-  if (worth && finite) {
+  if (contributes && finite) {
     Ray shadow_ray;
     shadow_ray.origin = offset_origin(surface, l.direction);
     shadow_ray.direction = l.direction;

@@ -69,11 +69,11 @@ LightVertex light_vertex(inout PathState path, Ray ray, Hit hit, Sampler random)
 #endif
   v.stays = v.lit && !v.passed;
 #if LUCERNA_THIN_GLASS
-  float p_straight = bsdf_straight_probability(v.bsdf, v.wo.z);
-  if (v.stays && u_null.y < p_straight) {
+  float p_undeflected = bsdf_undeflected_probability(v.bsdf, v.wo.z);
+  if (v.stays && u_null.y < p_undeflected) {
     v.passed = true;
     // What the path carries on; the surface's other lobes are lit by what it has brought.
-    path.throughput *= bsdf_straight(v.bsdf, v.wo.z) / p_straight;
+    path.throughput *= bsdf_undeflected(v.bsdf, v.wo.z) / p_undeflected;
   }
 #endif
   return v;

@@ -77,7 +77,7 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
   if (go_on && !finite) atomicAdd(counters[k_counter_dropped], 1u);
   go_on = go_on && finite;
   uint sky = sky_bits(v.bsdf, sky_known, b.event);
-#if LUCERNA_SKY_APART && !LUCERNA_EMISSIVE && !LUCERNA_SUN
+#if LUCERNA_SEPARATE_SKY && !LUCERNA_EMISSIVE && !LUCERNA_SUN
   // The ray could meet no light but the sky's: only where it may go on to another is it worth tracing.
   go_on = go_on && ((sky & k_path_sky_known) == 0u || automaton_goes_on(next));
 #endif
@@ -191,8 +191,8 @@ void main() {
       vec3 wo = wo_world * to_world;   // transposed
       Bsdf bsdf = make_bsdf(surface.parameters, wo.z);
 #if LUCERNA_THIN_GLASS
-      float p_straight = bsdf_straight_probability(bsdf, wo.z);
-      passed = !again && u_null.y < p_straight;
+      float p_undeflected = bsdf_undeflected_probability(bsdf, wo.z);
+      passed = !again && u_null.y < p_undeflected;
       if (passed) random = random_null;  // the vertex behind has the numbers of this depth
 #endif
       // What passes is no event and not counted; the surface's other lobes are lit all the same.
@@ -237,7 +237,7 @@ void main() {
         hooks_end(v, hooks);
       }
 #if LUCERNA_THIN_GLASS
-      if (passed) path.throughput *= bsdf_straight(bsdf, wo.z) / p_straight;
+      if (passed) path.throughput *= bsdf_undeflected(bsdf, wo.z) / p_undeflected;
 #endif
     }
     if (passed) {

@@ -32,13 +32,13 @@ void main() {
     Ray ray = load_shadow_ray(slot);
     Surface surface = make_surface(ray, hit);
     float coverage = surface_coverage(surface);
-    vec3 straight = vec3(0.0);
+    vec3 undeflected = vec3(0.0);
 #if LUCERNA_THIN_GLASS
     mat3 to_world = shading_frame(surface, -ray.direction);
     float mu = dot(to_world[2], -ray.direction);
-    straight = bsdf_straight(make_bsdf(surface.parameters, mu), mu);
+    undeflected = bsdf_undeflected(make_bsdf(surface.parameters, mu), mu);
 #endif
-    vec3 transmittance = vec3(1.0 - coverage) + coverage * straight;
+    vec3 transmittance = vec3(1.0 - coverage) + coverage * undeflected;
     s.diffuse *= transmittance;
     s.glossy *= transmittance;
     if (max3(s.diffuse) + max3(s.glossy) > 0.0) {

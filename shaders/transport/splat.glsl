@@ -15,7 +15,7 @@ layout(scalar) buffer SplatBlue { LongSum splat_blue[]; };
 layout(scalar) buffer SplatOwnerList { SplatOwners splat_owners[]; };
 #endif
 #if LUCERNA_SPLATS_WEIGHED
-layout(scalar) buffer SplatWorths { LongSum splat_worths[]; };  // by stratum of emission
+layout(scalar) buffer SplatContributions { LongSum splat_contributions[]; };  // by stratum of emission
 #endif
 
 #if LUCERNA_GROUP_SUMS
@@ -45,8 +45,8 @@ void add_splat(uint slot, ShadowState state) {
 #endif
   units += coin;
 #if LUCERNA_SPLATS_WEIGHED
-  uvec2 worth = two_words(min(luminance(units), k_most_splat));
-  ADD_TO_LONG_SUM(splat_worths[state.tag], worth.x, worth.y);
+  uvec2 contribution = two_words(min(luminance(units), k_most_splat));
+  ADD_TO_LONG_SUM(splat_contributions[state.tag], contribution.x, contribution.y);
 #else
   uvec2 red = two_words(units.r), green = two_words(units.g), blue = two_words(units.b);
   ADD_TO_LONG_SUM(splat_red[state.lanes], red.x, red.y);

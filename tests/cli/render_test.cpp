@@ -225,19 +225,19 @@ TEST_CASE("--error: samples go where the noise is, and unreached targets are rep
   CHECK(nowhere.status == 1);
   CHECK(nowhere.out.find("name at least one output") != std::string::npos);
   // The ledger of the render, in JSON and as a table with as many lines.
-  const auto [reported, nothing] = stats("--samples 32 --ledger " + (f / "e.csv").string());
+  const auto [result, nothing] = stats("--samples 32 --ledger " + (f / "e.csv").string());
   std::ifstream table(f / "e.csv");
   size_t lines = 0;
   for (std::string line; std::getline(table, line);) ++lines;
-  CHECK(reported["ledger"].size() + 1 == lines);
+  CHECK(result["ledger"].size() + 1 == lines);
   CHECK(lines > 5);
-  CHECK(reported["ledger"].back()["paths"] == reported["paths"]);
-  CHECK(reported["ledger"].back()["seen"]["sum"] == reported["error"]["seen"]);
-  CHECK(reported["ledger"].back()["of_mean"]["sum"] == reported["error"]["of_mean"]);
+  CHECK(result["ledger"].back()["paths"] == result["paths"]);
+  CHECK(result["ledger"].back()["seen"]["sum"] == result["error"]["seen"]);
+  CHECK(result["ledger"].back()["of_mean"]["sum"] == result["error"]["of_mean"]);
   double shares = 0;
-  for (const auto& component : reported["error"]["components"]) shares += component["share"].get<double>();
+  for (const auto& component : result["error"]["components"]) shares += component["share"].get<double>();
   CHECK(shares == Approx(1));
-  CHECK(reported["forecast"]["seconds_to"]["0.01"][0] <= reported["forecast"]["seconds_to"]["0.01"][2]);
+  CHECK(result["forecast"]["seconds_to"]["0.01"][0] <= result["forecast"]["seconds_to"]["0.01"][2]);
   CHECK(j["ledger"].back()["forecast_rays"][1].get<double>() ==
         Approx(j["rays"].get<double>()).epsilon(0.01));
   refused("render " + scene("cornell") + " --quiet -o " + (f / "e.exr").string() +
@@ -267,8 +267,8 @@ TEST_CASE("--stats and --ledger report noise and bias of lookups separately") {
     std::ifstream file(f / "b.json");
     return nlohmann::json::parse(file);
   };
-  const auto j =
-      stats("--samples 6 --set components.caustic=photons --set photons.worth=false --set photons.radius=6");
+  const auto j = stats(
+      "--samples 6 --set components.caustic=photons --set photons.efficiency=false --set photons.radius=6");
   const auto& error = j["error"];
   CHECK(error["records"]["seen"] == 0);
   CHECK(error["records"]["of_mean"] == 0);
@@ -289,7 +289,7 @@ TEST_CASE("--stats and --ledger report noise and bias of lookups separately") {
   CHECK(head.find(",seen_records,seen_bias,seen_total,of_mean_records,of_mean_bias,of_mean_total,") !=
         std::string::npos);
   // One sample has no halves, so the bias is unknown; paths have no bias.
-  CHECK(stats("--set components.caustic=photons --set photons.worth=false --samples 1")["error"]["bias"]
+  CHECK(stats("--set components.caustic=photons --set photons.efficiency=false --samples 1")["error"]["bias"]
             .is_null());
   CHECK_FALSE(stats("--samples 6 --set components.caustic=path")["error"].contains("bias"));
 }

@@ -62,15 +62,15 @@ TEST_CASE("no accuracy is reported while a cache is built, however often progres
     keeper.follow(bed.r, 1);
     const auto reported = keeper.publish(bed.r, true);
     if (bed.r.samples() < 2) {
-      for (const stats::Entry& e : reported->ledger.entries()) CHECK_FALSE(e.told);
+      for (const stats::Entry& e : reported->ledger.entries()) CHECK_FALSE(e.has_error);
       bed.r.finish_ledger();
-      CHECK_FALSE(bed.r.ledger().entries().back().told);
+      CHECK_FALSE(bed.r.ledger().entries().back().has_error);
       CHECK_FALSE(stats::seconds_to(bed.r.ledger(), 10).has_value());
     }
   }
   bed.r.finish_ledger();
   for (const stats::Entry& e : bed.r.ledger().entries()) {
-    if (!e.told) continue;
+    if (!e.has_error) continue;
     CHECK(e.samples >= 2);
     CHECK(e.error[0] > 0);
   }

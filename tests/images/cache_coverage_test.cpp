@@ -86,15 +86,15 @@ TEST_CASE("passes that find few gaps with one path per pixel trace more paths pe
   for (size_t k = 0; k < 8 && k < passes.size(); ++k) {
     const auto looks = double(passes[k].paths) / (k_side * k_side);
     const double most = k < 3 ? 1 : std::min(16.0, double(2 << (k - 3)));
-    INFO("pass " << k << ": " << passes[k].asked << " gaps, with " << looks << " paths per pixel");
+    INFO("pass " << k << ": " << passes[k].uncovered << " gaps, with " << looks << " paths per pixel");
     CHECK(looks >= 1);
     CHECK(looks <= most);
     // No more paths than needed, and no fewer while more are allowed.
-    CHECK((looks == most || double(passes[k].asked) >= 0.1 * k_side * k_side));
-    CHECK((looks == 1 || double(passes[k].asked) < 0.25 * k_side * k_side));
+    CHECK((looks == most || double(passes[k].uncovered) >= 0.1 * k_side * k_side));
+    CHECK((looks == 1 || double(passes[k].uncovered) < 0.25 * k_side * k_side));
   }
   CHECK(passes[6].paths == 16 * k_side * k_side);
-  const auto share = [&](size_t k) { return double(passes[k].asked) / double(passes[k].paths); };
+  const auto share = [&](size_t k) { return double(passes[k].uncovered) / double(passes[k].paths); };
   INFO("gaps: " << share(2) << " of the paths in the third pass, " << share(passes.size() - 1)
                 << " in the last");
   CHECK(share(passes.size() - 1) < 0.25 * share(2));

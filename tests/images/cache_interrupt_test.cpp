@@ -216,12 +216,12 @@ TEST_CASE("a cache build can finish early at any time, and the picture is that o
     INFO("after " << where(r));
     ready = test::cache(r)->ready();
     const uint32_t before = test::cache(r)->status().records;
-    r.make_do();
+    r.finish_early();
     REQUIRE(test::cache(r)->ready());
     const irradiance_cache::CacheStatus& s = test::cache(r)->status();
-    CHECK((s.stop == irradiance_cache::StopReason::reported) == !ready);
+    CHECK((s.stop == irradiance_cache::StopReason::finished_early) == !ready);
     CHECK(s.records == before);
-    CHECK((r.solver_statistics().at("cache").at("stopped_by") == "told") == !ready);
+    CHECK((r.solver_statistics().at("cache").at("stopped_by") == "finished early") == !ready);
     CHECK(test::cache(r)->records().size() == before);
     if (ready) break;
     ++(before == 0 ? none : some);

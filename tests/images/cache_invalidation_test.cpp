@@ -129,8 +129,8 @@ TEST_CASE("every kind of change invalidates what its row says, and nothing else"
       {"cache.", {{"cache.error", "0.4"}}},
   };
   for (const solvers::ChangeRow& row : irradiance_cache::info().changes) {
-    const auto* edit = std::get_if<Change>(&row.what);
-    const auto* head = std::get_if<std::string_view>(&row.what);
+    const auto* edit = std::get_if<Change>(&row.change);
+    const auto* head = std::get_if<std::string_view>(&row.change);
     INFO((edit ? "edit " + std::to_string(int(*edit)) : "setting " + std::string(*head)) << ": " << row.why);
     if (edit && *edit == Change::shape) continue;  // see below
     bed.r.solver_load("cache", file);
@@ -153,7 +153,7 @@ TEST_CASE("every kind of change invalidates what its row says, and nothing else"
       REQUIRE(edits.contains(*edit));
       edits.at (*edit)();
     }
-    const solvers::Spoils& s = row.spoils;
+    const solvers::Invalidation& s = row.invalidates;
     CHECK(test::cache(bed.r)->ready() == !s.any());
     if (s.places) {
       CHECK(test::cache(bed.r)->records().size() == 0);
@@ -188,24 +188,24 @@ TEST_CASE("every edit and setting has a row; cache settings without a row invali
   const SolverInfo& cache = irradiance_cache::info();
   std::set<std::variant<Change, std::string_view>> named;
   for (const ChangeRow& row : cache.changes) {
-    CHECK(named.insert(row.what).second);
+    CHECK(named.insert(row.change).second);
     CHECK_FALSE(row.why.empty());
     // Places without light or coverage are useless.
-    if (row.spoils.places) CHECK(row.spoils == k_spoils_all);
+    if (row.invalidates.places) CHECK(row.invalidates == k_invalidates_all);
   }
   for (const Change edit : scene::k_all_changes) CHECK(named.contains(edit));
   for (const OptionInfo& o : plan::options()) {
     bool found = false;
     for (const ChangeRow& row : cache.changes)
-      if (const auto* head = std::get_if<std::string_view>(&row.what)) found |= o.key.starts_with(*head);
+      if (const auto* head = std::get_if<std::string_view>(&row.change)) found |= o.key.starts_with(*head);
     INFO(o.key);
     const SolverInfo* owner = owner_of(o.key);
     if (!owner || owner == &cache) CHECK(found);  // otherwise nothing is invalidated
     // A setting that does not restart the picture cannot invalidate records.
-    if (!o.restarts) CHECK_FALSE(spoiled_by_setting(cache, o.key).any());
+    if (!o.restarts) CHECK_FALSE(invalidated_by_setting(cache, o.key).any());
   }
-  CHECK(spoiled_by_setting(cache, "cache.of_tomorrow") == k_spoils_all);
-  CHECK(spoiled_by_setting(cache, "unheard.of") == k_spoils_all);
+  CHECK(invalidated_by_setting(cache, "cache.of_tomorrow") == k_invalidates_all);
+  CHECK(invalidated_by_setting(cache, "unheard.of") == k_invalidates_all);
 }
 
 TEST_CASE("a setting of one solver invalidates no other solver's work") {
@@ -216,7 +216,7 @@ TEST_CASE("a setting of one solver invalidates no other solver's work") {
         if (other == solver)
           CHECK(solvers::owner_of(o.key) == solver);
         else
-          CHECK_FALSE(solvers::spoiled_by_setting(*solver, o.key).any());
+          CHECK_FALSE(solvers::invalidated_by_setting(*solver, o.key).any());
       }
 }
 
@@ -329,10 +329,10 @@ TEST_CASE("ellipses that shrink in other light leave no gaps") {
     const film::Image picture = relit.finish();
     const irradiance_cache::CachePass& last = relit.status().passes.back();
     INFO("round " << round << ": " << records << " records, then " << relit.records().size() << "; of "
-                  << last.paths << " paths in the end " << last.asked << " gaps");
+                  << last.paths << " paths in the end " << last.uncovered << " gaps");
     CHECK(relit.status().stop == StopReason::covered);
     CHECK(last.paths > 0);
-    CHECK(double(last.asked) <= 0.002 * double(last.paths));
+    CHECK(double(last.uncovered) <= 0.002 * double(last.paths));
     CHECK(relit.records().size() >= records);
     CHECK(relit.records().size() < 2 * fresh.records().size());
     if (round % 2 == 0)
@@ -370,10 +370,10 @@ TEST_CASE("light that was present before needs almost no new records") {
 }
 
 TEST_CASE("relighting can be cancelled, restarted, moved and interrupted") {
-  Bed straight, bed;
-  const film::Image before = straight.finish();
-  straight.set_lamp({9, 2, 1});
-  const film::Image expected = straight.finish();
+  Bed uninterrupted, bed;
+  const film::Image before = uninterrupted.finish();
+  uninterrupted.set_lamp({9, 2, 1});
+  const film::Image expected = uninterrupted.finish();
   bed.finish();
   // Another light while records are relit; every other work item is cancelled.
   bed.set_lamp({0, 0, 7});
@@ -400,7 +400,7 @@ TEST_CASE("relighting can be cancelled, restarted, moved and interrupted") {
   CHECK(grown > 2);  // progress is reported
   CHECK(share > 0.9f);
   CHECK(identical(expected, bed.finish()));
-  CHECK(begins_with(bed.records(), straight.records()));
+  CHECK(begins_with(bed.records(), uninterrupted.records()));
 
   // The camera moves while records are relit: first they are relit, then more are placed.
   bed.set_lamp(vec3(5));
@@ -409,8 +409,8 @@ TEST_CASE("relighting can be cancelled, restarted, moved and interrupted") {
   CHECK(bed.status().relighting.records > 0);
   bed.finish();
   const RawRecords more = bed.records();
-  CHECK(same_places(more, straight.records()));
-  CHECK(more.size() > straight.records().size());
+  CHECK(same_places(more, uninterrupted.records()));
+  CHECK(more.size() > uninterrupted.records().size());
   // All have the new light: back at the first camera almost no records are missing.
   bed.r.choose_camera("front");
   bed.finish();

@@ -183,8 +183,8 @@ TEST_CASE("light that the picture reads through another record counts by its con
                                     : vec3(0, 0, -std::copysign(1.0f, d.z));
         const Served first = serve(from, {0, 1, 0}), next = serve(from + t * d, n);
         if (first.light <= 0) continue;
-        const double brings = 0.5 * double(next.light / first.light) / k_paths;
-        for (const auto& [i, part] : next.by) share[i][size_t(k % 2)] += double(part) * brings;
+        const double ratio = 0.5 * double(next.light / first.light) / k_paths;
+        for (const auto& [i, part] : next.by) share[i][size_t(k % 2)] += double(part) * ratio;
       }
       for (const auto& [i, s] : share) expected[i] += s[0] * s[1] / (k_size * k_size);
     }

@@ -154,7 +154,7 @@ TEST_CASE("a lamp in its own group is dimmed and tinted in the preview immediate
   fine["cache.error"] = "0.15";
   test::set(bed.r, fine);
   test::finish(bed.r);
-  REQUIRE(bed.r.relight().apart);
+  REQUIRE(bed.r.relight().separate);
   const double before = bed.shown();
   bed.set_lamp(scene->lights[0].intensity * vec3(0.1f, 0.3f, 0.2f), scene->lights[0].position);
   // The previous picture is shown with the new mix, and so are records.

@@ -44,11 +44,12 @@ TEST_CASE("far objects do not change path tracing, with either tracer") {
   check_same({{"tracer", "host"}});
 }
 TEST_CASE("far objects do not change photons and their radius, near a ball of five millimetres") {
-  check_same({{"components.caustic", "photons"}, {"photons.worth", "false"}}, 0.005f);
+  check_same({{"components.caustic", "photons"}, {"photons.efficiency", "false"}}, 0.005f);
 }
 TEST_CASE("far objects do not change photons behind a diffuse vertex") {
-  check_same(
-      {{"components.tertiary", "photons"}, {"components.caustic", "photons"}, {"photons.worth", "false"}});
+  check_same({{"components.tertiary", "photons"},
+              {"components.caustic", "photons"},
+              {"photons.efficiency", "false"}});
 }
 TEST_CASE("far objects do not change records") {
   for (const char* metric : {"split-sphere", "hessian"})
@@ -58,7 +59,7 @@ TEST_CASE("far objects do not change records") {
 }
 TEST_CASE("under a sun a far object gets at most half of the light paths and no light") {
   const test::Settings photons{{"components.caustic", "photons"},
-                               {"photons.worth", "false"},
+                               {"photons.efficiency", "false"},
                                {"photons.aim", "false"},
                                {"photons.per_round", "100000"}};
   const test::Settings light{

@@ -49,18 +49,18 @@ const irradiance_cache::Records& records(const session::Renderer& r) { return te
 
 TEST_CASE("records with light groups have the same light, and give the same picture, as records without") {
   const scene::Scene even = block_room(true);  // no sun, which would be a separate light
-  Bench apart(even, cached()), together(even, cached({{"relight.enabled", "off"}}));
-  const film::Image a = apart.image(), b = together.image();
-  CHECK(apart.r.relight().apart);
-  CHECK(apart.r.film().in_short());
+  Bench separate(even, cached()), together(even, cached({{"relight.enabled", "off"}}));
+  const film::Image a = separate.image(), b = together.image();
+  CHECK(separate.r.relight().separate);
+  CHECK(separate.r.film().is_compact());
   CHECK(identical(a, b));
-  CHECK(apart.r.stats().rays == together.r.stats().rays);
-  const uint32_t count = records(apart.r).size();
+  CHECK(separate.r.stats().rays == together.r.stats().rays);
+  const uint32_t count = records(separate.r).size();
   REQUIRE(count > 50);
   CHECK(count == records(together.r).size());
   CHECK(records(together.r).raw(count).groups.empty());
-  CHECK(records(apart.r).raw(count).groups.size() == count);
-  CHECK(apart.r.device().validation_messages() == 0);
+  CHECK(records(separate.r).raw(count).groups.size() == count);
+  CHECK(separate.r.device().validation_messages() == 0);
 }
 
 TEST_CASE("a mix of records' light equals the mix of path-traced light within the records' error") {

@@ -47,15 +47,15 @@ double worst_share(const std::vector<vec3>& a, const std::vector<vec3>& b) {
 
 TEST_CASE("unmixed compact light equals the picture without groups bit for bit, noise included") {
   const scene::Scene even = block_room(true);  // no sun, which would be a separate light
-  Bench apart(even, k_compact), together(even, {{"relight.enabled", "off"}});
-  const film::Image a = apart.image(), b = together.image();
-  CHECK(apart.r.relight().apart);
-  CHECK(apart.r.film().in_short());
-  CHECK(apart.r.film().groups() > 1);
+  Bench separate(even, k_compact), together(even, {{"relight.enabled", "off"}});
+  const film::Image a = separate.image(), b = together.image();
+  CHECK(separate.r.relight().separate);
+  CHECK(separate.r.film().is_compact());
+  CHECK(separate.r.film().groups() > 1);
   CHECK(identical(a, b));
-  CHECK(apart.r.image_error().rms == together.r.image_error().rms);
-  CHECK(apart.r.stats().rays == together.r.stats().rays);
-  CHECK(apart.r.device().validation_messages() == 0);
+  CHECK(separate.r.image_error().rms == together.r.image_error().rms);
+  CHECK(separate.r.stats().rays == together.r.stats().rays);
+  CHECK(separate.r.device().validation_messages() == 0);
   // With a sun: other samples of the same light.
   Bench with_sun(room(), k_compact), without(room(), {{"relight.enabled", "off"}});
   const film::Image c = with_sun.image();
@@ -64,22 +64,22 @@ TEST_CASE("unmixed compact light equals the picture without groups bit for bit, 
 
 TEST_CASE("a mix of compact light equals that of light by component within 0.02 %, and so does its noise") {
   constexpr double k_share = 2e-4;
-  Bench exact(room(), {}, 64), in_short(room(), k_compact, 64);
-  exact.image(), in_short.image();
-  CHECK_FALSE(exact.r.film().in_short());
-  CHECK(in_short.r.film().in_short());
+  Bench exact(room(), {}, 64), compact(room(), k_compact, 64);
+  exact.image(), compact.image();
+  CHECK_FALSE(exact.r.film().is_compact());
+  CHECK(compact.r.film().is_compact());
   double most = 0;
   for (const char* text : k_mixes) {
     INFO(text);
-    exact.mix(text), in_short.mix(text);
-    const film::Image a = in_short.r.image(), b = exact.r.image();
+    exact.mix(text), compact.mix(text);
+    const film::Image a = compact.r.image(), b = exact.r.image();
     const double off = worst_share(all_components(a, false), all_components(b, false)),
                  odd_off = worst_share(all_components(a, true), all_components(b, true));
     CHECK(off < k_share);
     CHECK(odd_off < k_share);
     most = std::max(most, off);
     // The reported noise and brightness of the picture.
-    const film::ImageError reported = in_short.r.image_error(), right = exact.r.image_error();
+    const film::ImageError reported = compact.r.image_error(), right = exact.r.image_error();
     CHECK(reported.rms[0] == Approx(right.rms[0]).epsilon(1e-3));
     CHECK(reported.luminance[0] == Approx(right.luminance[0]).epsilon(k_share));
     // Components are estimates; their sum never exceeds the picture, because they are shares of it.
@@ -98,9 +98,9 @@ TEST_CASE("a mix of compact light equals a new render, statistically") {
     INFO(text);
     b.mix(text);
     const scene::LightMix mix = scene::parse_mix(text);
-    Bench fresh(scene::mixed_scene(s, groups_of_room(), mix), {{"seed", "2"}, {"relight.enabled", "off"}},
-                64);
-    CHECK(worst_z(as_one_component(b.r.image()), as_one_component(fresh.image())) < 5.5);
+    Bench rendered(scene::mixed_scene(s, groups_of_room(), mix), {{"seed", "2"}, {"relight.enabled", "off"}},
+                   64);
+    CHECK(worst_z(as_one_component(b.r.image()), as_one_component(rendered.image())) < 5.5);
   }
 }
 
@@ -143,7 +143,7 @@ TEST_CASE("the picture shown immediately after a mix equals the one developed la
               {{"samples", "16", ""}, {"path.max_depth", "8", ""}});
   while (r.step()) {
   }
-  REQUIRE(r.film().in_short());
+  REQUIRE(r.film().is_compact());
   REQUIRE(r.film().quick());
   r.settings().set("relight.mix", "lamp: ev=1 color=1,0.4,0.2; sun: mute");
   const std::vector<uint8_t> before = r.shown_picture(false);
@@ -167,7 +167,7 @@ TEST_CASE("sun and environment are separate groups in compact light") {
   const scene::LightGroups groups = scene::group_lights(s);
   Bench b(s, compact({{"seed", "1"}}), 64);
   const film::Image whole = as_one_component(b.image());
-  REQUIRE(b.r.film().in_short());
+  REQUIRE(b.r.film().is_compact());
   film::Image solo[2];
   for (const int k : {0, 1}) {
     const char* text = k == 0 ? "sky: solo" : "sun: solo";
@@ -175,8 +175,8 @@ TEST_CASE("sun and environment are separate groups in compact light") {
     b.mix(text);
     solo[k] = as_one_component(b.r.image());
     const scene::Scene alone = scene::mixed_scene(s, groups, scene::parse_mix(text));
-    Bench fresh(alone, {{"seed", "2"}, {"relight.enabled", "off"}}, 64);
-    CHECK(worst_z(solo[k], as_one_component(fresh.image())) < 5.5);
+    Bench rendered(alone, {{"seed", "2"}, {"relight.enabled", "off"}}, 64);
+    CHECK(worst_z(solo[k], as_one_component(rendered.image())) < 5.5);
   }
   CHECK(worst_z(solo[0], solo[1]) > 20);  // otherwise a mix-up would not show
   film::Image both = solo[0];
@@ -188,10 +188,11 @@ TEST_CASE("preview samples of compact light are mixed like the picture") {
   const scene::Scene s = room();
   const std::vector<vec3> weights = scene::mix_weights(
       scene::parse_mix("lamp: ev=1 color=1,0.4,0.2; sun: mute; sky: ev=-3"), groups_of_room());
-  const film::Image a = trace(s, s, weights, 4, film::GroupsKept::in_short, true),
-                    b = trace(s, s, weights, 4, film::GroupsKept::by_component, true);
+  const film::Image a = trace(s, s, weights, 4, film::GroupStorage::compact, true),
+                    b = trace(s, s, weights, 4, film::GroupStorage::by_component, true);
   CHECK(worst_share(all_components(a, false), all_components(b, false)) < 1e-5);
-  const film::Image neutral = trace(s, s, std::vector<vec3>(5, vec3(1)), 4, film::GroupsKept::in_short, true);
+  const film::Image neutral =
+      trace(s, s, std::vector<vec3>(5, vec3(1)), 4, film::GroupStorage::compact, true);
   CHECK(worst_share(all_components(a, false), all_components(neutral, false)) > 0.1);
 }
 
@@ -220,8 +221,8 @@ TEST_CASE("layers by group sum to the picture within 0.2 %") {
 }
 
 TEST_CASE("per-group light takes 16 bytes per pixel and group, 128 for eight") {
-  CHECK(film::sum_bytes(8, film::GroupsKept::in_short) - film::sum_bytes(1) == 128);
-  CHECK(film::sum_bytes(1, film::GroupsKept::in_short) == film::sum_bytes(1));
+  CHECK(film::sum_bytes(8, film::GroupStorage::compact) - film::sum_bytes(1) == 128);
+  CHECK(film::sum_bytes(1, film::GroupStorage::compact) == film::sum_bytes(1));
 }
 
 TEST_CASE("the window stores compact light by default, batch renders store none; each can be changed") {
@@ -231,20 +232,20 @@ TEST_CASE("the window stores compact light by default, batch renders store none;
     session::Renderer r(options);
     r.set_size(16, 16);
     r.set_scene(std::make_shared<scene::Scene>(room()), {}, {{"samples", "2", ""}});
-    CHECK(r.film().in_short() == interactive);
-    CHECK(r.relight().apart == interactive);
+    CHECK(r.film().is_compact() == interactive);
+    CHECK(r.relight().separate == interactive);
     finish(r);
     for (const char* how : {"on", "compact", "off", "auto"}) {
       INFO(how);
       const uint64_t restarts = r.restarts();
-      const bool apart = r.relight().apart, in_short = r.film().in_short();
+      const bool separate = r.relight().separate, compact = r.film().is_compact();
       set(r, {{"relight.enabled", how}});
       const bool wants = how == std::string("on") || how == std::string("compact") ||
                          (how == std::string("auto") && interactive);
-      CHECK(r.relight().apart == wants);
+      CHECK(r.relight().separate == wants);
       CHECK((r.film().groups() > 1) == wants);
-      CHECK(r.film().in_short() == (wants && how != std::string("on")));
-      if (apart != wants || in_short != r.film().in_short()) CHECK(r.restarts() > restarts);
+      CHECK(r.film().is_compact() == (wants && how != std::string("on")));
+      if (separate != wants || compact != r.film().is_compact()) CHECK(r.restarts() > restarts);
       CHECK(finish(r).samples[0] == 2);
     }
     CHECK(r.device().validation_messages() == 0);

@@ -33,13 +33,13 @@ scene::Scene even_room() {
 
 TEST_CASE("splats with light groups give the picture of splats without") {
   const scene::Scene s = even_room();
-  Bench apart(s, traced(), 4), whole(s, traced({{"relight.enabled", "off"}}), 4);
-  const film::Image a = apart.image(), b = whole.image();
-  CHECK(apart.r.relight().apart);
-  CHECK(apart.r.film().in_short());
+  Bench separate(s, traced(), 4), whole(s, traced({{"relight.enabled", "off"}}), 4);
+  const film::Image a = separate.image(), b = whole.image();
+  CHECK(separate.r.relight().separate);
+  CHECK(separate.r.film().is_compact());
   CHECK(mean(a.components[3]) > 0);
   CHECK(identical(a, b));
-  CHECK(apart.r.device().validation_messages() == 0);
+  CHECK(separate.r.device().validation_messages() == 0);
 }
 
 TEST_CASE("a mix of splats equals light traced from lamps of that strength, statistically") {
@@ -53,8 +53,8 @@ TEST_CASE("a mix of splats equals light traced from lamps of that strength, stat
                            "sky: color=1,0.2,0.1; sun: mute; lamp: kelvin=9000 ev=1.3"}) {
     INFO(text);
     b.mix(text);
-    Bench fresh(scene::mixed_scene(s, groups_of_room(), scene::parse_mix(text)), traced(other), 64);
-    CHECK(worst_z(b.r.image(), fresh.image()) < 5.5);
+    Bench rendered(scene::mixed_scene(s, groups_of_room(), scene::parse_mix(text)), traced(other), 64);
+    CHECK(worst_z(b.r.image(), rendered.image()) < 5.5);
   }
   CHECK(b.r.stats().rays == rays);
 }

@@ -14,7 +14,7 @@ namespace {
 
 Settings photons(Settings more = {}) {
   const Settings all{{"components.secondary", "photons"}, {"components.tertiary", "photons"},
-                     {"components.caustic", "photons"},   {"photons.worth", "false"},
+                     {"components.caustic", "photons"},   {"photons.efficiency", "false"},
                      {"relight.enabled", "compact"},      {"path.batch", "8192"}};
   more.insert(all.begin(), all.end());
   return more;
@@ -24,13 +24,13 @@ Settings photons(Settings more = {}) {
 
 TEST_CASE("photons with light groups give the picture of photons without") {
   const scene::Scene even = block_room(true);  // no sun, which would be a separate light
-  Bench apart(even, photons(), 4), whole(even, photons({{"relight.enabled", "off"}}), 4);
-  const film::Image a = apart.image(), b = whole.image();
-  CHECK(apart.r.relight().apart);
-  CHECK(apart.r.film().in_short());
+  Bench separate(even, photons(), 4), whole(even, photons({{"relight.enabled", "off"}}), 4);
+  const film::Image a = separate.image(), b = whole.image();
+  CHECK(separate.r.relight().separate);
+  CHECK(separate.r.film().is_compact());
   CHECK(identical(a, b));
-  CHECK(apart.r.image_error().interpolation_rms == whole.r.image_error().interpolation_rms);
-  CHECK(apart.r.device().validation_messages() == 0);
+  CHECK(separate.r.image_error().interpolation_rms == whole.r.image_error().interpolation_rms);
+  CHECK(separate.r.device().validation_messages() == 0);
 }
 
 TEST_CASE("a mix of photons' light equals photons from lamps of that strength, statistically") {
@@ -46,10 +46,10 @@ TEST_CASE("a mix of photons' light equals photons from lamps of that strength, s
                            "sky: color=1,0.2,0.1; sun: mute; lamp: kelvin=9000 ev=1.3"}) {
     INFO(text);
     b.mix(text);
-    Bench edited(scene::mixed_scene(s, groups_of_room(), scene::parse_mix(text)), photons(other), 32);
+    Bench rendered(scene::mixed_scene(s, groups_of_room(), scene::parse_mix(text)), photons(other), 32);
     // Radii are in pixels, so both blur alike. 24 blocks, 2 pictures: 5 errors with about 64 degrees of
     // freedom occur by chance in one of 5000 such tests; light of a wrong group is off by tens.
-    CHECK(worst_z(as_one_component(b.r.image()), as_one_component(edited.image())) < 5);
+    CHECK(worst_z(as_one_component(b.r.image()), as_one_component(rendered.image())) < 5);
   }
   CHECK(b.r.stats().rays == rays);
 }

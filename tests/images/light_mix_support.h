@@ -43,14 +43,14 @@ inline scene::Scene room() {
 /// light: per group, mixed by `weights`. `draft`: onto a film without groups, as for preview samples.
 inline film::Image trace(const scene::Scene& chosen_by, const scene::Scene& shining,
                          const std::vector<vec3>& weights, uint32_t samples = 8,
-                         film::GroupsKept kept = film::GroupsKept::by_component, bool draft = false) {
+                         film::GroupStorage kept = film::GroupStorage::by_component, bool draft = false) {
   const auto device = shared_device(true);
   gpu::ShaderCompiler compiler(gpu::ShaderCompiler::default_root());
   upload::FlatScene flat = upload::flatten(
       chosen_by,
-      upload::LightsApart{scene::k_sun_threshold,
-                          std::make_shared<const scene::LightGroups>(scene::group_lights(chosen_by)),
-                          kept == film::GroupsKept::by_component});
+      upload::LightSeparation{scene::k_sun_threshold,
+                              std::make_shared<const scene::LightGroups>(scene::group_lights(chosen_by)),
+                              kept == film::GroupStorage::by_component});
   upload::flatten_factors(shining, flat);
   upload::flatten_emission(shining, flat);
   const bvh::HostTracer tracer({flat.positions, flat.non_opaque});

@@ -30,20 +30,20 @@ TEST_CASE("a mix by powers of two and zero equals the picture of such lights bit
     INFO(text);
     const scene::LightMix mix = scene::parse_mix(text);
     const scene::Scene shining = scene::mixed_scene(s, groups, mix);
-    const film::Image fresh = trace(s, shining, as_they_are),
+    const film::Image rendered = trace(s, shining, as_they_are),
                       mixed = trace(s, s, scene::mix_weights(mix, groups));
-    CHECK(identical(mixed, fresh));
+    CHECK(identical(mixed, rendered));
     CHECK_FALSE(identical(mixed, neutral));
   }
 }
 
 TEST_CASE("the sum of the groups equals the picture made without groups") {
   const scene::Scene s = room();
-  Bench apart(s), together(s, {{"relight.enabled", "off"}});
-  const film::Image a = apart.image();
-  CHECK(apart.r.relight().apart);
-  CHECK_FALSE(together.r.relight().apart);
-  CHECK(apart.r.film().groups() == 5);
+  Bench separate(s), together(s, {{"relight.enabled", "off"}});
+  const film::Image a = separate.image();
+  CHECK(separate.r.relight().separate);
+  CHECK_FALSE(together.r.relight().separate);
+  CHECK(separate.r.film().groups() == 5);
   CHECK(together.r.film().groups() == 1);
   // The environment's sun is a separate light in per-group light: other samples, the same light.
   CHECK(worst_z(a, together.image()) < 5.5);
@@ -62,21 +62,21 @@ TEST_CASE("a directly visible sun of the environment belongs to its own group") 
   const vec3 towards(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
   const vec3 right = glm::normalize(glm::cross(towards, vec3(0, 1, 0))), up = glm::cross(right, towards);
   s.cameras[0].to_world = mat4(vec4(right, 0), vec4(up, 0), vec4(-towards, 0), vec4(0, 10, 0, 1));
-  Bench apart(s), together(s, {{"relight.enabled", "off"}});
-  const film::Image a = apart.image();
+  Bench separate(s), together(s, {{"relight.enabled", "off"}});
+  const film::Image a = separate.image();
   CHECK(difference(a, together.image()) < 1e-6);
   const double all = mean(a.components[0]);
-  apart.mix("sun: solo");
-  CHECK(mean(apart.r.image().components[0]) > 0.5 * all);
-  apart.mix("sun: mute");
-  CHECK(mean(apart.r.image().components[0]) < 0.5 * all);
+  separate.mix("sun: solo");
+  CHECK(mean(separate.r.image().components[0]) > 0.5 * all);
+  separate.mix("sun: mute");
+  CHECK(mean(separate.r.image().components[0]) < 0.5 * all);
 }
 
 TEST_CASE("a single light group costs nothing and changes no bit") {
   const scene::Scene s = room();
   Bench off(s, {{"relight.enabled", "off"}}), one(s, {{"relight.groups", "*=all"}});
   CHECK(one.r.relight().groups->groups.size() == 1);
-  CHECK(one.r.relight().apart);
+  CHECK(one.r.relight().separate);
   const film::Image image = one.image();
   CHECK(identical(off.image(), image));
   CHECK(one.r.film().groups() == 1);
@@ -88,7 +88,7 @@ TEST_CASE("light of one group is mixed without a ray, for every solver") {
   for (const Settings& how :
        {Settings{}, Settings{{"components.secondary", "cache"}, {"components.tertiary", "cache"}},
         Settings{{"components.caustic", "light"}},
-        Settings{{"components.secondary", "photons"}, {"photons.worth", "false"}}}) {
+        Settings{{"components.secondary", "photons"}, {"photons.efficiency", "false"}}}) {
     Settings all = how;
     all["relight.groups"] = "*=all";
     Bench b(s, all, 4);
@@ -204,9 +204,9 @@ TEST_CASE("a mix equals a new render: switches, strengths from 10^-4 to 10^4, co
     INFO(text);
     b.mix(text);
     const scene::LightMix mix = scene::parse_mix(text);
-    Bench fresh(scene::mixed_scene(s, groups_of_room(), mix), {{"seed", "2"}, {"relight.enabled", "off"}},
-                64);
-    const film::Image mixed = b.r.image(), other = fresh.image();
+    Bench rendered(scene::mixed_scene(s, groups_of_room(), mix), {{"seed", "2"}, {"relight.enabled", "off"}},
+                   64);
+    const film::Image mixed = b.r.image(), other = rendered.image();
     CHECK(worst_z(mixed, other) < 5.5);
     for (int c = 0; c < film::k_components; ++c)
       CHECK((mean(mixed.components[c]) > 0) == (mean(other.components[c]) > 0));

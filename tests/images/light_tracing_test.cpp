@@ -118,7 +118,7 @@ TEST_CASE("partly covered surfaces, seen directly or as a veil, show light in pr
   CHECK(mean_of(test::render(s, settings, 8, 16).image, k_caustic).value.y == Approx(floor).epsilon(0.01));
   // The same by photons, which lie on all of it but are seen by a third.
   const test::Settings photons{
-      {"components.caustic", "photons"}, {"photons.worth", "false"}, {"photons.per_round", "100000"}};
+      {"components.caustic", "photons"}, {"photons.efficiency", "false"}, {"photons.per_round", "100000"}};
   CHECK(mean_of(test::render(s, photons, 20, 16).image, k_caustic).value.y == Approx(floor).epsilon(0.03));
   scene::Scene veiled = s;
   veiled.materials.push_back(test::diffuse(vec3(0)));

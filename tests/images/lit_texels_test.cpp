@@ -46,7 +46,7 @@ MeanOf caustic(bool textured, const char* solver) {
                                        {"components.secondary", "off"},
                                        {"components.tertiary", "off"},
                                        {"components.caustic", solver},
-                                       {"photons.worth", "false"}},
+                                       {"photons.efficiency", "false"}},
                                       16, 48, false);
   return mean_of(r.image, 3);
 }

@@ -27,7 +27,7 @@ TEST_CASE("all solvers count the same scattering events for path.max_depth") {
   const scene::Scene s = mirror_room();
   for (const char* depth : {"2", "3"}) {
     test::Settings settings{{"path.max_depth", depth},
-                            {"photons.worth", "false"},
+                            {"photons.efficiency", "false"},
                             {"photons.radius", "2"},
                             {"photons.floor", "2"}};
     const auto render = [&](const test::Settings& more, uint32_t samples) {

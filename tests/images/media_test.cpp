@@ -123,7 +123,7 @@ TEST_CASE("lamps inside absorbing solids give the same light with photons, light
       vec3 expected = after(0.497);  // facets of the ball lie slightly inside it
       for (const char* way : {"path", "photons", "light"}) {
         if (!mesh && std::string(way) == "path") continue;
-        const test::Settings settings{{"components.caustic", way}, {"photons.worth", "false"}};
+        const test::Settings settings{{"components.caustic", way}, {"photons.efficiency", "false"}};
         const uint32_t samples = std::string(way) == "path" ? 512 : 8;
         const vec3 with = mean_color(test::render(s, settings, samples, 16, false).image),
                    without = mean_color(test::render(clear, settings, samples, 16, false).image);
@@ -165,7 +165,7 @@ TEST_CASE("light under water reaches a camera under water with every solver") {
   check({{"components.caustic", "photons"},
          {"components.secondary", "photons"},
          {"components.tertiary", "photons"},
-         {"photons.worth", "false"}},
+         {"photons.efficiency", "false"}},
         {1, 2, 3}, 16, 0.05);
   check({{"components.secondary", "cache"}, {"components.tertiary", "cache"}}, {1, 2}, 16, 0.05);
 }

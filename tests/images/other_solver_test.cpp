@@ -82,9 +82,10 @@ TEST_CASE("changes invalidate what its table says; other solvers' settings inval
   CHECK(r.figure("begun") == first);
   r.restart();
   CHECK(r.figure("begun") == first + 1);
-  CHECK_FALSE(solvers::spoiled_by_setting(test::ambient_info(), "cache.rays").any());
-  CHECK_FALSE(solvers::spoiled_by_setting(*solvers::find("cache"), "ambient.radiance").any());
-  CHECK(solvers::spoiled_by_setting(test::ambient_info(), "ambient.radiance") == solvers::k_spoils_all);
+  CHECK_FALSE(solvers::invalidated_by_setting(test::ambient_info(), "cache.rays").any());
+  CHECK_FALSE(solvers::invalidated_by_setting(*solvers::find("cache"), "ambient.radiance").any());
+  CHECK(solvers::invalidated_by_setting(test::ambient_info(), "ambient.radiance") ==
+        solvers::k_invalidates_all);
   // Another solver's setting restarts the picture but keeps this solver's work; its own setting restarts its
   // work.
   test::set(r, {{"cache.rays", "64"}});

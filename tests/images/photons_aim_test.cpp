@@ -11,7 +11,7 @@ using namespace lucerna;
 namespace {
 
 const test::Settings k_aimed{{"components.caustic", "photons"},
-                             {"photons.worth", "false"},
+                             {"photons.efficiency", "false"},
                              {"components.secondary", "off"},
                              {"components.tertiary", "off"},
                              {"photons.per_round", "20000"}};
@@ -137,7 +137,7 @@ TEST_CASE("light that enters through a slot is aimed at where it falls, and keep
   const test::Settings photons{{"components.caustic", "off"},
                                {"components.secondary", "photons"},
                                {"components.tertiary", "photons"},
-                               {"photons.worth", "false"},
+                               {"photons.efficiency", "false"},
                                {"photons.per_round", "20000"}};
   const scene::Scene room = slotted_room();
   const Rendered aimed = render(room, photons, 32, 40), plain = render(room, unaimed(photons), 32, 40);
@@ -173,7 +173,7 @@ TEST_CASE("a wall far away adds no aim targets") {
   const test::Settings photons{{"components.caustic", "off"},
                                {"components.secondary", "photons"},
                                {"components.tertiary", "photons"},
-                               {"photons.worth", "false"},
+                               {"photons.efficiency", "false"},
                                {"photons.per_round", "20000"}};
   scene::Scene room = slotted_room();
   const uint32_t alone = render(room, photons, 1, 24).entrances;
@@ -287,7 +287,7 @@ TEST_CASE("a weak lamp in a room has light paths beside a strong lamp elsewhere"
   const test::Settings photons{{"components.caustic", "off"},
                                {"components.secondary", "photons"},
                                {"components.tertiary", "off"},
-                               {"photons.worth", "false"},
+                               {"photons.efficiency", "false"},
                                {"photons.per_round", "16384"}};
   const film::Image aimed = render(s, photons, 32, 24).image,
                     by_power = render(s, unaimed(photons), 32, 24).image;

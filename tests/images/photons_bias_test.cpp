@@ -52,7 +52,7 @@ scene::Scene turned_sun(bool wavy, float half = 1) {
   return s;
 }
 
-struct Estimates {
+struct Reported {
   film::Image image;
   film::ImageError error;
   std::vector<film::TileError> tiles;
@@ -60,17 +60,17 @@ struct Estimates {
   bool bias_known = false, errors_known = false;
   double ledger_bias = 0;
 };
-Estimates render(const scene::Scene& scene, uint32_t samples, const test::Settings& more) {
+Reported render(const scene::Scene& scene, uint32_t samples, const test::Settings& more) {
   session::Renderer r(test::renderer_options(samples <= test::k_validated_samples));
   r.set_size(k_size, k_size);
   r.set_scene(std::make_shared<scene::Scene>(scene));
   test::Settings settings{{"components.caustic", "photons"},
-                          {"photons.worth", "false"},
+                          {"photons.efficiency", "false"},
                           {"photons.per_round", "200000"},
                           {"samples", std::to_string(samples)}};
   for (const auto& [key, value] : more) settings[key] = value;
   test::set(r, settings);
-  Estimates reported;
+  Reported reported;
   reported.image = test::finish(r);
   reported.error = r.image_error();
   reported.tiles = r.tile_errors();
@@ -87,7 +87,7 @@ struct Amount {
 };
 /// The sum over pixels of weight(x, y) times the picture's value or its estimated bias; in luminance.
 template <class Weight>
-Amount picture_sum(const Estimates& t, Weight&& weight) {
+Amount picture_sum(const Reported& t, Weight&& weight) {
   double all = 0, odd = 0;
   for (uint32_t i = 0; i < k_size * k_size; ++i) {
     const double w = weight(i % k_size, i / k_size);
@@ -97,7 +97,7 @@ Amount picture_sum(const Estimates& t, Weight&& weight) {
   return {all, std::abs(all - odd)};
 }
 template <class Weight>
-Amount bias_sum(const Estimates& t, Weight&& weight) {
+Amount bias_sum(const Reported& t, Weight&& weight) {
   double even = 0, odd = 0;
   for (uint32_t i = 0; i < k_size * k_size; ++i) {
     const double w = weight(i % k_size, i / k_size);
@@ -129,7 +129,7 @@ TEST_CASE("for cosine-shaped light the blur estimate equals the closed form, and
     double most_short;  // of the bias: unreported, because the light is not a parabola
   };
   for (const Case& c : {Case{"5", "1", 12, 0.1}, Case{"3", "1", 48, 0.04}, Case{"7", "0.6667", 12, 0.1}}) {
-    const Estimates t =
+    const Reported t =
         render(turned_sun(true), c.rounds,
                {{"photons.radius", c.radius}, {"photons.alpha", c.alpha}, {"photons.floor", "0"}});
     double kept = 0, reported = 0;  // averaged over passes
@@ -164,7 +164,7 @@ TEST_CASE("for cosine-shaped light the blur estimate equals the closed form, and
 
 TEST_CASE("even light has no blur estimate, up to the border of its surface") {
   // The floor ends within the picture, 16 pixels from its middle.
-  const Estimates t =
+  const Reported t =
       render(turned_sun(false, 16 * float(k_pixel)), 32,
              {{"photons.radius", "4"}, {"photons.alpha", "1"}, {"photons.per_round", "400000"}});
   const auto within = [](uint32_t x, uint32_t y, int least, int most) {
@@ -194,18 +194,18 @@ TEST_CASE("without photons no blur is reported") {
   // No surface focuses light.
   scene::Scene plain = turned_sun(false);
   plain.materials[1] = test::diffuse(vec3(0.5f));
-  const Estimates none = render(plain, 4, {});
+  const Reported none = render(plain, 4, {});
   CHECK_FALSE(none.bias_known);
   CHECK(none.error.interpolation_rms == 0);
   CHECK(none.error.relative_sum() == none.error.relative(0));
   // Path tracing only.
-  const Estimates paths = render(turned_sun(true), 4, {{"components.caustic", "path"}});
+  const Reported paths = render(turned_sun(true), 4, {{"components.caustic", "path"}});
   CHECK_FALSE(paths.bias_known);
   CHECK(paths.error.interpolation_rms == 0);
   // No light at all.
   scene::Scene dark = turned_sun(true);
   dark.lights.clear();
-  const Estimates unlit = render(dark, 4, {});
+  const Reported unlit = render(dark, 4, {});
   CHECK(unlit.error.interpolation_rms == 0);
   for (const auto& half : unlit.bias)
     for (const float value : half) REQUIRE(value == 0);
@@ -218,7 +218,7 @@ TEST_CASE("the estimate does not depend on work items or interruptions, and rest
     r.set_size(40, 32);
     r.set_scene(std::make_shared<scene::Scene>(turned_sun(true)));
     test::set(r, {{"components.caustic", "photons"},
-                  {"photons.worth", "false"},
+                  {"photons.efficiency", "false"},
                   {"photons.radius", "4"},
                   {"samples", "5"}});
   };
@@ -246,7 +246,7 @@ TEST_CASE("errors of records and photons in one picture are both reported") {
   test::set(r, {{"components.secondary", "cache"},
                 {"components.tertiary", "cache"},
                 {"components.caustic", "photons"},
-                {"photons.worth", "false"},
+                {"photons.efficiency", "false"},
                 {"photons.radius", "4"},
                 {"samples", "8"}});
   test::finish(r);
@@ -265,7 +265,7 @@ TEST_CASE("errors of records and photons in one picture are both reported") {
   test::set(r, {{"components.secondary", "off"},
                 {"components.tertiary", "off"},
                 {"components.caustic", "photons"},
-                {"photons.worth", "false"}});
+                {"photons.efficiency", "false"}});
   test::finish(r);
   const film::ImageError photons = r.image_error();
   CHECK_FALSE(r.film().record_errors_complete());
@@ -283,7 +283,7 @@ TEST_CASE("a target that blur prevents is not reported as reached, and costs few
     r.set_size(k_size, 32);
     r.set_scene(std::make_shared<scene::Scene>(turned_sun(true)));
     test::set(r, {{"components.caustic", "photons"},
-                  {"photons.worth", "false"},
+                  {"photons.efficiency", "false"},
                   {"photons.per_round", "300000"},
                   {"photons.radius", radius},
                   {"photons.alpha", "1"},

@@ -13,7 +13,7 @@ namespace {
 /// Radii of three of 40 pixels: the discs of a third of all pixels extend beyond their walls.
 const test::Settings k_wide{{"components.secondary", "photons"},
                             {"components.tertiary", "photons"},
-                            {"photons.worth", "false"},
+                            {"photons.efficiency", "false"},
                             {"photons.radius", "3"},
                             {"photons.floor", "3"},
                             {"photons.per_round", "60000"}};
@@ -44,7 +44,7 @@ template <class F>
 double brightness(const scene::Scene& s, const test::Settings& more, uint32_t samples, F&& counts) {
   constexpr uint32_t k_size = 48;
   test::Settings settings = k_wide;
-  settings["components.caustic"] = "photons", settings["photons.worth"] = "false",
+  settings["components.caustic"] = "photons", settings["photons.efficiency"] = "false",
   settings["photons.per_round"] = "200000";
   settings["components.secondary"] = settings["components.tertiary"] = "off";
   for (const auto& [key, value] : more) settings[key] = value;

@@ -65,10 +65,11 @@ TEST_CASE("the estimated error of a picture of photons is its true error") {
       at ? std::vector<std::string>{at} : std::vector<std::string>{"1.5", "3", "6"};
   // The reference of diffuse light is path traced, which is fast. Caustics of a small lamp are slow by paths,
   // so photons of many passes with a small radius are the reference of those with a large one.
-  const test::Settings caustic{{"components.caustic", "photons"}, {"photons.worth", "false"}};
-  const test::Settings diffuse{
-      {"components.secondary", "photons"}, {"components.tertiary", "photons"}, {"photons.worth", "false"}};
-  const test::Settings fine{{"components.caustic", "photons"}, {"photons.worth", "false"},
+  const test::Settings caustic{{"components.caustic", "photons"}, {"photons.efficiency", "false"}};
+  const test::Settings diffuse{{"components.secondary", "photons"},
+                               {"components.tertiary", "photons"},
+                               {"photons.efficiency", "false"}};
+  const test::Settings fine{{"components.caustic", "photons"}, {"photons.efficiency", "false"},
                             {"photons.radius", "0.4"},         {"photons.floor", "0.25"},
                             {"photons.per_round", "200000"},   {"samples", "384"}};
   for (const Case& c :

@@ -18,7 +18,7 @@ struct Shown {
     r.set_size(48, 40);
     r.set_scene(std::make_shared<scene::Scene>(scene));
     test::set(r, {{"components.caustic", "photons"},
-                  {"photons.worth", "false"},
+                  {"photons.efficiency", "false"},
                   {"photons.per_round", "200000"},
                   {"photons.importons", "false"},
                   {"samples", "2"}});
@@ -135,7 +135,7 @@ TEST_CASE("the view at the pointer shows the disc and its photons, with their co
   CHECK(double(found.at.count) == Approx(expected).epsilon(0.2));
   double sum = 0;
   for (const shared::PhotonInspected& p : found.photons) {
-    sum += double(p.brings);
+    sum += double(p.contribution);
     CHECK(glm::distance(p.position, found.at.position) < found.at.radius * 1.01f);
     CHECK(p.direction.y == Approx(1).margin(1e-3));  // from above
     CHECK((p.bits >> shared::k_photon_events_shift & shared::k_photon_most_events) == 1);

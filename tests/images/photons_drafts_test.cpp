@@ -30,7 +30,7 @@ struct Bed {
   Bed(const Settings& how, bool window) : r(options(window)) {
     r.set_size(48, 48);
     r.set_scene(std::make_shared<scene::Scene>(lit_from_above()));
-    Settings all{{"components.caustic", "off"}, {"samples", "4"}, {"photons.worth", "false"}};
+    Settings all{{"components.caustic", "off"}, {"samples", "4"}, {"photons.efficiency", "false"}};
     for (const auto& [key, value] : how) all[key] = value;
     test::set(r, all);
   }

@@ -75,7 +75,7 @@ scene::Scene long_room(bool mirror) {
 const test::Settings k_all{{"components.secondary", "photons"},
                            {"components.tertiary", "photons"},
                            {"components.caustic", "photons"},
-                           {"photons.worth", "false"}};
+                           {"photons.efficiency", "false"}};
 
 }  // namespace
 
@@ -84,5 +84,5 @@ TEST_CASE("few photons are stored outside the view, and the picture's means stay
 }
 TEST_CASE("surfaces seen in a mirror keep their photons") { check_same(long_room(true), k_all, 0.05); }
 TEST_CASE("surfaces read by final gathering keep their photons") {
-  check_same(long_room(false), {{"components.tertiary", "photons"}, {"photons.worth", "false"}}, 0.0);
+  check_same(long_room(false), {{"components.tertiary", "photons"}, {"photons.efficiency", "false"}}, 0.0);
 }

@@ -29,7 +29,7 @@ Rendered render(const test::Settings& settings, uint64_t most_storage_buffer) {
   r.set_size(24, 24);
   r.set_scene(std::make_shared<scene::Scene>(room));
   test::Settings all = settings;
-  all.insert({{"samples", "4"}, {"cache.max_records", "2000"}, {"photons.worth", "false"}});
+  all.insert({{"samples", "4"}, {"cache.max_records", "2000"}, {"photons.efficiency", "false"}});
   test::set(r, all);
   Rendered made;
   made.image = test::finish(r);

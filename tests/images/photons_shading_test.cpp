@@ -16,7 +16,7 @@ TEST_CASE("photons on a smooth-shaded coarse ball are as bright as path tracing"
   s.cameras[0].yfov = 0.6f;
   constexpr uint32_t k_size = 32;
   test::Settings settings{
-      {"components.primary", "off"}, {"components.tertiary", "off"}, {"photons.worth", "false"}};
+      {"components.primary", "off"}, {"components.tertiary", "off"}, {"photons.efficiency", "false"}};
   const test::Result paths = test::render(s, settings, 1024, k_size, false);
   for (const char* radius : {"1.5", "4"}) {
     settings["components.secondary"] = "photons";

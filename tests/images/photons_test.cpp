@@ -17,7 +17,7 @@ namespace {
 const test::Settings k_all{{"components.secondary", "photons"},
                            {"components.tertiary", "photons"},
                            {"components.caustic", "photons"},
-                           {"photons.worth", "false"}};
+                           {"photons.efficiency", "false"}};
 
 /// The inside of an emissive box of a single albedo without gloss.
 scene::Scene closed_room(const vec3& albedo) {
@@ -54,8 +54,8 @@ scene::Scene glass_room(float lamp = 0.5f) {
 TEST_CASE("a beam of even light on a plane has the expected irradiance") {
   const test::Result r = test::render(
       turned_sun(),
-      {{"components.caustic", "photons"}, {"photons.worth", "false"}, {"photons.per_round", "200000"}}, 16,
-      32);
+      {{"components.caustic", "photons"}, {"photons.efficiency", "false"}, {"photons.per_round", "200000"}},
+      16, 32);
   const vec3 radiance = vec3(0.8f, 0.5f, 0.2f) * vec3(3, 4, 5) * vec3(0.9f, 0.8f, 0.7f) / k_pi;
   for (uint32_t block = 0; block < 16; ++block) {
     glm::dvec3 sum(0);
@@ -84,7 +84,7 @@ TEST_CASE("light refracted into water has the irradiance of the transmitted ligh
   s.cameras = {test::looking_down({0, 0.9f, 0}, 0.8f)};
   s.environment.given = true;
   const test::Settings settings{
-      {"components.caustic", "photons"}, {"photons.worth", "false"}, {"photons.per_round", "100000"}};
+      {"components.caustic", "photons"}, {"photons.efficiency", "false"}, {"photons.per_round", "100000"}};
   const double through = 1 - std::pow(0.33 / 2.33, 2);
   const MeanOf flat = mean_of(test::render(s, settings, 8, 32).image, 3);
   // Shading normals weight photons like paths.
@@ -158,26 +158,27 @@ void check_choice(const test::Settings& choice) {
 }  // namespace
 
 TEST_CASE("caustics of photons with path tracing give the picture of path tracing") {
-  check_choice({{"components.caustic", "photons"}, {"photons.worth", "false"}});
+  check_choice({{"components.caustic", "photons"}, {"photons.efficiency", "false"}});
 }
 TEST_CASE("photons for every component they can compute give the picture of path tracing") {
   check_choice(k_all);
 }
 TEST_CASE("final gathering from photons gives the picture of path tracing") {
-  check_choice({{"components.tertiary", "photons"}, {"photons.worth", "false"}});
+  check_choice({{"components.tertiary", "photons"}, {"photons.efficiency", "false"}});
 }
 TEST_CASE("secondary light of photons with tertiary light of paths gives the picture of path tracing") {
-  check_choice({{"components.secondary", "photons"}, {"photons.worth", "false"}});
+  check_choice({{"components.secondary", "photons"}, {"photons.efficiency", "false"}});
 }
 TEST_CASE("caustics of photons with cached light give the picture of path tracing") {
   check_choice({{"components.secondary", "cache"},
                 {"components.tertiary", "cache"},
                 {"components.caustic", "photons"},
-                {"photons.worth", "false"}});
+                {"photons.efficiency", "false"}});
 }
 TEST_CASE("photons at the first surface and records at the second give the picture of path tracing") {
-  check_choice(
-      {{"components.secondary", "photons"}, {"components.tertiary", "cache"}, {"photons.worth", "false"}});
+  check_choice({{"components.secondary", "photons"},
+                {"components.tertiary", "cache"},
+                {"photons.efficiency", "false"}});
 }
 
 TEST_CASE("records whose rays end in photons give the picture of path tracing") {
@@ -190,12 +191,12 @@ TEST_CASE("records whose rays end in photons, with caustics of photons, give the
   check_choice({{"components.secondary", "cache"},
                 {"components.tertiary", "photons"},
                 {"components.caustic", "photons"},
-                {"photons.worth", "false"}});
+                {"photons.efficiency", "false"}});
 }
 
 TEST_CASE("tertiary light from an irradiance map gives the picture of path tracing") {
   const test::Settings settings{
-      {"components.tertiary", "photons"}, {"photons.irradiance_map", "all"}, {"photons.worth", "false"}};
+      {"components.tertiary", "photons"}, {"photons.irradiance_map", "all"}, {"photons.efficiency", "false"}};
   check_choice(settings);
   check_choice(with(settings, {{"components.secondary", "cache"}}));
   // With caustics, which are looked up in the pass's photons at the first surface.
@@ -205,7 +206,7 @@ TEST_CASE("tertiary light from an irradiance map gives the picture of path traci
 TEST_CASE("an irradiance map is read where requested, is reproducible bit for bit, and follows the lamp") {
   scene::Scene room = glass_room();
   const test::Settings settings{
-      {"components.tertiary", "photons"}, {"photons.irradiance_map", "all"}, {"photons.worth", "false"}};
+      {"components.tertiary", "photons"}, {"photons.irradiance_map", "all"}, {"photons.efficiency", "false"}};
   test::Render base{.width = 32, .height = 32, .samples = 4, .settings = settings, .validated = false};
   const test::Result a = test::render(base, &room);
   base.settings["path.batch"] = "1024";
@@ -244,19 +245,20 @@ TEST_CASE("records whose rays end in photons follow the lamp") {
   r.set_scene(std::make_shared<scene::Scene>(room));
   const film::Image bright = test::finish(r);
   CHECK(tertiary(bright) == Approx(2 * tertiary(first)).epsilon(0.1));
-  const test::Render edited{
+  const test::Render from_scratch{
       .width = 24, .height = 24, .samples = 4, .settings = settings, .validated = false};
-  const test::Result fresh = test::render(edited, &room);
+  const test::Result fresh = test::render(from_scratch, &room);
   CHECK(tertiary(bright) == Approx(tertiary(fresh.image)).epsilon(0.1));
   // A second run is identical bit for bit.
-  CHECK(test::identical(fresh.image, test::render(edited, &room).image));
+  CHECK(test::identical(fresh.image, test::render(from_scratch, &room).image));
 }
 
 TEST_CASE("solvers without photons give the same picture bit for bit") {
   const scene::Scene room = glass_room();
   const test::Result path = test::render({.samples = 8}, &room);
   const test::Result r = test::render(
-      {.samples = 8, .settings = {{"components.caustic", "photons"}, {"photons.worth", "false"}}}, &room);
+      {.samples = 8, .settings = {{"components.caustic", "photons"}, {"photons.efficiency", "false"}}},
+      &room);
   for (const size_t c : {0u, 1u, 2u}) CHECK(test::identical(path.image.components[c], r.image.components[c]));
   CHECK_FALSE(test::identical(path.image.components[3], r.image.components[3]));
 }
@@ -331,7 +333,7 @@ TEST_CASE("without surfaces that focus light no photons are traced for caustics,
   session::Renderer r(test::renderer_options());
   r.set_size(32, 32);
   r.set_scene(std::make_shared<scene::Scene>(room));
-  test::set(r, {{"components.caustic", "photons"}, {"photons.worth", "false"}, {"samples", "8"}});
+  test::set(r, {{"components.caustic", "photons"}, {"photons.efficiency", "false"}, {"samples", "8"}});
   const film::Image image = test::finish(r);
   for (const size_t c : {0u, 1u, 2u, 3u})
     CHECK(test::identical(path.image.components[c], image.components[c]));
@@ -374,7 +376,7 @@ TEST_CASE("of very many photons in one place a part is read, and the light stays
   const auto sum = [&](const char* paths) {
     const test::Result r = test::render(s,
                                         {{"components.caustic", "photons"},
-                                         {"photons.worth", "false"},
+                                         {"photons.efficiency", "false"},
                                          {"photons.per_round", paths},
                                          {"photons.radius", "8"}},
                                         4, 32);

@@ -46,16 +46,16 @@ TEST_CASE("where path tracing is far more efficient it computes the light: its p
   const film::Image path = Session(room, {{"components.caustic", "off"}}).image();
   Session all(room, photons_for({"secondary", "tertiary"}, k_few));
   CHECK(test::identical(all.image(), path));
-  CHECK(all.solver().left() == (k_secondary | k_tertiary));
+  CHECK(all.solver().delegated_components() == (k_secondary | k_tertiary));
   CHECK(all.r.samples() == 4);
   CHECK(all.solver().map().figures().photons == 0);
   Session secondary(room, photons_for({"secondary"}, k_few));
   CHECK(test::identical(secondary.image(), path));
-  CHECK(secondary.solver().left() == k_secondary);
+  CHECK(secondary.solver().delegated_components() == k_secondary);
   // Paths that gather find no valid irradiance with so few photons, so both ways are the same.
   Session tertiary(room, photons_for({"tertiary"}, k_few));
   tertiary.image();
-  CHECK(tertiary.solver().left() == 0);
+  CHECK(tertiary.solver().delegated_components() == 0);
 }
 
 TEST_CASE("where photons are more efficient they compute the light", "[photons_trials]") {
@@ -64,8 +64,8 @@ TEST_CASE("where photons are more efficient they compute the light", "[photons_t
        {photons_for({"secondary", "tertiary"}, k_many), photons_for({"tertiary"}, k_many)}) {
     Session s(room, how);
     const film::Image image = s.image();
-    CHECK(s.solver().left() == 0);
-    CHECK(test::identical(image, Session(room, with(how, {{"photons.worth", "false"}})).image()));
+    CHECK(s.solver().delegated_components() == 0);
+    CHECK(test::identical(image, Session(room, with(how, {{"photons.efficiency", "false"}})).image()));
   }
 }
 
@@ -78,16 +78,16 @@ TEST_CASE("the choice does not depend on work items, and is made again when ligh
   test::set(s.r, {{"path.batch", "1024"}});
   CHECK(test::identical(first, s.image()));
   // Without the choice, and with it again.
-  test::set(s.r, {{"photons.worth", "false"}});
+  test::set(s.r, {{"photons.efficiency", "false"}});
   const film::Image photons = s.image();
-  CHECK(s.solver().left() == 0);
+  CHECK(s.solver().delegated_components() == 0);
   CHECK_FALSE(test::identical(first.components[1], photons.components[1]));
-  test::set(s.r, {{"photons.worth", "true"}});
+  test::set(s.r, {{"photons.efficiency", "true"}});
   CHECK(test::identical(first, s.image()));
   // Many photons change the choice; few restore it.
   test::set(s.r, {{"photons.per_round", k_many}});
   s.image();
-  CHECK(s.solver().left() == 0);
+  CHECK(s.solver().delegated_components() == 0);
   test::set(s.r, {{"photons.per_round", k_few}});
   CHECK(test::identical(first, s.image()));
   // A lamp twice as bright gives the same choice and twice the light; the picture equals that of a new
@@ -96,7 +96,7 @@ TEST_CASE("the choice does not depend on work items, and is made again when ligh
   bright.lights[0].intensity *= 2.0f;
   s.r.set_light(0, bright.lights[0]);
   const film::Image twice = s.image();
-  CHECK(s.solver().left() == (k_secondary | k_tertiary));
+  CHECK(s.solver().delegated_components() == (k_secondary | k_tertiary));
   CHECK(test::mean(twice.components[2]) == Approx(2 * test::mean(first.components[2])).epsilon(1e-4));
   CHECK(test::identical(twice, Session(bright, few).image()));
 }
@@ -111,7 +111,7 @@ TEST_CASE("with caustics of photons the choice depends on the other light only",
                            {"components.caustic", "photons"}};
   Session few(s, with(all, {{"photons.per_round", k_few}}), 64);
   const film::Image left = few.image();
-  CHECK(few.solver().left() == (k_secondary | k_tertiary));
+  CHECK(few.solver().delegated_components() == (k_secondary | k_tertiary));
   // Photons still compute caustics: paths cannot find the mirror's caustic of a point lamp.
   CHECK(test::mean(left.components[3]) > 0);
   CHECK(test::mean(Session(s, {}, 64).image().components[3]) == 0);
@@ -155,10 +155,10 @@ TEST_CASE("where paths are chosen photons compute the light that paths cannot fi
                            {"components.tertiary", "photons"},
                            {"components.caustic", "photons"}};
   const film::Image truth =
-      Session(room, with(all, {{"photons.per_round", k_many}, {"photons.worth", "false"}}), 16).image();
+      Session(room, with(all, {{"photons.per_round", k_many}, {"photons.efficiency", "false"}}), 16).image();
   Session chosen(room, with(all, {{"photons.per_round", k_few}}), 1024);
   const film::Image image = chosen.image();
-  REQUIRE(chosen.solver().left() == (k_secondary | k_tertiary));
+  REQUIRE(chosen.solver().delegated_components() == (k_secondary | k_tertiary));
   const film::Image paths = Session(room, {}, 64).image();
   // Paths miss part of the tertiary light and all caustics.
   CHECK(test::mean(paths.components[2]) < 0.96 * test::mean(truth.components[2]));
@@ -185,7 +185,7 @@ TEST_CASE("records whose rays find no irradiance include the light that paths ca
                              {"components.tertiary", "photons"},
                              {"components.caustic", "off"},
                              {"photons.per_round", k_many},
-                             {"photons.worth", "false"}};
+                             {"photons.efficiency", "false"}};
     const film::Image truth = Session(room, all, 16).image();
     Session records(room,
                     {{"components.secondary", "cache"},
@@ -224,7 +224,7 @@ TEST_CASE("a house on wide ground has its light, and photons do not report darkn
   for (const size_t c : {1u, 2u}) check_same_light(image, paths, c, 0);
   // With photons forced many arrive, although an unaimed path finds the house with a probability of one in
   // 100,000.
-  Session forced(s, with(photons, {{"photons.worth", "false"}}), 1);
+  Session forced(s, with(photons, {{"photons.efficiency", "false"}}), 1);
   forced.image();
   CHECK(forced.solver().map().figures().photons > 50);
 }
@@ -238,7 +238,7 @@ TEST_CASE("light without photons is unknown, and keeps the picture unfinished", 
   Session blind(s,
                 {{"components.secondary", "photons"},
                  {"components.tertiary", "photons"},
-                 {"photons.worth", "false"},
+                 {"photons.efficiency", "false"},
                  {"photons.per_round", "1"},
                  {"sampling.mode", "adaptive"},
                  {"sampling.min_samples", "4"},

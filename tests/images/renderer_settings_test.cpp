@@ -102,7 +102,7 @@ TEST_CASE("another sampling mode keeps existing samples, and each sample stays t
   set("samples", "32");
   while (r.step()) {
   }
-  const film::Image straight = r.image();
+  const film::Image unswitched = r.image();
   r.restart();
   // During a pass: some blocks have more samples than others.
   set("sampling.min_samples", "16");
@@ -124,14 +124,14 @@ TEST_CASE("another sampling mode keeps existing samples, and each sample stays t
   }
   CHECK(r.samples() == 32);
   const film::Image switched = r.image();
-  CHECK(switched.samples == straight.samples);
+  CHECK(switched.samples == unswitched.samples);
   // The same samples, added in other portions: equal up to rounding.
   double most = 0, light = 0;
   for (int c = 0; c < film::k_components; ++c)
-    for (size_t i = 0; i < straight.samples.size(); ++i) {
-      const vec3 d = switched.components[c][i] - straight.components[c][i];
+    for (size_t i = 0; i < unswitched.samples.size(); ++i) {
+      const vec3 d = switched.components[c][i] - unswitched.components[c][i];
       most = std::max({most, std::abs(double(d.x)), std::abs(double(d.y)), std::abs(double(d.z))});
-      light = std::max(light, double(straight.components[c][i].y));
+      light = std::max(light, double(unswitched.components[c][i].y));
     }
   CHECK(most < 1e-4 * light);
   // Back to uniform sampling with more: every pixel reaches the same number.

@@ -34,7 +34,7 @@ TEST_CASE("caustics of rough metal with tilted normals, from the lights and from
     settings["components.caustic"] = "light", settings["light.per_round"] = "200000";
     const double light = light_of(s, settings, 3, 32);
     // Discs so small that blur removes less than a hundredth of the light at the foot of the wall.
-    settings["components.caustic"] = "photons", settings["photons.worth"] = "false";
+    settings["components.caustic"] = "photons", settings["photons.efficiency"] = "false";
     settings["photons.per_round"] = "200000", settings["photons.radius"] = "0.3";
     const double photons = light_of(s, settings, 3, 32);
     INFO(degrees << " degrees: light tracing " << light / paths << ", photons " << photons / paths);

@@ -269,11 +269,11 @@ TEST_CASE("on a normal map inspection reports lookups on the smooth surface, and
         r.picture(false);
         const Inspection found = test::cache_report(r)->inspection;
         REQUIRE(found.solid);
-        CHECK(found.asks != shared::k_asks_nothing);
+        CHECK(found.lookup != shared::k_lookup_none);
         CHECK(found.surface.normal == vec3(0, 0, 1));
         CHECK(found.surface.position.z == Approx(-0.98).margin(1e-5));
-        CHECK((found.count > 0) == (found.asks == shared::k_asks));
-        in_vain += found.asks == shared::k_asks_in_vain, ++inspected;
+        CHECK((found.count > 0) == (found.lookup == shared::k_lookup_possible));
+        in_vain += found.lookup == shared::k_lookup_too_steep, ++inspected;
       }
     if (degrees < 20)
       CHECK(in_vain == 0);
@@ -286,7 +286,7 @@ TEST_CASE("on a normal map inspection reports lookups on the smooth surface, and
     test::finish(r);
     r.inspect(vec2(0.5f, 0.5f));
     r.picture(false);
-    CHECK(test::cache_report(r)->inspection.asks == shared::k_asks_nothing);
+    CHECK(test::cache_report(r)->inspection.lookup == shared::k_lookup_none);
     CHECK(test::cache_report(r)->inspection.count == 0);
     CHECK(test::cache_report(r)->overlap->pixels == 0);
     CHECK(r.device().validation_messages() == 0);
@@ -305,7 +305,8 @@ TEST_CASE(
   CHECK(reported.pixels == 48 * 48);
   CHECK(reported.served > reported.pixels / 2);
   // A loaded cache measures the picture on request, without a build pass.
-  const auto file = std::filesystem::temp_directory_path() / fmt::format("lucerna-overlap-{}.cache", getpid());
+  const auto file =
+      std::filesystem::temp_directory_path() / fmt::format("lucerna-overlap-{}.cache", getpid());
   r.solver_save("cache", file);
   r.restart();
   r.solver_load("cache", file);
@@ -466,8 +467,8 @@ TEST_CASE("the log of a build sums to the contents of the cache") {
   for (const irradiance_cache::CachePass& p : s.passes) {
     CHECK(p.complete);
     CHECK(p.paths > 0);
-    CHECK(p.asked <= p.paths);
-    CHECK(p.asked_world <= p.asked);
+    CHECK(p.uncovered <= p.paths);
+    CHECK(p.uncovered_world <= p.uncovered);
     records += p.records, rays += p.rays;
     for (size_t k = 0; k < ms.size(); ++k) ms[k] += p.ms[k];
   }
@@ -485,7 +486,8 @@ TEST_CASE("the log of a build sums to the contents of the cache") {
   CHECK(std::accumulate(ms.begin(), ms.end(), 0.0) - ms[size_t(irradiance_cache::BuildStep::choose)] <=
         stages);
   if (s.stop == irradiance_cache::StopReason::covered)
-    CHECK(double(s.passes.back().asked) <= r.settings().real("cache.stop") * double(s.passes.back().paths));
+    CHECK(double(s.passes.back().uncovered) <=
+          r.settings().real("cache.stop") * double(s.passes.back().paths));
 
   // Another view adds passes; a restart clears them.
   const size_t before = s.passes.size();

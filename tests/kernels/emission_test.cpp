@@ -272,7 +272,7 @@ TEST_CASE("an environment emits through the scene's disk from each direction") {
     s.environment.image = 0, s.environment.rotation = 40, s.environment.scale = 2;
     s.lights = {lamp(scene::LightKind::point, {3, 2, 1})};
     const Emitted e(s, 1 << 18, threshold);
-    CHECK(e.flat.effects.sky_apart == (threshold > 0));
+    CHECK(e.flat.effects.separate_sky == (threshold > 0));
     CHECK(e.flat.effects.sun == (threshold > 0));
     // Integral of the bilinearly filtered map over all directions.
     constexpr int k_fine = 16;
@@ -358,7 +358,7 @@ bool enters(const Beginning& b, const Box& box) {
 }
 
 /// Mean contributions of paths in total and through each box, and two moments of their directions.
-std::vector<test::Mean> brought(const Emitted& e, const std::vector<Box>& boxes) {
+std::vector<test::Mean> contributions(const Emitted& e, const std::vector<Box>& boxes) {
   std::vector<test::Mean> means(3 + boxes.size());
   for (const Beginning& b : e.paths) {
     const auto flux = double(luminance(b.flux));
@@ -414,7 +414,7 @@ TEST_CASE("aimed paths have the same mean as unaimed ones, for any shares and ev
       if (threshold > 0 && s.environment.image == scene::k_none) continue;
       const Emitted plain(s, 1 << 17, threshold), aimed(s, 1 << 17, threshold, k_boxes, k_uneven);
       REQUIRE(aimed.source.strata() == 1 + 3 * aimed.source.table().groups);
-      const std::vector<test::Mean> a = brought(plain, k_boxes), b = brought(aimed, k_boxes);
+      const std::vector<test::Mean> a = contributions(plain, k_boxes), b = contributions(aimed, k_boxes);
       // Points are stratified, so both errors are below those of independent ones; 5 sigma of 50 comparisons.
       for (size_t i = 0; i < a.size(); ++i) {
         INFO(name << ", threshold " << threshold << ", moment " << i << ": " << b[i].value() << " +- "
@@ -451,7 +451,7 @@ TEST_CASE("aimed paths reach their box") {
   CHECK(double(aimed) > 0.4 * double(e.paths.size()));
   CHECK(missed == 0);
   // The small box alone receives the flux of its size: for the sun, irradiance times its covered area.
-  std::vector<test::Mean> means = brought(e, {boxes.back()});
+  std::vector<test::Mean> means = contributions(e, {boxes.back()});
   const double sun = [&] {
     double sum = 0;
     for (int k = 0; k < 3; ++k) sum += double(std::abs(s.lights[1].direction[k])) * 0.00005 * 0.00005;

@@ -207,41 +207,41 @@ TEST_CASE("tables of an environment are built once for its texels, whatever else
            flat.environment.sun_cells.shares_with(before.sun_cells);
   };
   scene::Scene edited = scene;
-  const auto as_anew = [&] {
-    const upload::FlatScene fresh = upload::flatten(edited, flat.sun_threshold);
+  const auto as_rebuilt = [&] {
+    const upload::FlatScene rebuilt = upload::flatten(edited, flat.sun_threshold);
     const auto same = [](const auto& a, const auto& b) {
       return std::equal(a.begin(), a.end(), b.begin(), b.end());
     };
-    return same(flat.environment.alias, fresh.environment.alias) &&
-           same(flat.environment.density, fresh.environment.density) &&
-           same(flat.environment.sun_cells, fresh.environment.sun_cells) &&
-           same(flat.sun_density, fresh.sun_density) && same(flat.light_alias, fresh.light_alias) &&
-           same(flat.environment_texels, fresh.environment_texels);
+    return same(flat.environment.alias, rebuilt.environment.alias) &&
+           same(flat.environment.density, rebuilt.environment.density) &&
+           same(flat.environment.sun_cells, rebuilt.environment.sun_cells) &&
+           same(flat.sun_density, rebuilt.sun_density) && same(flat.light_alias, rebuilt.light_alias) &&
+           same(flat.environment_texels, rebuilt.environment_texels);
   };
   edited.environment.rotation = 80, edited.environment.scale = 3;
   edited.lights.emplace_back().intensity = vec3(300);
   upload::flatten_lights(edited, flat);
   CHECK(kept());
   CHECK(flat.environment_texels.shares_with(texels));
-  CHECK(as_anew());
+  CHECK(as_rebuilt());
   // Other tables for another sun threshold or none, and for a changed texel.
   for (const float threshold : {1.5f, 0.0f, 16.0f}) {
     flat.sun_threshold = threshold;
     upload::flatten_lights(edited, flat);
     CHECK_FALSE(kept());
-    CHECK(as_anew());
+    CHECK(as_rebuilt());
   }
   scene::Image& image = edited.images[edited.environment.image];
   image.floats[4 * 100] += 50;
   upload::flatten_lights(edited, flat);
   CHECK_FALSE(flat.environment_texels.shares_with(texels));
-  CHECK(as_anew());
+  CHECK(as_rebuilt());
   edited.environment.image = scene::k_none;
   for (const vec3 colour : {vec3(1), vec3(2, 1, 0)}) {
     edited.environment.radiance = colour;
     upload::flatten_lights(edited, flat);
     CHECK(flat.environment_texels[0] == colour);
-    CHECK(as_anew());
+    CHECK(as_rebuilt());
   }
 }
 
@@ -251,7 +251,7 @@ TEST_CASE("sky and sun as two emitters sum to the environment, each sampled by i
   lamp.intensity = vec3(300);
   scene.lights.push_back(lamp);
   Lights whole(scene), lights(scene, 16);
-  REQUIRE(lights.flat.effects.sky_apart);
+  REQUIRE(lights.flat.effects.separate_sky);
   REQUIRE(lights.flat.effects.sun);
   // One texel is the sun; filtering reads it from the eight around it.
   CHECK(lights.flat.environment.sun_cells.size() == 2 * 9);
@@ -323,7 +323,7 @@ TEST_CASE("sky and sun as two emitters sum to the environment, each sampled by i
   scene.environment.image = scene::k_none;
   scene.environment.radiance = vec3(1);
   const upload::FlatScene even = upload::flatten(scene, 2);
-  CHECK(even.effects.sky_apart);
+  CHECK(even.effects.separate_sky);
   CHECK_FALSE(even.effects.sun);
   CHECK(even.environment_light_pmf == 1);
   CHECK(even.effects.lights);

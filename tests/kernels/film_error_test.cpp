@@ -318,9 +318,9 @@ TEST_CASE("the error kernel: records' errors are summed beside the pixels' noise
   std::vector<vec2> records(size_t{k_width} * k_height);
   for (size_t i = 0; i < records.size(); ++i)
     records[i] = vec2(1e-4f * float(i), 2e-4f * float(i % 7) - 3e-4f);
-  gpu::Buffer reported(device, {.name = "reported", .bytes = records.size() * sizeof(vec2)});
-  reported.write(std::span<const vec2>(records));
-  resources.set("FilmRecords", reported);
+  gpu::Buffer estimated(device, {.name = "estimated", .bytes = records.size() * sizeof(vec2)});
+  estimated.write(std::span<const vec2>(records));
+  resources.set("FilmRecords", estimated);
   const auto run = [&](const gpu::Kernel& kernel, uint32_t known) {
     stream.dispatch(kernel, resources, shared::ErrorPush{k_width, k_height, k_blocks, k_floor, 1e9f, known},
                     1);
@@ -422,10 +422,10 @@ TEST_CASE(
     stream.run();
   }
   REQUIRE(film.lookup_bias_known());
-  const auto reported = film.read_lookup_bias();
+  const auto estimated = film.read_lookup_bias();
   for (int half = 0; half < 2; ++half)
     for (size_t i = 0; i < k_pixels; ++i)
-      CHECK(double(reported[half][i]) == Approx(mean[half][i]).epsilon(1e-5).margin(1e-7));
+      CHECK(double(estimated[half][i]) == Approx(mean[half][i]).epsilon(1e-5).margin(1e-7));
   const auto run = [&](const gpu::Kernel& kernel, uint32_t known) {
     const std::vector<shared::WorkBlock> list{{0, 0}, {1, 0}};
     work.write(std::span<const shared::WorkBlock>(list));

@@ -17,14 +17,14 @@ constexpr uint32_t k_groups = 2, k_side = 64, k_pixels = k_side * k_side, k_bloc
 constexpr uint32_t k_lanes = 4 + k_groups;
 
 /// The contribution of sample `s` to a group, the same in every pixel: pixels then differ by rounding only.
-using Brings = std::function<vec3(uint32_t group, uint32_t s)>;
+using Contribution = std::function<vec3(uint32_t group, uint32_t s)>;
 
 /// A film, and the kernel that adds to it.
 struct Bench {
   gpu::Device device{{test::device_name(), true}};
   gpu::ShaderCompiler compiler;
   gpu::Stream stream{device};
-  film::Film film{device, k_side, k_side, k_groups, film::GroupsKept::in_short};
+  film::Film film{device, k_side, k_side, k_groups, film::GroupStorage::compact};
   gpu::Kernel add;
   gpu::Buffer block, radiance;
   gpu::Resources resources;
@@ -42,7 +42,7 @@ struct Bench {
   ~Bench() { CHECK(device.validation_messages() == 0); }
 
   /// Adds samples `first` to `first + count`, in batches of `batch`.
-  void samples(uint32_t first, uint32_t count, uint32_t batch, const Brings& brings) {
+  void samples(uint32_t first, uint32_t count, uint32_t batch, const Contribution& contribution) {
     radiance = gpu::Buffer(
         device,
         {.name = "radiance", .bytes = uint64_t{k_pixels} * batch * k_lanes * sizeof(vec4), .texel = true});
@@ -52,7 +52,7 @@ struct Bench {
     std::vector<shared::WorkBlock> blocks(k_blocks);
     for (uint32_t done = 0; done < count; done += batch) {
       const uint32_t n = std::min(batch, count - done);
-      for (uint32_t i = 0; i < n; ++i) write_sample(values, i, first + done + i, brings);
+      for (uint32_t i = 0; i < n; ++i) write_sample(values, i, first + done + i, contribution);
       radiance.write(std::span<const vec4>(values));
       for (uint32_t b = 0; b < k_blocks; ++b) blocks[b] = {b, first + done};
       block.write(std::span<const shared::WorkBlock>(blocks));
@@ -63,11 +63,12 @@ struct Bench {
 
   /// The contribution of path `i` of every pixel, as written by transport/shade.comp: groups with light have
   /// a bit.
-  static void write_sample(std::vector<vec4>& values, uint32_t i, uint32_t sample, const Brings& brings) {
+  static void write_sample(std::vector<vec4>& values, uint32_t i, uint32_t sample,
+                           const Contribution& contribution) {
     uint32_t lit = 0;
     vec3 light[k_groups];
     for (uint32_t g = 0; g < k_groups; ++g) {
-      light[g] = brings(g, sample);
+      light[g] = contribution(g, sample);
       if (light[g] != vec3(0)) lit |= 1u << g;
     }
     for (uint32_t p = 0; p < k_pixels; ++p) {
@@ -93,7 +94,7 @@ Moments moments(const std::vector<vec3>& values, int channel) {
 }
 
 /// Halves rounded separately, each with half of the samples, have together at most the noise of a single sum.
-double told_deviation(double samples) { return std::min(std::sqrt(samples / 12) / 131072, 1.0 / 512); }
+double estimated_deviation(double samples) { return std::min(std::sqrt(samples / 12) / 131072, 1.0 / 512); }
 
 }  // namespace
 
@@ -103,14 +104,14 @@ TEST_CASE(
   constexpr uint32_t k_small = 4000;
   const float small = 0x1p-20f;
   Bench b;
-  const Brings brings = [&](uint32_t group, uint32_t s) {
+  const Contribution contribution = [&](uint32_t group, uint32_t s) {
     return (s < 2 ? 1.0f : small) * vec3(1, 0.5f, 0) * (group == 0 ? 1.0f : 0x1p-9f);
   };
-  b.samples(0, 2 + k_small, 64, brings);
+  b.samples(0, 2 + k_small, 64, contribution);
   for (uint32_t g = 0; g < k_groups; ++g)
     for (int k = 0; k < 3; ++k) {
       double exact = 0;
-      for (uint32_t s = 0; s < 2 + k_small; ++s) exact += double{brings(g, s)[k]};
+      for (uint32_t s = 0; s < 2 + k_small; ++s) exact += double{contribution(g, s)[k]};
       const Moments m = moments(b.sums(g), k);
       INFO("group " << g << " channel " << k);
       CHECK(std::abs(m.mean - exact) <= 5 * m.deviation / std::sqrt(double{k_pixels}));
@@ -120,7 +121,7 @@ TEST_CASE(
 
 TEST_CASE("sums of many samples are unbiased, and no noisier than stated") {
   // Samples of different size with the group's mean in all channels; pixels differ by rounding.
-  const Brings brings = [](uint32_t group, uint32_t s) {
+  const Contribution contribution = [](uint32_t group, uint32_t s) {
     const float x = float((s * 2654435761u) >> 8) * 0x1p-24f;
     return (group == 0 ? 3.7f : 1e-6f) * vec3(x, 0.3f, 0.9f * x * x);
   };
@@ -128,10 +129,10 @@ TEST_CASE("sums of many samples are unbiased, and no noisier than stated") {
   double exact[k_groups][3] = {};
   uint32_t done = 0;
   for (const uint32_t samples : {16u, 256u, 4096u}) {
-    b.samples(done, samples - done, std::min(samples, 64u), brings);
+    b.samples(done, samples - done, std::min(samples, 64u), contribution);
     for (; done < samples; ++done)
       for (uint32_t g = 0; g < k_groups; ++g)
-        for (int k = 0; k < 3; ++k) exact[g][k] += double{brings(g, done)[k]};
+        for (int k = 0; k < 3; ++k) exact[g][k] += double{contribution(g, done)[k]};
     for (uint32_t g = 0; g < k_groups; ++g)
       for (int k = 0; k < 3; ++k) {
         const Moments m = moments(b.sums(g), k);
@@ -139,20 +140,20 @@ TEST_CASE("sums of many samples are unbiased, and no noisier than stated") {
         CHECK(std::abs(m.mean - exact[g][k]) <= 5 * m.deviation / std::sqrt(double{k_pixels}));
         // The bit is that of the largest channel.
         const double largest = std::max({exact[g][0], exact[g][1], exact[g][2]});
-        CHECK(m.deviation <= 1.1 * told_deviation(samples) * largest);
+        CHECK(m.deviation <= 1.1 * estimated_deviation(samples) * largest);
         CHECK(m.deviation > 0);
       }
   }
 }
 
 TEST_CASE("sums are bit-identical for any batches and either way of writing") {
-  const Brings brings = [](uint32_t group, uint32_t s) {
+  const Contribution contribution = [](uint32_t group, uint32_t s) {
     return std::exp2(float(s * 37 % 23) - 11.0f) * vec3(0.3f, 1 + 0.1f * float(group), float(s % 3));
   };
   std::vector<vec3> first[k_groups];
   for (const uint32_t batch : {37u, 1u, 8u, 37u}) {
     Bench b(batch == 8);  // through images
-    b.samples(5, 37, batch, brings);
+    b.samples(5, 37, batch, contribution);
     for (uint32_t g = 0; g < k_groups; ++g) {
       const std::vector<vec3> sums = b.sums(g);
       if (first[g].empty()) first[g] = sums;
@@ -192,13 +193,13 @@ TEST_CASE("a channel that is negligible beside the others is scaled with them in
 TEST_CASE("samples without light of a group add nothing to it, whatever memory contains") {
   Bench bench;
   // Whole numbers, which are represented exactly; each group has light in some samples of a batch.
-  const auto brings = [](uint32_t group, uint32_t sample) {
+  const auto contribution = [](uint32_t group, uint32_t sample) {
     return sample % (2 + group) == 0 ? vec3(1, 2, float(1 + group)) : vec3(0);
   };
-  bench.samples(0, 12, 6, brings);
+  bench.samples(0, 12, 6, contribution);
   for (uint32_t g = 0; g < k_groups; ++g) {
     vec3 right(0);
-    for (uint32_t s = 0; s < 12; ++s) right += brings(g, s);
+    for (uint32_t s = 0; s < 12; ++s) right += contribution(g, s);
     const std::vector<vec3> sums = bench.sums(g);
     INFO("group " << g);
     CHECK(std::all_of(sums.begin(), sums.end(), [&](const vec3& v) { return v == right; }));

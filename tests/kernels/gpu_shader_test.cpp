@@ -79,11 +79,11 @@ TEST_CASE("an error names the file and the line") {
   const OwnCache cache;
   ShaderCompiler compiler;
   CHECK_THAT(error_of([&] {
-               compiler.compile(shader("gpu_version.comp"), {{"SPOIL", ""}});
+               compiler.compile(shader("gpu_version.comp"), {{"BREAK", ""}});
              }),
              Contains("gpu_version.comp:8: ") && Contains("'mistake' : undeclared identifier"));
   CHECK_THAT(error_of([&] {
-               compiler.compile(shader("gpu_scale.comp"), {{"OFFSET", "0"}, {"SPOIL_THE_INCLUDE", "1"}});
+               compiler.compile(shader("gpu_scale.comp"), {{"OFFSET", "0"}, {"BREAK_THE_INCLUDE", "1"}});
              }),
              Contains("lib/gpu_offset.glsl:6: ") && Contains("no_such_name"));
   CHECK_THAT(error_of([&] { compiler.compile("no/such.comp"); }),
@@ -97,16 +97,16 @@ TEST_CASE("files below the root are called shaders/...; includes are found from 
              "#include \"b/common.glsl\"\n#include \"beside.glsl\"\n#include \"shaders/b/common.glsl\"\n"
              "layout(local_size_x = 1) in;\nbuffer Target { float target[]; };\n"
              "void main() { target[0] = common_value() + beside(); }\n");
-  write_text(root.path / "a/beside.glsl", "float beside() {\n  return 1.0 SPOIL;\n}\n");
+  write_text(root.path / "a/beside.glsl", "float beside() {\n  return 1.0 BREAK;\n}\n");
   // No newline at the end, a guard, and an include of the file itself.
   write_text(root.path / "b/common.glsl",
              "#ifndef COMMON\n#define COMMON\n#include \"b/common.glsl\"\nfloat common_value() { return 2.0; "
              "}\n#endif");
   ShaderCompiler compiler(root.path);
-  CHECK_NOTHROW(compiler.compile("a/kernel.comp", {{"SPOIL", ""}}));
-  CHECK_NOTHROW(compiler.compile("shaders/a/kernel.comp", {{"SPOIL", ""}}));
+  CHECK_NOTHROW(compiler.compile("a/kernel.comp", {{"BREAK", ""}}));
+  CHECK_NOTHROW(compiler.compile("shaders/a/kernel.comp", {{"BREAK", ""}}));
   CHECK_THAT(error_of([&] {
-               compiler.compile("a/kernel.comp", {{"SPOIL", "* wrong"}});
+               compiler.compile("a/kernel.comp", {{"BREAK", "* wrong"}});
              }),
              Contains("shaders/a/beside.glsl:2: ") && Contains("wrong"));
 
@@ -192,7 +192,7 @@ TEST_CASE("the disk cache saves compiles, distinguishes defines and recovers fro
   CHECK(second.cache_hits() == 1);
 
   const auto size = fs::file_size(stored);
-  const auto spoil = [&](const std::string& how) {
+  const auto break_it = [&](const std::string& how) {
     if (how == "empty") fs::resize_file(stored, 0);
     if (how == "half") fs::resize_file(stored, size / 2);
     if (how == "one byte short") fs::resize_file(stored, size - 1);
@@ -205,7 +205,7 @@ TEST_CASE("the disk cache saves compiles, distinguishes defines and recovers fro
   };
   for (const char* how : {"empty", "half", "one byte short", "longer", "altered"}) {
     INFO(how);
-    spoil(how);
+    break_it(how);
     ShaderCompiler again;
     CHECK(again.compile(file, {{"OFFSET", "1"}}) == words);
     CHECK(again.cache_hits() == 0);

@@ -275,21 +275,21 @@ TEST_CASE("lights of another strength, chosen as before: the distribution stays,
     const scene::Scene before = lit({20, 10, 5}, {300, 200, 100}, 1, 37);
     const scene::Scene after = lit({2, 40, 30}, {100, 300, 900}, 2.5f, 80);
     const upload::FlatScene made = upload::flatten(before, sun_threshold),
-                            fresh = upload::flatten(after, sun_threshold);
+                            rebuilt = upload::flatten(after, sun_threshold);
     upload::FlatScene kept = made;
     upload::flatten_emission(after, kept);
     const auto same = [](const auto& a, const auto& b) {
       return std::equal(a.begin(), a.end(), b.begin(), b.end());
     };
     CHECK(same(kept.light_alias, made.light_alias));
-    CHECK_FALSE(same(kept.light_alias, fresh.light_alias));
+    CHECK_FALSE(same(kept.light_alias, rebuilt.light_alias));
     CHECK(same(kept.primitive_light_pmf, made.primitive_light_pmf));
     CHECK(same(kept.environment.density, made.environment.density));
     CHECK(kept.environment_light_pmf == made.environment_light_pmf);
-    CHECK(same(kept.lights, fresh.lights));
-    CHECK(same(kept.environment_texels, fresh.environment_texels));
-    CHECK(kept.environment_radiance == fresh.environment_radiance);
-    CHECK(kept.environment_rotation == fresh.environment_rotation);
+    CHECK(same(kept.lights, rebuilt.lights));
+    CHECK(same(kept.environment_texels, rebuilt.environment_texels));
+    CHECK(kept.environment_radiance == rebuilt.environment_radiance);
+    CHECK(kept.environment_rotation == rebuilt.environment_rotation);
     // The mean light at a point from all directions.
     const auto mean = [](upload::FlatScene flat, uint32_t seed) {
       Lights lights(std::move(flat));
@@ -298,7 +298,7 @@ TEST_CASE("lights of another strength, chosen as before: the distribution stays,
         m.add(d.pdf > 0 ? double(luminance(d.radiance)) / double(d.pdf) : 0);
       return m;
     };
-    const Mean with_old = mean(kept, 3), with_own = mean(fresh, 4), old_light = mean(made, 5);
+    const Mean with_old = mean(kept, 3), with_own = mean(rebuilt, 4), old_light = mean(made, 5);
     INFO("sun threshold " << sun_threshold << ": " << with_old.value() << " and " << with_own.value());
     const double error = std::hypot(with_old.error(), with_own.error());
     CHECK(error < 0.02 * with_own.value());

@@ -114,15 +114,15 @@ TEST_CASE("lamps form separate groups, triangles are clustered, and many lamps s
 }
 
 TEST_CASE("shares follow the square root of a pair's contribution, and none is zero") {
-  const std::vector<double> worth{1, 1e12, 4, 0, 1};
-  const std::vector<double> s = transport::aim_shares(worth, transport::k_least_unaimed_of_caustics);
+  const std::vector<double> contribution{1, 1e12, 4, 0, 1};
+  const std::vector<double> s = transport::aim_shares(contribution, transport::k_least_unaimed_of_caustics);
   CHECK(std::accumulate(s.begin(), s.end(), 0.0) == Approx(1));
   CHECK(s[0] == Approx(1.0 / 7));
   CHECK(s[1] > s[2]);
   CHECK(s[2] > s[3]);
   CHECK(s[4] > 0.1 * (1 - s[0]) / 1.5);  // the minimum for pairs with a contribution
   CHECK(s[3] > 0.02 * (1 - s[0]));       // the minimum for pairs without
-  CHECK(transport::aim_shares(worth, transport::k_least_unaimed_of_all)[0] == Approx(0.5));
+  CHECK(transport::aim_shares(contribution, transport::k_least_unaimed_of_all)[0] == Approx(0.5));
   const std::vector<double> nothing =
       transport::aim_shares(std::vector<double>{5, 0, 0}, transport::k_least_unaimed_of_caustics);
   CHECK(nothing[0] == Approx(0.9));

@@ -19,7 +19,7 @@ namespace {
 
 const nlohmann::ordered_json k_identity = {{"version", "1"}, {"device", "one"}};
 
-struct Messages {
+struct Reported {
   std::vector<std::string> lines;
   Message message = [this](const std::string& line) { lines.push_back(line); };
 };
@@ -76,25 +76,25 @@ TEST_CASE("A bench keeps the complete cells and measures the others again") {
     for (size_t i = 0; i < 6; ++i) folder.save(m.id(cells[i]), test::fake_result(m, cells[i], 0.3, 7));
   }
   const Folder folder(temporary / "r", m, k_identity);
-  Messages messages;
-  CHECK(folder.load(m, hashes, messages.message).size() == 6);
-  CHECK(messages.lines.empty());
+  Reported reported;
+  CHECK(folder.load(m, hashes, reported.message).size() == 6);
+  CHECK(reported.lines.empty());
   // Half a file, and the file of another cell.
   const auto file = [&](size_t i) { return temporary / ("r/cells/" + m.id(cells[i]) + ".json"); };
   const std::string whole = read_file(file(0));
   std::ofstream(file(0)) << whole.substr(0, whole.size() / 2);
   std::ofstream(file(1)) << whole;
-  const auto results = folder.load(m, hashes, messages.message);
+  const auto results = folder.load(m, hashes, reported.message);
   CHECK(results.size() == 4);
   CHECK_FALSE(results.contains(m.id(cells[0])));
-  REQUIRE(messages.lines.size() == 2);
-  CHECK_THAT(messages.lines[0],
+  REQUIRE(reported.lines.size() == 2);
+  CHECK_THAT(reported.lines[0],
              Contains(m.id(cells[0])) && Contains("half a file") && Contains("measured again"));
-  CHECK_THAT(messages.lines[1], Contains("another cell"));
+  CHECK_THAT(reported.lines[1], Contains("another cell"));
   // The scene's files have changed since.
-  messages.lines.clear();
-  CHECK(folder.load(m, {{"cornell", "new"}, {"glass", "0123456789abcdef"}}, messages.message).empty());
-  CHECK_THAT(messages.lines.back(), Contains("the scene has changed"));
+  reported.lines.clear();
+  CHECK(folder.load(m, {{"cornell", "new"}, {"glass", "0123456789abcdef"}}, reported.message).empty());
+  CHECK_THAT(reported.lines.back(), Contains("the scene has changed"));
   for (const auto& entry : fs::directory_iterator(temporary / "r/cells"))
     CHECK(entry.path().extension() == ".json");
 }
@@ -170,10 +170,10 @@ TEST_CASE("A reference is used if it is complete and from the same inputs; other
     image.metadata["noise"] = film::noise_text({0.1, 0.1, 0.1, 0.1, 0.1});
     film::write_exr(reference_file(temporary.path, scene), image);
   };
-  Messages messages;
-  const auto find = [&] { return find_reference(temporary.path, scene, key, messages.message); };
+  Reported reported;
+  const auto find = [&] { return find_reference(temporary.path, scene, key, reported.message); };
   CHECK_FALSE(find());
-  CHECK(messages.lines.empty());
+  CHECK(reported.lines.empty());
   write(key, 128, 2);
   const auto found = find();
   REQUIRE(found);
@@ -181,14 +181,14 @@ TEST_CASE("A reference is used if it is complete and from the same inputs; other
   CHECK(found->noise[0] == Approx(0.05));
   // Halves that differ by 2: their variance is 2 everywhere, over a mean of 2 squared.
   CHECK(found->relmse_noise == Approx(2 / 4.01 / std::sqrt(3) / 16));
-  CHECK(messages.lines.empty());
+  CHECK(reported.lines.empty());
 
   int old = 0;
   const auto set_aside = [&](const std::string& why) {
     INFO(why);
     CHECK_FALSE(find());
-    REQUIRE(messages.lines.size() == size_t(++old));
-    CHECK_THAT(messages.lines.back(), Contains(why) && Contains("made anew"));
+    REQUIRE(reported.lines.size() == size_t(++old));
+    CHECK_THAT(reported.lines.back(), Contains(why) && Contains("made anew"));
     CHECK_FALSE(fs::exists(reference_file(temporary.path, scene)));
     CHECK(fs::exists(reference_file(temporary.path, scene).string() +
                      (old == 1 ? ".old" : ".old" + std::to_string(old))));

@@ -69,8 +69,15 @@ TEST_CASE("published bytes are decoded as sRGB") {
 }
 
 TEST_CASE("a picture counts as usable once it stays usable, and every step back is reported") {
-  const std::vector<Moment> moments{{0, {0.9, 0.2}},  {0.2, {0.12, 0.01}}, {0.5, {0.3, 0}},
-                                    {0.8, {0.14, 0}}, {2, {0.05, 0}},      {4, {0.06, 0}}};
+  const auto moment = [](double seconds, double median, double worst, double black) {
+    return Moment{
+        seconds, {.error = median, .black = black, .tile_median = median, .worst_tenth = worst}, {}};
+  };
+  std::vector<Moment> moments{moment(0, 0.9, 1, 0.2),     moment(0.2, 0.12, 0.2, 0.01),
+                              moment(0.5, 0.3, 0.5, 0),   moment(0.7, 0.14, 0.31, 0),
+                              moment(0.8, 0.14, 0.29, 0), moment(2, 0.05, 0.1, 0),
+                              moment(4, 0.06, 0.1, 0)};
+  moments[5].reported = film::ShownError{0.04, 0.2};
   const LatencyResult r = latency_of(moments, 5);
   REQUIRE(r.usable_s);
   CHECK(*r.usable_s == 0.8);
@@ -80,9 +87,13 @@ TEST_CASE("a picture counts as usable once it stays usable, and every step back 
   CHECK(*r.error[0] == 0.12);  // at 0.3 s
   CHECK(*r.error[1] == 0.14);
   CHECK(*r.error[2] == 0.05);
+  CHECK(*r.worst[2] == 0.1);
+  CHECK(*r.reported[2] == 0.04);
+  CHECK(*r.reported_worst[2] == 0.2);
+  CHECK_FALSE(r.reported[1]);
   CHECK_FALSE(r.error[3]);  // the run is shorter than ten seconds
 
-  const std::vector<Moment> worse{{0, {0.1, 0}}, {1, {0.5, 0.5}}};
+  const std::vector<Moment> worse{moment(0, 0.1, 0.1, 0), moment(1, 0.5, 0.6, 0.5)};
   CHECK_FALSE(latency_of(worse, 5).usable_s);
   CHECK_FALSE(latency_of(worse, 5).lit_s);
   CHECK(latency_row(latency_of(worse, 5)).size() >= latency_heading().size());
@@ -101,6 +112,53 @@ TEST_CASE("of several runs the median of each figure is reported; unreached targ
   CHECK_FALSE(m.error[2]);
   CHECK(m.rise == 0.2);
   CHECK(median_of(std::vector{a, c}).rise == 0.3);
+}
+
+TEST_CASE("the error of tiles: their median, and what a tenth of them exceed") {
+  // Nine tiles in ten are off by a tenth or less, the others by more.
+  constexpr uint32_t k_width = 160, k_height = 32;
+  std::vector<float> reference(k_width * k_height, 0.5f), shown = reference;
+  for (size_t i = 0; i < shown.size(); ++i) {
+    const uint32_t column = uint32_t(i % k_width) / 16;
+    shown[i] *= column == 9 ? 1.8f : column < 6 ? 1.1f : 1.05f;
+  }
+  const PictureDistance d = picture_distance(shown, reference, k_width);
+  CHECK(d.tile_median == Approx(0.1).epsilon(0.05));
+  CHECK(d.worst_tenth > 0.7);
+}
+
+TEST_CASE("reported errors are compared with the true ones of the same pictures") {
+  LatencyResult right, wrong, unknown;
+  right.error[1] = 0.1, right.worst[1] = 0.2, right.reported[1] = 0.12, right.reported_worst[1] = 0.21;
+  wrong.error[2] = 0.3, wrong.worst[2] = 0.9, wrong.reported[2] = 0.1, wrong.reported_worst[2] = 0.2;
+  unknown.error[1] = 0.3, unknown.worst[1] = 0.9;
+  const ReportedErrors e = reported_errors(std::vector{right, wrong, unknown});
+  CHECK(e.known == 2);
+  CHECK(e.median_right == 1);
+  CHECK(e.worst_right == 1);
+  CHECK(e.said_usable == 2);
+  CHECK(e.not_usable == 1);
+  CHECK(e.ratio[2] == Approx(3));
+}
+
+TEST_CASE("an edit is taken back to the values before it; seeds draw other amounts") {
+  scene::Scene s;
+  scene::Light lamp;
+  lamp.intensity = vec3(3);
+  s.lights.push_back(lamp);
+  const scene::Camera camera;
+  const std::optional<Change> change = change_of(Edit::strength, s, camera);
+  REQUIRE(change);
+  REQUIRE(change->light);
+  CHECK(change->light->second.intensity.x == Approx(1));
+  const Change back = reverse_of(*change, s, camera);
+  REQUIRE(back.light);
+  CHECK(back.light->second.intensity == lamp.intensity);
+  CHECK_FALSE(back.material);
+  const std::optional<Change> drawn = change_of(Edit::strength, s, camera, 1),
+                              again = change_of(Edit::strength, s, camera, 1);
+  CHECK(drawn->light->second.intensity != change->light->second.intensity);
+  CHECK(drawn->light->second.intensity == again->light->second.intensity);
 }
 
 TEST_CASE("edits are identified by their names") {

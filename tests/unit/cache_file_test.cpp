@@ -36,7 +36,7 @@ CacheFile some_cache(uint32_t records) {
   c.made_with.recursive = records % 2 == 0;
   c.made_with.seed = "7";
   c.view = "perspective 0.8 at 1 2 3";
-  c.status.pass = 3, c.status.probed.asked = 5, c.status.probed.paths = 1ull << 40,
+  c.status.pass = 3, c.status.probed.uncovered = 5, c.status.probed.paths = 1ull << 40,
   c.status.rays = 123456789012ull;
   c.status.stop = StopReason::passes;
   float next = 1;
@@ -90,7 +90,7 @@ TEST_CASE("a cache is unchanged after write and read, bit for bit") {
     CHECK(d.made_with.seed == c.made_with.seed);
     CHECK(d.view == c.view);
     CHECK(d.status.pass == c.status.pass);
-    CHECK(d.status.probed.asked == c.status.probed.asked);
+    CHECK(d.status.probed.uncovered == c.status.probed.uncovered);
     CHECK(d.status.probed.paths == c.status.probed.paths);
     CHECK(d.status.rays == c.status.rays);
     CHECK(d.status.stop == c.status.stop);

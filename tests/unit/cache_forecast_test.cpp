@@ -47,7 +47,7 @@ const std::vector<std::vector<Pass>> k_measured = {
 CachePass pass(const Pass& p, uint32_t number, double part) {
   CachePass r;
   r.number = number, r.complete = part == 1;
-  r.paths = 1000000, r.asked = uint64_t(p.asked * 1e6);
+  r.paths = 1000000, r.uncovered = uint64_t(p.asked * 1e6);
   r.records = p.records, r.rays = uint64_t(part * double(p.rays));
   r.ms[size_t(BuildStep::evaluate)] = part * p.ms;
   return r;
@@ -78,10 +78,10 @@ TEST_CASE("the remaining time of a cache build is forecast") {
         CHECK(reported->done > 0);
         CHECK(reported->done < 1);
         // The total: small scenes finish earlier than the first pass suggests.
-        const double foretold = done + reported->left_ms;
-        CHECK(foretold < (i == 0 ? 2.3 : 1.7) * whole);
-        CHECK(foretold > whole / 1.7);
-        CHECK(reported->done == Approx(done / foretold));
+        const double predicted = done + reported->left_ms;
+        CHECK(predicted < (i == 0 ? 2.3 : 1.7) * whole);
+        CHECK(predicted > whole / 1.7);
+        CHECK(reported->done == Approx(done / predicted));
       }
       before += all[i].ms;
     }
@@ -140,7 +140,7 @@ TEST_CASE("records for a new view take their share of the whole build") {
   CHECK_FALSE(forecast_of(s, k_stop));
   double last = 0;
   for (const double asked : {0.0005, 0.002, 0.02, 0.3, 0.9}) {
-    s.passes.back().paths = 1000000, s.passes.back().asked = uint64_t(asked * 1e6);
+    s.passes.back().paths = 1000000, s.passes.back().uncovered = uint64_t(asked * 1e6);
     const double left = forecast_of(s, k_stop)->left_ms;
     CHECK(left > last);
     CHECK(forecast_of(s, k_stop)->done == Approx(100130 / (100130 + left)).epsilon(0.01));

@@ -22,7 +22,7 @@ CacheReport complete() {
   c.status.pass = 2, c.status.records = 120, c.status.rays = 64 * 120;
   for (uint32_t i = 0; i < 2; ++i) {
     CachePass p;
-    p.number = i, p.complete = true, p.paths = 1000, p.asked = i == 0 ? 500 : 1;
+    p.number = i, p.complete = true, p.paths = 1000, p.uncovered = i == 0 ? 500 : 1;
     p.records = i == 0 ? 100 : 20, p.rays = 64 * p.records, p.tried = 150, p.clusters = 40;
     for (size_t k = 0; k < p.ms.size(); ++k) p.ms[k] = double(k + 1);
     c.status.passes.push_back(p);
@@ -181,7 +181,7 @@ TEST_CASE("every active view has its legend") {
 TEST_CASE("the card shows the record under a point and the records it reads, shortened in little room") {
   using Room = solvers::Card::Room;
   CacheReport c = complete();
-  c.inspection.solid = true, c.inspection.asks = shared::k_asks;
+  c.inspection.solid = true, c.inspection.lookup = shared::k_lookup_possible;
   CHECK_FALSE(make_report(c, settings()).card);  // no point is inspected
   c.looked_at = vec2(0.5f);
   const auto reported = [&](Room room = Room::much) {
@@ -205,7 +205,7 @@ TEST_CASE("the card shows the record under a point and the records it reads, sho
   CHECK_THAT(much, Contains("Served by 9 records\nweight 100\n") && Contains("and 3 more|13.3 %"));
   CHECK_THAT(little, Contains("508|31.0 cm\n") && !Contains("Radius") && Contains("weight 105") &&
                          !Contains("weight 106"));
-  c.inspection.asks = shared::k_asks_in_vain;
+  c.inspection.lookup = shared::k_lookup_too_steep;
   CHECK_THAT(reported(), Contains("too steep"));
   c.inspection.solid = false;
   CHECK_FALSE(make_report(c, settings()).card);

@@ -373,8 +373,8 @@ TEST_CASE(
         for (int k = 0, rest = number; k < length; ++k, rest /= 3) events += letters[rest % 3];
         INFO("E" << events << "L, photons " << photons);
         const uint8_t component = a.classify("E" + events + "L");
-        const bool straight = length > 1 && events[0] == 'D' && events.find('D', 1) == std::string::npos;
-        int times = straight;
+        const bool direct = length > 1 && events[0] == 'D' && events.find('D', 1) == std::string::npos;
+        int times = direct;
         uint8_t eye = 0;
         bool live = true;
         for (size_t k = 0; k < events.size(); ++k) {

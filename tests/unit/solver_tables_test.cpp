@@ -18,7 +18,7 @@ TEST_CASE("every setting of the picture has a row in each solver's table of chan
       if (owner && owner != solver) continue;
       INFO(solver->name << ": " << option.key);
       CHECK(std::any_of(solver->changes.begin(), solver->changes.end(), [&](const solvers::ChangeRow& row) {
-        const auto* head = std::get_if<std::string_view>(&row.what);
+        const auto* head = std::get_if<std::string_view>(&row.change);
         return head && option.key.starts_with(*head);
       }));
     }
@@ -27,8 +27,8 @@ TEST_CASE("every setting of the picture has a row in each solver's table of chan
     relit.edits.insert({scene::Change::environment, scene::Change::colour});
     relit.settings = {"relight.mix"};
     INFO(solver->name);
-    CHECK(solvers::spoiled_by(*solver, relit).light);
-    CHECK_FALSE(solvers::spoiled_by(*solver, relit).places);
+    CHECK(solvers::invalidated_by(*solver, relit).light);
+    CHECK_FALSE(solvers::invalidated_by(*solver, relit).places);
   }
 }
 

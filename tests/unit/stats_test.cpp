@@ -16,7 +16,7 @@ Ledger render(double exponent, uint64_t paths, double wobble = 0) {
   for (uint64_t p = 100; p <= paths; p += 100) {
     if (!ledger.due(p, 100)) continue;
     Entry e;
-    e.told = true, e.degrees = 2000, e.paths = p, e.rays = 5 * p, e.samples = double(p) / 100,
+    e.has_error = true, e.degrees = 2000, e.paths = p, e.rays = 5 * p, e.samples = double(p) / 100,
     e.wall_s = 1e-3 * double(p);
     for (double& x : e.error)
       x = 2 * std::pow(double(p) / 100, -exponent) * (1 + wobble * std::sin(double(ledger.entries().size())));
@@ -120,11 +120,11 @@ TEST_CASE("time to a smaller error: the law is found, and the band contains the 
   REQUIRE(reached);
   CHECK(reached->low == reached->high);
   CHECK(reached->middle == Approx(0.1 * 4 / 0.21 / 0.21).epsilon(0.02));
-  Ledger untold = render(0.5, 1000);
-  Entry nothing = untold.entries().back();
-  nothing.told = false, nothing.paths *= 2, nothing.error = {};
-  untold.add(nothing);
-  CHECK_FALSE(seconds_to(untold, 10));
+  Ledger unreported = render(0.5, 1000);
+  Entry nothing = unreported.entries().back();
+  nothing.has_error = false, nothing.paths *= 2, nothing.error = {};
+  unreported.add(nothing);
+  CHECK_FALSE(seconds_to(unreported, 10));
   CHECK_FALSE(seconds_to(Ledger(), 0.1));
   CHECK_FALSE(seconds_to(render(0.5, 1000), 0));
 }
@@ -199,7 +199,7 @@ TEST_CASE("the 90 % band contains the truth of synthetic renders in nine cases o
       }
       done = n;
       Entry e;
-      e.told = true, e.samples = n, e.paths = uint64_t(n * k_pixels), e.rays = 5 * e.paths;
+      e.has_error = true, e.samples = n, e.paths = uint64_t(n * k_pixels), e.rays = 5 * e.paths;
       e.wall_s = e.render_s = 0.1 * n, e.error[0] = std::sqrt(sum / k_pixels);
       e.degrees = 3 * sum * sum / fourth;
       all.push_back(e);

@@ -25,7 +25,7 @@ session::Accuracy uniform(int samples, double first_error = 0.8) {
   a.run = 1, a.scene_id = 1, a.max_samples = 100000, a.pixels = 1000;
   for (double n = 1; n <= samples; n *= 1.25) {
     stats::Entry e;
-    e.told = true, e.wall_s = e.render_s = e.device_s = 0.5 * n;
+    e.has_error = true, e.wall_s = e.render_s = e.device_s = 0.5 * n;
     e.samples = n, e.paths = static_cast<uint64_t>(1000 * n), e.rays = 5 * e.paths;
     e.error = {first_error / std::sqrt(n), 0.5 * first_error / std::sqrt(n),
                0.01 * first_error / std::sqrt(n), 0, 0};
@@ -203,7 +203,8 @@ TEST_CASE("a target beyond the last sample of uniform sampling is not promised")
 TEST_CASE(
     "noise has four figures: as seen, of the median tile, of the worst tenth of the tiles, of the mean") {
   stats::Entry line;
-  line.told = true, line.error = {0.01, 0.01, 0, 0, 0}, line.tile_median = 0.04, line.tile_worst_tenth = 0.2;
+  line.has_error = true, line.error = {0.01, 0.01, 0, 0, 0}, line.tile_median = 0.04,
+  line.tile_worst_tenth = 0.2;
   line.of_mean.error[0] = 0.15;
   const auto figures = error_figures(line);
   CHECK(figures[0].name == "as seen");

@@ -212,7 +212,7 @@ struct Session::Impl {
     for (double n = 2; n <= samples; n = std::max(n + 1, 1.25 * n)) {
       stats::Entry e;
       e.samples = n, e.paths = static_cast<uint64_t>(n * a->pixels), e.rays = 7 * e.paths;
-      e.told = true, e.wall_s = e.render_s = e.device_s = 0.2 * n;
+      e.has_error = true, e.wall_s = e.render_s = e.device_s = 0.2 * n;
       for (size_t k = 0; k < 5; ++k) e.error[k] = (run_number % 2 ? 0.8 : 1.6) * shares[k] / std::sqrt(n);
       e.of_mean.error = e.error;
       if (!reference.empty()) {
@@ -256,11 +256,11 @@ struct Session::Impl {
     status.pass = 4, status.bytes = 100u << 20, status.references = 7.3;
     for (uint32_t i = 0; i < 5; ++i) {
       irradiance_cache::CachePass p;
-      p.number = i, p.complete = true, p.paths = 525000, p.asked = p.paths >> (3 * i);
-      p.asked_world = p.asked / 3, p.records = i < 4 ? 2800 >> i : 0, p.rays = 340ull * p.records;
+      p.number = i, p.complete = true, p.paths = 525000, p.uncovered = p.paths >> (3 * i);
+      p.uncovered_world = p.uncovered / 3, p.records = i < 4 ? 2800 >> i : 0, p.rays = 340ull * p.records;
       p.ms = {210, 12, 90, i < 4 ? 1900.0 / (i + 1) : 0, 2, 11};
       status.passes.push_back(p);
-      status.records += p.records, status.rays += p.rays, status.probed.asked = p.asked,
+      status.records += p.records, status.rays += p.rays, status.probed.uncovered = p.uncovered,
                                                           status.probed.paths = p.paths;
     }
     status.stop = irradiance_cache::StopReason::covered;
@@ -292,12 +292,12 @@ struct Session::Impl {
     if (!looked_at) return c;
     irradiance_cache::Inspection& found = c.inspection;
     found.x = uint32_t(looked_at->x * float(width)), found.y = uint32_t(looked_at->y * float(height));
-    found.solid = true, found.asks = shared::k_asks, found.surface.position = {1, 0, 2},
+    found.solid = true, found.lookup = shared::k_lookup_possible, found.surface.position = {1, 0, 2},
     found.surface.normal = {0, 1, 0}, found.surface.size = 0.003f;
     // A mirror at the left border, a strongly tilted normal map at the right.
-    if (looked_at->x < 0.05f) found.asks = shared::k_asks_nothing;
-    if (looked_at->x > 0.95f) found.asks = shared::k_asks_in_vain;
-    if (found.asks != shared::k_asks) return c;
+    if (looked_at->x < 0.05f) found.lookup = shared::k_lookup_none;
+    if (looked_at->x > 0.95f) found.lookup = shared::k_lookup_too_steep;
+    if (found.lookup != shared::k_lookup_possible) return c;
     found.count = 9;
     for (uint32_t i = 0; i < 9; ++i)
       found.serving.push_back({100 + 37 * i, float(9 - i) / 45, {100 + 20 * float(i), 100}, 3});

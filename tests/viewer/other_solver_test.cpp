@@ -22,7 +22,7 @@ const solvers::SolverInfo& lantern() {
       .options = {integer_option("lantern.slides", 24, 1, 100, "slides", "Slides in the tray.", "Slides"),
                   without_restart(choice_option("overlay.slides", "off", {"off", "rims", "whole"}, "",
                                                 "Slides.", "Slides"))},
-      .views = {{.option = "overlay.slides", .label = "Slides", .shortcut = 'M', .asks_pointer = true}},
+      .views = {{.option = "overlay.slides", .label = "Slides", .shortcut = 'M', .inspects_pointer = true}},
       .commands = {{.name = "next",
                     .label = "Next slide",
                     .help = "Changes it.",

@@ -111,6 +111,7 @@ void estimate_pixels(FilterError& error, const Image& image, const Halves& s, co
   error.rms = std::sqrt((std::max(noise_sum, all_sum) + unknown) / double(n));
   const std::vector<double> scale = scales({image.width, image.height, f.mean}, k_noise_reach);
   const std::vector<double> v = variances(noise, all, scale, k_noise_reach, k_bias_reach);
+  error.luminances.assign(f.mean.begin(), f.mean.end());
   error.pixels.resize(n);
   for (size_t i = 0; i < n; ++i) error.pixels[i] = float(image.samples[i] < 2 ? f.mean[i] : std::sqrt(v[i]));
 }

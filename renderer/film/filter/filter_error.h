@@ -21,6 +21,7 @@ struct FilterError {
   /// Of each pixel: standard error of its luminance, noise and bias together. A pixel with less than two
   /// samples tells nothing: its own luminance.
   std::vector<float> pixels;
+  std::vector<float> luminances;    ///< of each pixel of the filtered picture
   std::vector<FilteredTile> tiles;  ///< in raster order
   double luminance = 0;             ///< mean of the picture
   double rms = 0;                   ///< of the picture, in the quadratic mean over its pixels

@@ -65,14 +65,14 @@ Reference read_reference(const std::filesystem::path& file, uint32_t width, uint
   reference.mean_luminance = sum / double(pixels);
   if (!(reference.mean_luminance > 0))
     throw_error(where, "the reference is black; nothing can be held against it");
-  const auto told = [&](const char* key) {
+  const auto attribute = [&](const char* key) {
     const auto at = image.metadata.find(key);
     return at == image.metadata.end() ? std::string() : at->second;
   };
-  reference.noise = parse_noise(told("noise"));
-  reference.scene = told("scene");
-  reference.view = told("view");
-  reference.seed = told("seed");
+  reference.noise = parse_noise(attribute("noise"));
+  reference.scene = attribute("scene");
+  reference.view = attribute("view");
+  reference.seed = attribute("seed");
   return reference;
 }
 

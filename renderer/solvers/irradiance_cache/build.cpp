@@ -43,7 +43,7 @@ void Cache::Impl::clear() {
   status = {.bytes = status.bytes};
   progress.stage = Stage::probe;
   progress.probing.begun = progress.probing.camera_moved = false;
-  count_anew(true);
+  restart_passes(true);
   ranges.clear();
   held = gathers;
   write_frame();
@@ -62,7 +62,7 @@ void Cache::Impl::look_from(const CacheView& view) {
   write_frame();
 }
 
-void Cache::Impl::count_anew(bool beyond) {
+void Cache::Impl::restart_passes(bool beyond) {
   status.pass = 0;
   progress.probing.restart(beyond);
   status.stop = progress.stopped_before = StopReason::building;
@@ -82,10 +82,10 @@ void Cache::Impl::begin_pass(const Work& w) {
   probing.camera_moved = false;
   if (!status.passes.empty() && !pass().complete) status.passes.pop_back();
   status.passes.push_back({.number = status.pass});
-  status.probed.asked = status.probed.paths = 0;
+  status.probed.uncovered = status.probed.paths = 0;
   probing.blocks.begin((w.view.width + 7) / 8, (w.view.height + 7) / 8, status.pass);
   probing.schedule = {uint32_t(probing.blocks.list().size()), 1, w.wavefront.slots()};
-  probing.asked = {}, probing.paths = 0;
+  probing.uncovered = {}, probing.paths = 0;
   places.forget();
   progress.clock.restart();
   probing.begun = true;

@@ -79,7 +79,7 @@ struct Cache::Impl {
   void clear();
   void look_from(const CacheView& view);
   /// Building goes on; passes are counted, and the picture looked along, from the beginning.
-  void count_anew(bool beyond);
+  void restart_passes(bool beyond);
   /// What is placed and not evaluated is dropped, and what was asked for.
   void drop_pass();
   void relight(const std::optional<std::vector<vec3>>& factors, uint32_t sky_group);

@@ -9,33 +9,33 @@ namespace {
 
 // Measured on classroom, hall and two real interiors, from nothing: what was left of the work when a
 // pass began ...
-constexpr std::array<double, 7> k_left_at = {1, 0.85, 0.6, 0.32, 0.21, 0.11, 0.04};
+constexpr std::array<double, 7> k_remaining_after = {1, 0.85, 0.6, 0.32, 0.21, 0.11, 0.04};
 // ... of the first pass, what placing took of it, and how many rays its records got each.
 constexpr double k_placing = 0.22, k_rays_a_record = 600;
 
 /// The same by how much of the picture asked for records, the largest first.
-struct Asked {
-  double share, left;
+struct Remaining {
+  double share, remaining;
 };
-constexpr std::array<Asked, 6> k_left_asked = {
+constexpr std::array<Remaining, 6> k_remaining_uncovered = {
     {{1, 1}, {0.6, 0.85}, {0.25, 0.57}, {0.02, 0.3}, {0.006, 0.2}, {0.0015, 0.08}}};
 
-double left_asked(double share) {
+double remaining_uncovered(double share) {
   if (share <= 0) return 0;
-  for (size_t i = 1; i < k_left_asked.size(); ++i) {
-    const Asked &a = k_left_asked[i - 1], &b = k_left_asked[i];
+  for (size_t i = 1; i < k_remaining_uncovered.size(); ++i) {
+    const Remaining &a = k_remaining_uncovered[i - 1], &b = k_remaining_uncovered[i];
     if (share < b.share) continue;
     const double f = std::log(share / b.share) / std::log(a.share / b.share);
-    return b.left + std::min(f, 1.0) * (a.left - b.left);
+    return b.remaining + std::min(f, 1.0) * (a.remaining - b.remaining);
   }
-  return k_left_asked.back().left * share / k_left_asked.back().share;
+  return k_remaining_uncovered.back().remaining * share / k_remaining_uncovered.back().share;
 }
 
 /// `before_ms`: of building that was complete before this began.
 BuildForecast forecast(double all_ms, double done_ms, double before_ms = 0) {
   // What has taken longer than was foretold is nearly done, as far as one can tell.
-  const double left = std::max(all_ms - done_ms, 0.04 * done_ms);
-  return {.done = (before_ms + done_ms) / (before_ms + done_ms + left), .left_ms = left};
+  const double remaining = std::max(all_ms - done_ms, 0.04 * done_ms);
+  return {.done = (before_ms + done_ms) / (before_ms + done_ms + remaining), .left_ms = remaining};
 }
 
 }  // namespace
@@ -65,22 +65,23 @@ std::optional<BuildForecast> forecast_of(const CacheStatus& s, double stop_share
   const bool looked = now.paths > 0;
   if (before > 0) {
     if (!looked) return {};
-    return forecast(done - of_pass + before * left_asked(double(now.asked) / double(now.paths)), done,
-                    before);
+    return forecast(done - of_pass + before * remaining_uncovered(double(now.uncovered) / double(now.paths)),
+                    done, before);
   }
   if (now.number == 0) {
     if (now.rays == 0 || now.records == 0) return {};
     const double part =
         k_placing + (1 - k_placing) * std::min(1.0, double(now.rays) / (now.records * k_rays_a_record));
-    return forecast(done / (part * (1 - k_left_at[1])), done);
+    return forecast(done / (part * (1 - k_remaining_after[1])), done);
   }
   const double begun = done - of_pass;  // when this pass began
-  const bool last = looked && double(now.asked) <= stop_share * double(now.paths);
-  double left = k_left_at[std::min<size_t>(now.number, k_left_at.size() - 1)];
+  const bool last = looked && double(now.uncovered) <= stop_share * double(now.paths);
+  double remaining = k_remaining_after[std::min<size_t>(now.number, k_remaining_after.size() - 1)];
   // Small scenes have fewer passes, which is seen of how many ask.
-  if (looked) left = std::sqrt(left * left_asked(double(now.asked) / double(now.paths)));
-  if (last) left = k_left_at.back();
-  return forecast(begun / (1 - left), done);
+  if (looked)
+    remaining = std::sqrt(remaining * remaining_uncovered(double(now.uncovered) / double(now.paths)));
+  if (last) remaining = k_remaining_after.back();
+  return forecast(begun / (1 - remaining), done);
 }
 
 }  // namespace lucerna::irradiance_cache

@@ -121,8 +121,8 @@ void Cache::Impl::publish_level(const Work& w) {
   if (status.relighting.records > 0) preview.take(w.stream(), tables, ranges.pass_end());
   if (ranges.waiting() == 0) return;
   // Ellipses are by the light; circles stand.
-  const bool anew = ranges.has_new() || radii.by_light();
-  if (anew) {
+  const bool sets_radii = ranges.has_new() || radii.by_light();
+  if (sets_radii) {
     set_radii(w, radii.by_light() ? By::light : By::distance);
     held = gathers;
   }
@@ -131,7 +131,7 @@ void Cache::Impl::publish_level(const Work& w) {
   StageTimer timer(w.wavefront);
   build_octree(w.wavefront);
   add_time(BuildStep::octree, timer.milliseconds());
-  if (anew) clamp_radii(w, ranges.evaluated(), options.radius.nearest);
+  if (sets_radii) clamp_radii(w, ranges.evaluated(), options.radius.nearest);
   write_frame();
 }
 

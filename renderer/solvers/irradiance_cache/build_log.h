@@ -36,14 +36,14 @@ struct CachePass {
   bool relit = false;  ///< its records were placed before; their light was gathered anew
   /// Paths that asked for a record, paths: of the whole picture, of which part may have been looked at
   /// (ProbedBlocks).
-  uint64_t asked = 0, paths = 0;
-  uint64_t asked_world = 0;  ///< of those that asked: not at a surface that the camera sees straight
-  uint64_t screen = 0;       ///< candidates by dithering the picture
-  uint64_t candidates = 0;   ///< in all
-  uint32_t clusters = 0;     ///< that they were cut into
-  uint32_t tried = 0;        ///< chosen of them, and measured
-  uint32_t records = 0;      ///< placed, or relit
-  uint64_t rays = 0;         ///< from them
+  uint64_t uncovered = 0, paths = 0;
+  uint64_t uncovered_world = 0;  ///< of those that asked: not at a surface that the camera sees straight
+  uint64_t screen = 0;           ///< candidates by dithering the picture
+  uint64_t candidates = 0;       ///< in all
+  uint32_t clusters = 0;         ///< that they were cut into
+  uint32_t tried = 0;            ///< chosen of them, and measured
+  uint32_t records = 0;          ///< placed, or relit
+  uint64_t rays = 0;             ///< from them
   /// By BuildStep: device time of the stages that it ran, wall time of what the host did (its tracer too).
   std::array<double, k_build_steps.size()> ms{};
   double total_ms() const {

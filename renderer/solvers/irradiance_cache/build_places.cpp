@@ -26,7 +26,7 @@ constexpr float k_finest_of_spacing = 0.5f;
 /// Passes that look along one path a pixel; paths a pixel that later ones look along at most, until so many
 /// of the pixels' number ask.
 constexpr uint32_t k_looks_once = 3, k_most_looks = 16;
-constexpr float k_enough_ask = 0.1f;
+constexpr float k_enough_uncovered = 0.1f;
 /// Passes that go on for the irradiance that the records give, when few paths ask.
 constexpr uint32_t k_refining_passes = 4;
 
@@ -53,8 +53,8 @@ bool Cache::Impl::probe(const Work& w) {
   const uint32_t first = item.blocks.empty() ? 0 : item.blocks.front().index;
   for (WorkBlock& b : item.blocks)
     b = {probing.blocks.list()[b.index], b.first_sample + probing.paths_before};
-  write_frame(gathers.recursive && probing.asks_beyond && status.pass < k_deep_passes ? k_probe_beyond
-                                                                                      : k_probe_lookups);
+  write_frame(gathers.recursive && probing.probes_beyond && status.pass < k_deep_passes ? k_probe_beyond
+                                                                                        : k_probe_lookups);
   StageTimer timer(w.wavefront);
   w.stream().fill(tables.candidates, 0);
   const bool complete = w.wavefront.probe(item, w.cancel);
@@ -73,10 +73,10 @@ void Cache::Impl::end_probing() {
   PictureProbing& probing = progress.probing;
   const uint32_t looks = probing.schedule.complete();
   const bool covered =
-      double(status.probed.asked) <= double(options.stop_share) * double(status.probed.paths);
+      double(status.probed.uncovered) <= double(options.stop_share) * double(status.probed.paths);
   // Few that ask show where gaps are, not how wide they are: each would get a record that serves little else.
   if (!covered && looks < most_looks(status.pass) &&
-      double(status.probed.asked) * looks < double(k_enough_ask) * double(status.probed.paths)) {
+      double(status.probed.uncovered) * looks < double(k_enough_uncovered) * double(status.probed.paths)) {
     probing.schedule.set_samples(2 * looks);
     return;
   }
@@ -88,7 +88,7 @@ void Cache::Impl::end_probing() {
                                     double(options.stop_share) * double(picture.screen.sight().points()));
   // Few ask, and may stand side by side: a hole in a wall is seen however small its share of the picture is.
   // Not when light has changed: then there would be a little more with every change.
-  probing.filling = last && probing.asks_beyond && status.probed.asked > 0;
+  probing.filling = last && probing.probes_beyond && status.probed.uncovered > 0;
   if (last && !probing.filling)
     finish(StopReason::covered);
   else
@@ -159,21 +159,21 @@ bool Cache::Impl::look(const Work& w, bool& cancelled) {
 void Cache::Impl::collect(const Work& w, const schedule::WorkItem& item, uint32_t first) {
   PictureProbing& probing = progress.probing;
   StageTimer timer(w.wavefront);
-  const std::vector<std::array<uint32_t, 3>> asked = places.candidates.collect(
+  const std::vector<std::array<uint32_t, 3>> counts = places.candidates.collect(
       w.stream(), tables.candidates, item.slots(), item.sample_count, !looks_first(), reach(w.view));
   add_time(BuildStep::choose, timer.milliseconds());
   for (uint32_t i = 0; i < item.blocks.size(); ++i) {
     const double stands_for = probing.blocks.stands_for(first + i);
-    for (size_t origin = 0; origin < 3; ++origin) probing.asked[origin] += stands_for * asked[i][origin];
+    for (size_t origin = 0; origin < 3; ++origin) probing.uncovered[origin] += stands_for * counts[i][origin];
     probing.paths += stands_for * 64 * item.sample_count;
     // Where the cache reads itself is anywhere, not there.
-    if (asked[i][k_origin_screen] + asked[i][k_origin_world] > 0) probing.blocks.note(item.blocks[i].index);
+    if (counts[i][k_origin_screen] + counts[i][k_origin_world] > 0) probing.blocks.note(item.blocks[i].index);
   }
-  const auto& by_origin = probing.asked;
-  status.probed.asked = uint64_t(std::llround(by_origin[0] + by_origin[1] + by_origin[2]));
+  const auto& by_origin = probing.uncovered;
+  status.probed.uncovered = uint64_t(std::llround(by_origin[0] + by_origin[1] + by_origin[2]));
   status.probed.paths = uint64_t(std::llround(probing.paths));
-  pass().asked = status.probed.asked, pass().paths = status.probed.paths;
-  pass().asked_world = uint64_t(std::llround(by_origin[1] + by_origin[2]));
+  pass().uncovered = status.probed.uncovered, pass().paths = status.probed.paths;
+  pass().uncovered_world = uint64_t(std::llround(by_origin[1] + by_origin[2]));
   pass().candidates = places.candidates.size();
   places.changed();
 }

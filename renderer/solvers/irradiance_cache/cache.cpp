@@ -31,7 +31,7 @@ const char* words(StopReason reason) {
       return "the room for records is used up";
     case StopReason::dark:
       return "there is no light in the scene";
-    case StopReason::told:
+    case StopReason::finished_early:
       return "it has had its share of the time";
     case StopReason::building:
       break;
@@ -69,7 +69,7 @@ void Cache::extend() {
   Impl& c = *impl_;
   c.forget_refining();
   c.progress.probing.camera_moved = true;
-  c.count_anew(true);
+  c.restart_passes(true);
   c.picture.forget();
   // Records that are being evaluated stay so; what was asked for from where the camera was is dropped, unless
   // somebody is looking at it, maybe from all sides.
@@ -79,13 +79,13 @@ void Cache::extend() {
   }
 }
 
-void Cache::make_do() {
+void Cache::finish_early() {
   Impl& c = *impl_;
   if (ready() || c.status.relighting.records > 0) return;
   c.drop_pass();
   if (!c.ranges.complete_pass() && !c.status.passes.empty() && !c.status.passes.back().complete)
     c.status.passes.pop_back();
-  c.finish(StopReason::told);
+  c.finish(StopReason::finished_early);
 }
 
 void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const CacheStatus& status,
@@ -106,7 +106,7 @@ void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const Cache
   c.write_frame();
   if (!complete) return;
   c.status.pass = status.pass;
-  c.status.probed.asked = status.probed.asked, c.status.probed.paths = status.probed.paths;
+  c.status.probed.uncovered = status.probed.uncovered, c.status.probed.paths = status.probed.paths;
   c.finish(status.stop);
 }
 
@@ -172,10 +172,10 @@ bool Cache::look_at_picture(transport::Wavefront& wavefront, const CacheView& vi
 }
 
 bool Cache::estimate_errors(transport::Wavefront& wavefront, film::Film& film, const CacheView& view,
-                            bool anew, const std::function<bool()>& cancel) {
+                            bool restarted, const std::function<bool()>& cancel) {
   Impl& c = *impl_;
   const RouteTable routes = c.tables.routes_beyond_picture();
-  if (anew) c.picture.error.begin();
+  if (restarted) c.picture.error.begin();
   const bool complete = c.picture.error.step(
       {wavefront, film, view.paths_frame, view.paths_enabled, c.ranges.evaluated(), c.gathers.recursive,
        c.tables.candidates, c.binding(), [&](uint32_t probing) { c.write_frame(probing, routes); }, cancel});

@@ -74,9 +74,10 @@ struct CacheOptions {
   DiscontinuityOptions screen;
 };
 
-enum class StopReason { building, covered, passes, records, dark, told };
-inline constexpr const char* k_stop_reasons[] = {"building", "covered", "passes", "records", "dark", "told"};
-static_assert(std::size(k_stop_reasons) == size_t(StopReason::told) + 1);
+enum class StopReason { building, covered, passes, records, dark, finished_early };
+inline constexpr const char* k_stop_reasons[] = {"building", "covered", "passes",
+                                                 "records",  "dark",    "finished early"};
+static_assert(std::size(k_stop_reasons) == size_t(StopReason::finished_early) + 1);
 /// Why building has stopped, as the rest of a sentence.
 const char* words(StopReason reason);
 
@@ -84,12 +85,12 @@ struct CacheStatus {
   uint32_t pass = 0;  ///< complete since the building began or was extended
   uint32_t records = 0;
   struct {
-    uint64_t asked = 0, paths = 0;  ///< paths that asked, paths
-  } probed;                         ///< of the last complete pass
-  uint64_t rays = 0;                ///< of the records' own hemispheres
-  uint64_t bytes = 0;               ///< of device memory
-  double references = 0;            ///< leaves that list a record, on average
-  uint32_t loaded = 0;              ///< of the records, from a file; their rays count too
+    uint64_t uncovered = 0, paths = 0;  ///< paths that asked, paths
+  } probed;                             ///< of the last complete pass
+  uint64_t rays = 0;                    ///< of the records' own hemispheres
+  uint64_t bytes = 0;                   ///< of device memory
+  double references = 0;                ///< leaves that list a record, on average
+  uint32_t loaded = 0;                  ///< of the records, from a file; their rays count too
   struct {
     /// Not 0: so many records keep their places and are relit, CacheStatus::records of them so far.
     uint32_t records = 0;
@@ -148,7 +149,7 @@ class Cache {
   void clear();
   /// Building ends where it is: records that have light serve, and what none serves is path traced. Not while
   /// records are relit.
-  void make_do();
+  void finish_early();
   /// When ready: records whose noise is more than the picture can bear by now, over the root of 2 what it
   /// could the last time, get further light, with the same places and radii, while step() is called and
   /// refines(). Whatever changes the cache ends it.
@@ -173,7 +174,7 @@ class Cache {
   /// In place of its own, the records of another cache of the same scene, made for other lookups, options or
   /// kernels: as far as passes are complete. Returns what of them does not serve here, for the caller to see
   /// to: coverage, light, or places, where there is no room for them; then this is as after clear().
-  solvers::Spoils adopt(transport::Wavefront& wavefront, const Cache& other);
+  solvers::Invalidation adopt(transport::Wavefront& wavefront, const Cache& other);
   /// Building is to wait after every stage or pass from now on: step() then does nothing until go_on(). What
   /// is built is the same, bit for bit. Off in the beginning.
   void pause(PauseAfter after);
@@ -208,9 +209,9 @@ class Cache {
   /// Goes on estimating, for the film, what the picture's records make it wrong by (picture_error.h), a piece
   /// at a time, until Film::record_errors_complete(). Only when ready(); the wavefront's frame is the view's.
   /// `anew`: the picture is begun. False when it was cancelled: it will be done again.
-  bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const CacheView& view, bool anew,
-                       const std::function<bool()>& cancel = {});
-  /// For shaders/overlay/asking.glsl: where pixels ask for records; overlay::k_no_sight before that is
+  bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const CacheView& view,
+                       bool restarted, const std::function<bool()>& cancel = {});
+  /// For shaders/overlay/lookup_place.glsl: where pixels ask for records; overlay::k_no_sight before that is
   /// known.
   shared::SightGrid bind_sight(gpu::Resources& resources) const;
   /// Draws over the film's picture: records as discs, coloured by one of shared::k_record_by_*; how many

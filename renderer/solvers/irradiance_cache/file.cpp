@@ -129,7 +129,7 @@ void fields(Archive& a, File& f) {
   assign(f.made_with.elsewhere, tertiary == 2);
   a.text(f.made_with.seed);
   a.text(f.view);
-  a.plain(f.status.pass), a.plain(f.status.probed.asked), a.plain(f.status.probed.paths),
+  a.plain(f.status.pass), a.plain(f.status.probed.uncovered), a.plain(f.status.probed.paths),
       a.plain(f.status.rays);
   a.plain(f.status.stop);
   a.plain(f.grouping);
@@ -198,9 +198,9 @@ CacheFile decode(const std::string& bytes, const std::string& where) {
   CacheFile cache;
   Reader reader(contents.substr(k_head), where);
   fields(reader, cache);
-  if (cache.status.stop > StopReason::told)
+  if (cache.status.stop > StopReason::finished_early)
     throw_error(where, "damaged: a reason to stop numbered {}, expected 0 to {}", int(cache.status.stop),
-                int(StopReason::told));
+                int(StopReason::finished_early));
   return cache;
 }
 

@@ -56,7 +56,7 @@ Inspector::Inspector(gpu::Device& device, gpu::ShaderCompiler& compiler)
     : impl_(new Impl(device, compiler)) {}
 Inspector::~Inspector() = default;
 
-Inspection Inspector::ask(const overlay::Canvas& canvas, const Cache& cache, uint32_t x, uint32_t y) {
+Inspection Inspector::inspect(const overlay::Canvas& canvas, const Cache& cache, uint32_t x, uint32_t y) {
   Impl& i = *impl_;
   const film::Film& film = canvas.film;
   const gpu::Kernel& kernel = i.ready(i.kernels.inspect, "irradiance_cache/inspect.comp");
@@ -72,7 +72,7 @@ Inspection Inspector::ask(const overlay::Canvas& canvas, const Cache& cache, uin
   found.x = x, found.y = y;
   found.solid = header->solid != 0;
   if (!found.solid) return found;
-  found.asks = header->asks;
+  found.lookup = header->lookup;
   found.surface.position = header->position, found.surface.normal = header->normal;
   found.surface.size = header->size, found.surface.depth = header->depth;
   found.count = header->count, found.gathers = header->gathers != 0;

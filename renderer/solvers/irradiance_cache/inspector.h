@@ -42,7 +42,7 @@ struct Covering {
 struct Inspection {
   uint32_t x = 0, y = 0;  ///< the pixel
   bool solid = false;     ///< a surface is seen there; nothing below holds where not
-  uint32_t asks = 0;      ///< shared::k_asks_*
+  uint32_t lookup = 0;    ///< shared::k_asks_*
   struct {
     vec3 position{0}, normal{0};  ///< world space [m]; where records are asked for and with which normal
     float size = 0;               ///< of the pixel there [m]
@@ -73,7 +73,7 @@ class Inspector {
   ~Inspector();
 
   /// `x`, `y` are inside the picture. Throws Error when a kernel does not compile; so do the others.
-  Inspection ask(const overlay::Canvas& canvas, const Cache& cache, uint32_t x, uint32_t y);
+  Inspection inspect(const overlay::Canvas& canvas, const Cache& cache, uint32_t x, uint32_t y);
   /// Over the film's pixels.
   Overlap overlap(const overlay::Canvas& canvas, const Cache& cache);
   /// A lookup at every pixel of the film that asks, of which nothing is kept: to be timed.

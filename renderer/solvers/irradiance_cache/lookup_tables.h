@@ -28,7 +28,7 @@ struct LeastRadius {
 };
 
 /// CacheFrame::routes.
-using RouteTable = std::array<uint32_t, shared::k_left_states>;
+using RouteTable = std::array<uint32_t, shared::k_delegated_states>;
 
 /// The octree lists records that are evaluated, or a beginning of what is placed while radii are worked out;
 /// the frame says how many are evaluated. Neither follows `records` by itself: who changes them builds the

@@ -16,21 +16,21 @@ struct PictureProbing {
   ProbedBlocks blocks;                 ///< of the picture, that this pass looks along
   schedule::UniformSchedule schedule;  ///< of paths along these; it holds only while `begun`
   /// Paths of this pass that asked for a record, by shared::k_origin_*, and paths: of the whole picture.
-  std::array<double, 3> asked{};
+  std::array<double, 3> uncovered{};
   double paths = 0;
   bool begun = false;         ///< probing, in this pass
   bool screen_done = false;   ///< the screen-space stage, in this pass
   bool camera_moved = false;  ///< since the last pass began
   uint32_t paths_before = 0;  ///< a pixel, of the passes before: each looks along paths of its own
   /// Paths ask beyond the picture's lookups too in the first passes, where the cache reads itself.
-  bool asks_beyond = true;
+  bool probes_beyond = true;
   /// This pass is the last: few ask, but these may stand side by side.
   bool filling = false;
 
   /// Passes are counted from the beginning.
   void restart(bool beyond) {
     paths_before = 0;
-    asks_beyond = beyond;
+    probes_beyond = beyond;
     filling = false;
   }
 };

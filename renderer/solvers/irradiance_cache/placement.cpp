@@ -33,13 +33,13 @@ Place place_of(const vec4& place, const vec4& facing, uint32_t medium) {
 std::vector<size_t> share_out(const std::vector<size_t>& having, size_t most) {
   std::vector<size_t> quota(having.size(), 0);
   for (size_t left = most, rank = 0; left > 0; ++rank) {
-    std::vector<size_t> asking;
+    std::vector<size_t> wanting;
     for (size_t c = 0; c < having.size(); ++c)
-      if (having[c] > rank) asking.push_back(c);
-    const size_t fitting = std::min(left, asking.size());
-    for (size_t k = 0; k < fitting; ++k) ++quota[asking[k * asking.size() / fitting]];
+      if (having[c] > rank) wanting.push_back(c);
+    const size_t fitting = std::min(left, wanting.size());
+    for (size_t k = 0; k < fitting; ++k) ++quota[wanting[k * wanting.size() / fitting]];
     left -= fitting;
-    if (fitting == 0 || fitting < asking.size()) break;
+    if (fitting == 0 || fitting < wanting.size()) break;
   }
   return quota;
 }
@@ -120,14 +120,14 @@ struct Candidates {
 /// Appends what asks to the candidates.
 struct Collector {
   gpu::Device& device;
-  gpu::Kernel asks, from_paths, from_screen;
-  gpu::Buffer asked;          // of each block, by origin
+  gpu::Kernel count_candidates, from_paths, from_screen;
+  gpu::Buffer counts;         // of each block, by origin
   gpu::Buffer taken, before;  // a slot, or a point of the picture
   gpu::Resources resources;
 
   Collector(gpu::Device& d, gpu::ShaderCompiler& compiler)
       : device(d),
-        asks(kernel_of(d, compiler, "asks")),
+        count_candidates(kernel_of(d, compiler, "count_candidates")),
         from_paths(kernel_of(d, compiler, "collect", {{"LUCERNA_FROM_SCREEN", "0"}})),
         from_screen(kernel_of(d, compiler, "collect", {{"LUCERNA_FROM_SCREEN", "1"}})) {}
 
@@ -345,19 +345,19 @@ std::vector<std::array<uint32_t, 3>> Placement::collect(gpu::Stream& stream, con
   CollectPush push = Collector::push_of(reach, slots);
   push.samples = samples;
   push.screen_too = screen_too;
-  std::vector<std::array<uint32_t, 3>> asked((slots + 64 * samples - 1) / (64 * samples));
+  std::vector<std::array<uint32_t, 3>> counts((slots + 64 * samples - 1) / (64 * samples));
   gpu::make_room(
-      c.device, c.asked,
-      {.name = "candidates asked", .bytes = asked.size() * sizeof asked[0], .memory = gpu::Memory::host});
+      c.device, c.counts,
+      {.name = "candidate counts", .bytes = counts.size() * sizeof counts[0], .memory = gpu::Memory::host});
   gpu::make_texel_room(c.device, c.taken, "slots that ask", uint64_t{slots} * 4);
   c.resources.set("candidate_texels", candidates);
   c.resources.set("Taken", c.taken);
-  c.resources.set("Asked", c.asked);
-  stream.fill(c.asked, 0);
-  stream.dispatch(c.asks, c.resources, push, gpu::groups_for(slots, 64), k_stage);
+  c.resources.set("CandidateCounts", c.counts);
+  stream.fill(c.counts, 0);
+  stream.dispatch(c.count_candidates, c.resources, push, gpu::groups_for(slots, 64), k_stage);
   c.append(stream, impl_->sums, impl_->candidates, c.from_paths, c.taken, push);
-  c.asked.read(asked.data(), asked.size() * sizeof asked[0]);
-  return asked;
+  c.counts.read(counts.data(), counts.size() * sizeof counts[0]);
+  return counts;
 }
 
 uint32_t Placement::collect(gpu::Stream& stream, const Screen& screen, const ReachOptions& reach) {

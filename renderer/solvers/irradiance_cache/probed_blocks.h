@@ -21,16 +21,16 @@ class ProbedBlocks {
   /// How many blocks the one at this place of the list stands for: at least 1.
   double stands_for(uint32_t place) const { return quiet_[place] ? share_ : 1; }
   /// Paths have asked there, in what is the last pass when the next begins.
-  void note(uint32_t block) { asking_[block] = true; }
+  void note(uint32_t block) { uncovered_[block] = true; }
   /// The pass is over: what was noted counts from now on.
-  void end() { asked_ = asking_; }
+  void end() { uncovered_before_ = uncovered_; }
 
  private:
   uint32_t across_ = 0, down_ = 0;
   std::vector<uint32_t> list_;
-  std::vector<bool> quiet_;           // by place in the list: one of the rest
-  double share_ = 1;                  // blocks of the rest that each of these stands for
-  std::vector<bool> asking_, asked_;  // by block: in this pass, in the last
+  std::vector<bool> quiet_;                         // by place in the list: one of the rest
+  double share_ = 1;                                // blocks of the rest that each of these stands for
+  std::vector<bool> uncovered_, uncovered_before_;  // by block: in this pass, in the last
 };
 
 }  // namespace lucerna::irradiance_cache

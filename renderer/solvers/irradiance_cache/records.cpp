@@ -212,7 +212,8 @@ std::vector<float> Records::pilot_luminances() const {
 
 std::vector<bool> Records::crowded() const {
   std::vector<bool> all;
-  for (const vec4& told : texels(2)) all.push_back((std::bit_cast<uint32_t>(told.w) & k_record_crowded) != 0);
+  for (const vec4& texel : texels(2))
+    all.push_back((std::bit_cast<uint32_t>(texel.w) & k_record_crowded) != 0);
   return all;
 }
 

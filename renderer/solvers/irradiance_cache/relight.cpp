@@ -92,7 +92,7 @@ void Cache::Impl::relight_pass() {
   // Ellipses are by the light: where they no longer reach is asked for as if it had come into view. Not
   // beyond the picture's lookups: the gaps that building has left there cost time, not accuracy, and would be
   // filled a little more with every change of the light.
-  count_anew(false);
+  restart_passes(false);
   next_pass();
 }
 
@@ -114,12 +114,12 @@ void Cache::look_up_preview(transport::Wavefront& wavefront, bool on) {
   if (c.preview.active()) c.preview.look_up(wavefront, c.tables, on);
 }
 
-solvers::Spoils Cache::adopt(transport::Wavefront& wavefront, const Cache& other) {
+solvers::Invalidation Cache::adopt(transport::Wavefront& wavefront, const Cache& other) {
   Impl& c = *impl_;
   const Impl& o = *other.impl_;
   clear();
   const uint32_t count = o.ranges.complete();
-  if (count > c.tables.records.capacity()) return solvers::k_spoils_all;
+  if (count > c.tables.records.capacity()) return solvers::k_invalidates_all;
   c.tables.records.restore(o.tables.records.raw(count));
   c.ranges.restore(o.ranges.complete_ends());
   c.held = o.held;
@@ -133,7 +133,7 @@ solvers::Spoils Cache::adopt(transport::Wavefront& wavefront, const Cache& other
   const bool relit = o.status.relighting.records > 0;  // and some are not yet
   const StopReason stop = relit ? o.progress.stopped_before : o.status.stop;
   if (stop != StopReason::building) c.finish(stop);
-  solvers::Spoils lacks;
+  solvers::Invalidation lacks;
   const uint32_t tertiary = 1u << k_part_tertiary;
   lacks.light = relit || (c.gathers.parts & ~c.held.parts) != 0 ||
                 ((c.gathers.recursive != c.held.recursive || c.gathers.elsewhere != c.held.elsewhere) &&

@@ -111,11 +111,11 @@ PanelSection numbers(const CacheReport& r, const OptionValues& settings, const s
   add_overlap_rows(items, r.overlap);
   if (const CachePass* last = last_pass(s))
     items.push_back(
-        ValueRow{"Asked in the last pass", share_text(double(last->asked), double(last->paths)),
+        ValueRow{"Asked in the last pass", share_text(double(last->uncovered), double(last->paths)),
                  fmt::format("{} of {} paths found no record and asked for one, {} of them behind the first "
                              "surface. Building stops when no more ask than {:.2f} %.",
-                             count_text(double(last->asked)), count_text(double(last->paths)),
-                             count_text(double(last->asked_world)), 100 * settings.real("cache.stop"))});
+                             count_text(double(last->uncovered)), count_text(double(last->paths)),
+                             count_text(double(last->uncovered_world)), 100 * settings.real("cache.stop"))});
   items.push_back(Gap{4});
   if (s.waits)
     items.push_back(Paragraph{fmt::format("Building waits: {} goes on to the next stage, {} to the end.",
@@ -173,7 +173,7 @@ PanelSection steps(const CacheReport& r) {
     items.push_back(ValueRow{name, known ? count_text(n) : k_dash, help, known ? Tone::normal : Tone::faint});
   };
   const bool chosen = pass && pass->clusters > 0;
-  count("Candidates", pass ? double(pass->asked) : 0, pass != nullptr,
+  count("Candidates", pass ? double(pass->uncovered) : 0, pass != nullptr,
         "Places where paths of this pass found no record.");
   count("Clusters", pass ? pass->clusters : 0, chosen, "That they were cut into.");
   count("Tried", pass ? pass->tried : 0, chosen, "Of the candidates.");
@@ -210,12 +210,12 @@ Table passes(const CacheStatus& s) {
     std::string help = fmt::format(
         "Pass {}: {} of {} paths asked for a record, {} of them behind the first surface; {} were placed, "
         "with {} rays.",
-        i + 1, count_text(double(p.asked)), count_text(double(p.paths)), count_text(double(p.asked_world)),
-        count_text(p.records), count_text(double(p.rays)));
+        i + 1, count_text(double(p.uncovered)), count_text(double(p.paths)),
+        count_text(double(p.uncovered_world)), count_text(p.records), count_text(double(p.rays)));
     for (size_t k = 0; k < p.ms.size(); ++k)
       help += fmt::format("\n{}: {}", k_step_texts[k].name, ms_text(p.ms[k]));
     table.rows.push_back({.cells = {fmt::format("{}", i + 1), p.records > 0 ? count_text(p.records) : k_dash,
-                                    share_text(double(p.asked), double(p.paths)),
+                                    share_text(double(p.uncovered), double(p.paths)),
                                     p.rays > 0 ? amount_text(double(p.rays)) : k_dash, ms_text(p.total_ms())},
                           .bar = float(p.records) / float(most),
                           .ink = p.records > 0 ? std::optional(shared::ramp_hue(p.number)) : std::nullopt,
@@ -418,8 +418,8 @@ void add_weights(Card& card, const Inspection& found, bool building) {
   const auto note = [&](std::string text, Tone tone = Tone::dim) {
     card.lines.push_back({Card::Note{std::move(text), tone}});
   };
-  if (found.asks == shared::k_asks_nothing) return note("Nothing diffuse: no record is asked for.");
-  if (found.asks == shared::k_asks_in_vain) {
+  if (found.lookup == shared::k_lookup_none) return note("Nothing diffuse: no record is asked for.");
+  if (found.lookup == shared::k_lookup_too_steep) {
     note("The normal map is too steep for records.", Tone::warning);
     return note("It is path traced here.", Tone::warning);
   }
@@ -445,39 +445,39 @@ void add_weights(Card& card, const Inspection& found, bool building) {
 
 }  // namespace
 
-solvers::Report make_report(const CacheReport& told, const OptionValues& settings) {
-  const CacheStatus& s = told.status;
+solvers::Report make_report(const CacheReport& data, const OptionValues& settings) {
+  const CacheStatus& s = data.status;
   const bool building = s.stop == StopReason::building;
   Report report{.solver = info().name, .ready = !building, .waits = s.waits};
   if (s.waits) report.to_go_on = "building of the cache waits (cache.pause); cache.run goes on";
-  report.preparing = preparing(told);
+  report.preparing = preparing(data);
   if (const auto left = forecast_of(s, settings.real("cache.stop")); left && !s.waits)
     report.progress = {left->done, left->left_ms};
   report.state = s.waits ? "waits" : building ? "building" : "complete";
-  report.sections = {numbers(told, settings, report.state), steps(told), overlays(settings)};
+  report.sections = {numbers(data, settings, report.state), steps(data), overlays(settings)};
   if (!s.passes.empty()) {
     PanelSection section{.title = "Passes of building", .note = "", .items = {passes(s), Gap{8}}};
     add_times(section.items, s);
     report.sections.push_back(std::move(section));
   }
-  report.legends = legends(told, settings);
-  report.looked_at = told.looked_at;
-  if (const Inspection& found = told.inspection; told.looked_at && found.solid) {
+  report.legends = legends(data, settings);
+  report.looked_at = data.looked_at;
+  if (const Inspection& found = data.inspection; data.looked_at && found.solid) {
     report.card.emplace();
     if (found.under) add_fields(*report.card, found.under->index, found.under->record);
     add_weights(*report.card, found, building);
   }
   report.figures = {{"records", s.records},
-                    {"room", told.room},
+                    {"room", data.room},
                     {"rays", double(s.rays)},
                     {"pass", s.pass},
                     {"bytes", double(s.bytes)},
                     {"stage", s.last ? double(s.last->stage) : -1},
-                    {"asked", double(s.probed.asked)},
+                    {"uncovered", double(s.probed.uncovered)},
                     {"paths", double(s.probed.paths)}};
-  if (told.overlap) {
-    report.figures.emplace_back("overlap", told.overlap->mean);
-    report.figures.emplace_back("overlap_most", told.overlap->most);
+  if (data.overlap) {
+    report.figures.emplace_back("overlap", data.overlap->mean);
+    report.figures.emplace_back("overlap_most", data.overlap->most);
   }
   return report;
 }

@@ -25,6 +25,6 @@ struct CacheReport {
 };
 
 /// `settings` has the solver's options (info().options), as the figures were made with.
-solvers::Report make_report(const CacheReport& told, const OptionValues& settings);
+solvers::Report make_report(const CacheReport& data, const OptionValues& settings);
 
 }  // namespace lucerna::irradiance_cache

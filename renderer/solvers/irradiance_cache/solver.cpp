@@ -27,7 +27,7 @@ CacheOptions read_options(const Task& task) {
           .branches = uint32_t(s.integer("cache.branches")),
           .most_records = uint32_t(s.integer("cache.max_records")),
           .most_passes = uint32_t(s.integer("cache.passes")),
-          .groups = task.effects.groups_in_short() ? task.effects.light_groups : 1,
+          .groups = task.effects.has_compact_groups() ? task.effects.light_groups : 1,
           .stop_share = float(s.real("cache.stop")),
           .seed = uint32_t(s.integer("seed")),
           .screen = {.density = float(s.real("cache.candidates")),
@@ -36,7 +36,7 @@ CacheOptions read_options(const Task& task) {
 }
 
 paths::LookupRoutes picture_routes(const Task& task) {
-  return paths::lookup_routes(task.automaton, task.enabled, task.own, task.effects.sky_apart);
+  return paths::lookup_routes(task.automaton, task.enabled, task.own, task.effects.separate_sky);
 }
 
 paths::LookupRoutes routes_of_records(const Task& task) {
@@ -49,7 +49,7 @@ paths::LookupRoutes routes_of_records(const Task& task) {
 /// for the rays of records as well.
 bool elsewhere(const Task& task) {
   constexpr uint32_t k_tertiary = 1u << 2;
-  return (task.lent & task.enabled & ~task.own & picture_routes(task).parts & k_tertiary) != 0;
+  return (task.provided & task.enabled & ~task.own & picture_routes(task).parts & k_tertiary) != 0;
 }
 
 /// What paths bring of what the rays of records gather; lookups are others' where `elsewhere`.
@@ -105,7 +105,7 @@ const solvers::SolverType& type() {
 }
 
 uint64_t light_grouping(const upload::FlatScene& flat) {
-  if (!flat.effects.groups_in_short()) return 0;
+  if (!flat.effects.has_compact_groups()) return 0;
   const scene::LightGroups& g = *flat.groups;
   std::vector<uint8_t> of{uint8_t(g.groups.size()), g.sky, g.sun};
   of.insert(of.end(), g.lamps.begin(), g.lamps.end());
@@ -165,22 +165,22 @@ void CacheSolver::adopt(transport::Wavefront& wavefront, const solvers::Solver& 
   grouping_ = other.grouping_;
 }
 
-void CacheSolver::begin(const Picture& picture, solvers::Spoils spoils) {
-  spoils |= std::exchange(lacks_, solvers::k_spoils_nothing);
+void CacheSolver::begin(const Picture& picture, solvers::Invalidation invalidated) {
+  invalidated |= std::exchange(lacks_, solvers::k_invalidates_nothing);
   // Other lights may be of other groups, or the same.
   const uint64_t before = std::exchange(grouping_, light_grouping(picture.flat));
-  if (cache_.records().groups() > 1) spoils.light |= before != grouping_;
+  if (cache_.records().groups() > 1) invalidated.light |= before != grouping_;
   overlap_.reset();
   cache_.look_from(view(picture));
-  if (spoils.places) {
+  if (invalidated.places) {
     cache_.clear();
     return;
   }
-  if (spoils.light) cache_.relight(picture.light_factors, picture.frame.sky_group);
-  if (spoils.coverage) cache_.extend();
+  if (invalidated.light) cache_.relight(picture.light_factors, picture.frame.sky_group);
+  if (invalidated.coverage) cache_.extend();
 }
 
-void CacheSolver::heed(const OptionValues& settings, bool interactive) {
+void CacheSolver::on_settings_changed(const OptionValues& settings, bool interactive) {
   interactive_ = interactive;
   cache_.preview_relighting(interactive);
   if (interactive) cache_.pause(PauseAfter(settings.choice("cache.pause")));
@@ -201,8 +201,8 @@ bool CacheSolver::refine(transport::Wavefront& wavefront, const Picture& picture
 }
 
 bool CacheSolver::estimate_errors(transport::Wavefront& wavefront, film::Film& film, const Picture& picture,
-                                  bool anew, const Cancel& cancel) {
-  return cache_.estimate_errors(wavefront, film, view(picture), anew, cancel);
+                                  bool restarted, const Cancel& cancel) {
+  return cache_.estimate_errors(wavefront, film, view(picture), restarted, cancel);
 }
 
 void CacheSolver::warn_of_full_cache() {

@@ -29,8 +29,8 @@ class CacheSolver final : public solvers::Solver {
   bool serves(const solvers::Task& task) const override;
 
   void adopt(transport::Wavefront& wavefront, const solvers::Solver& before) override;
-  void begin(const solvers::Picture& picture, solvers::Spoils spoils) override;
-  void heed(const OptionValues& settings, bool interactive) override;
+  void begin(const solvers::Picture& picture, solvers::Invalidation invalidated) override;
+  void on_settings_changed(const OptionValues& settings, bool interactive) override;
   bool ready() const override { return cache_.ready(); }
   bool waits() const override { return cache_.status().waits; }
   void look_up_preview(transport::Wavefront& wavefront, bool on) override {
@@ -38,7 +38,7 @@ class CacheSolver final : public solvers::Solver {
   }
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
-  void make_do() override { cache_.make_do(); }
+  void finish_early() override { cache_.finish_early(); }
   uint64_t paths_refined() const override { return cache_.status().rays; }
   bool refines() const override { return cache_.refines(); }
   bool refine(transport::Wavefront& wavefront, const solvers::Picture& picture,
@@ -46,7 +46,7 @@ class CacheSolver final : public solvers::Solver {
   bool warm() const override { return ready() || cache_.status().pass >= 2; }
   bool owes_errors(const film::Film& film) const override { return !film.record_errors_complete(); }
   bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const solvers::Picture& picture,
-                       bool anew, const solvers::Cancel& cancel) override;
+                       bool restarted, const solvers::Cancel& cancel) override;
 
   void look_at(std::optional<vec2> place) override { looked_at_ = place; }
   void draw(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
@@ -81,7 +81,7 @@ class CacheSolver final : public solvers::Solver {
   bool gathers_;
   Cache cache_;
   /// What of an adopted cache does not serve here; of a new one all.
-  solvers::Spoils lacks_ = solvers::k_spoils_all;
+  solvers::Invalidation lacks_ = solvers::k_invalidates_all;
   uint64_t grouping_ = 0;                          ///< light_grouping() of what records hold
   std::unique_ptr<Inspector> inspector_;           ///< made when it is called for
   std::unique_ptr<PlacementView> placement_view_;  ///< the same

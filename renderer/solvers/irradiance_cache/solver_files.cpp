@@ -13,7 +13,8 @@ namespace {
 const std::set<std::string> k_amounts{"cache.max_records", "cache.passes", "cache.stop", "cache.candidates",
                                       "cache.irradiance_weight"};
 
-MadeWith what_made(const Cache& cache, const OptionValues& settings, const solvers::Provenance& provenance) {
+MadeWith current_provenance(const Cache& cache, const OptionValues& settings,
+                            const solvers::Provenance& provenance) {
   MadeWith made_with;
   made_with.scene = provenance.scene;
   made_with.hashes = provenance.hashes;
@@ -50,7 +51,7 @@ void CacheSolver::save(const std::string& file, const solvers::Picture& picture,
                 status.pass + 1, status.records);
   const OptionValues& settings = picture.task.settings;
   write_cache(file, {.program = LUCERNA_VERSION,
-                     .made_with = what_made(cache_, settings, provenance),
+                     .made_with = current_provenance(cache_, settings, provenance),
                      .view = view_text(settings, provenance),
                      .status = status,
                      .grouping = light_grouping(picture.flat),
@@ -62,7 +63,7 @@ void CacheSolver::load(const std::string& file, transport::Wavefront& wavefront,
   const OptionValues& settings = picture.task.settings;
   CacheFile saved = read_cache(file);
   const uint32_t room = cache_.records().capacity();
-  check_fits(saved, what_made(cache_, settings, provenance), room, file);
+  check_fits(saved, current_provenance(cache_, settings, provenance), room, file);
   // Of the view that it was complete for it lacks nothing, unless only room was missing then.
   const bool full = saved.status.stop == StopReason::records;
   const bool complete =
@@ -70,11 +71,11 @@ void CacheSolver::load(const std::string& file, transport::Wavefront& wavefront,
   const uint32_t count = saved.records.size();
   // Places serve whatever groups there are; where these are others begin() has their light gathered anew.
   grouping_ = saved.grouping;
-  const bool anew = cache_.records().groups() > 1 && grouping_ != light_grouping(picture.flat);
+  const bool regroups = cache_.records().groups() > 1 && grouping_ != light_grouping(picture.flat);
   cache_.restore(wavefront, std::move(saved.records), saved.status, complete);
   log::info(
       "{}: {} records{}{}", file, count,
-      anew       ? "; their light is gathered anew by groups of lights"
+      regroups   ? "; their light is gathered anew by groups of lights"
       : complete ? ", complete for this view"
                  : "; what this view is missing is added",
       saved.made_with.seed == settings.text("seed") ? "" : " (made with seed " + saved.made_with.seed + ")");

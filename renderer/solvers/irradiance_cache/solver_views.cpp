@@ -40,8 +40,8 @@ void CacheSolver::draw(const Canvas& canvas, const Picture& picture) {
   inspection_ = {};
   if (settings.boolean("overlay.normals")) inspector().draw_normals(canvas, cache_, color);
   if (!looked_at_) return;
-  inspection_ = inspector().ask(canvas, cache_, pixel_at(looked_at_->x, canvas.film.width()),
-                                pixel_at(looked_at_->y, canvas.film.height()));
+  inspection_ = inspector().inspect(canvas, cache_, pixel_at(looked_at_->x, canvas.film.width()),
+                                    pixel_at(looked_at_->y, canvas.film.height()));
   inspector().draw_lines(canvas, cache_, inspection_);
 }
 
@@ -82,7 +82,7 @@ nlohmann::ordered_json CacheSolver::statistics(const Canvas& canvas, const Pictu
       {"records", s.records},
       {"loaded", s.loaded},
       {"rays", s.rays},
-      {"uncovered_share", double(s.probed.asked) / double(std::max<uint64_t>(1, s.probed.paths))},
+      {"uncovered_share", double(s.probed.uncovered) / double(std::max<uint64_t>(1, s.probed.paths))},
       {"bytes", s.bytes},
       {"stopped_by", k_stop_reasons[size_t(s.stop)]}};
   if (cache_.ready()) {
@@ -97,8 +97,8 @@ nlohmann::ordered_json CacheSolver::statistics(const Canvas& canvas, const Pictu
     nlohmann::ordered_json steps;
     for (size_t k = 0; k < p.ms.size(); ++k) steps[k_build_steps[k]] = p.ms[k];
     j["building"].push_back({{"paths", p.paths},
-                             {"asked", p.asked},
-                             {"asked_world", p.asked_world},
+                             {"uncovered", p.uncovered},
+                             {"uncovered_world", p.uncovered_world},
                              {"screen", p.screen},
                              {"candidates", p.candidates},
                              {"tried", p.tried},

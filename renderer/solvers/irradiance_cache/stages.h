@@ -75,8 +75,8 @@ class Pauses {
 
   /// A stage has ended; `last`: of its pass.
   void ended(bool last) {
-    const bool asked = !running_ && (after_ == PauseAfter::stage || (after_ == PauseAfter::pass && last));
-    waits_ = single_ || asked;
+    const bool requested = !running_ && (after_ == PauseAfter::stage || (after_ == PauseAfter::pass && last));
+    waits_ = single_ || requested;
     single_ = false;
   }
   /// What it waited behind is dropped: there is something to do again.

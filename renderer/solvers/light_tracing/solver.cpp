@@ -61,7 +61,7 @@ LightTracingSolver::LightTracingSolver(gpu::Device& device, gpu::ShaderCompiler&
     : device_(device),
       routes_(routing_of(task).lookups),
       sends_(routes_.parts != 0),
-      splats_(device, compiler, *task.scene_defines, task.automaton, task.effects.groups_in_short()),
+      splats_(device, compiler, *task.scene_defines, task.automaton, task.effects.has_compact_groups()),
       paths_view_(device, compiler, *task.scene_defines, task.automaton) {}
 
 const solvers::SolverInfo& LightTracingSolver::info() const { return light_tracing::info(); }
@@ -77,8 +77,8 @@ bool LightTracingSolver::serves(const Task& task) const {
   return routes.replaced == routes_.replaced && routes.parts == routes_.parts;
 }
 
-void LightTracingSolver::begin(const Picture& picture, solvers::Spoils spoils) {
-  if (!lit_ || spoils.light || spoils.places) {
+void LightTracingSolver::begin(const Picture& picture, solvers::Invalidation invalidated) {
+  if (!lit_ || invalidated.light || invalidated.places) {
     lights_ = transport::LightSource(device_, picture.flat);
     lit_ = true, casters_set_ = false;
   }
@@ -87,10 +87,10 @@ void LightTracingSolver::begin(const Picture& picture, solvers::Spoils spoils) {
   rounds_ = paths_ = joined_ = escaped_ = dark_ = 0;
   trace_s_ = 0;
   const bool aims = sends_ && lights_.power() > 0 && picture.task.settings.boolean("light.aim");
-  const bool stale = spoils.any() || aims != aims_ || !transport::same_view(picture.frame, aimed_for_);
+  const bool stale = invalidated.any() || aims != aims_ || !transport::same_view(picture.frame, aimed_for_);
   aims_ = aims;
   // Whoever only looks from elsewhere finds the same casters.
-  if (spoils.light || spoils.places || !aims) casters_.clear(), casters_known_ = false;
+  if (invalidated.light || invalidated.places || !aims) casters_.clear(), casters_known_ = false;
   if (!stale) return;
   aimed_ = false, casters_set_ = false;
   aimed_for_ = picture.frame;
@@ -116,10 +116,11 @@ bool LightTracingSolver::prepare(transport::Wavefront& wavefront, const Picture&
     begun_ = true;
   }
   bool cancelled = false;
-  const auto told = [&] { return cancelled = cancel && cancel(); };
-  const auto worth = splats_.weigh(wavefront, lights_, round, picture.frame, picture.task.enabled, told);
-  if (!worth) return !cancelled;
-  lights_.share_out(transport::aim_shares(*worth, transport::k_least_unaimed_of_caustics));
+  const auto stops = [&] { return cancelled = cancel && cancel(); };
+  const auto contributions =
+      splats_.weigh(wavefront, lights_, round, picture.frame, picture.task.enabled, stops);
+  if (!contributions) return !cancelled;
+  lights_.share_out(transport::aim_shares(*contributions, transport::k_least_unaimed_of_caustics));
   pairs_ = overlay::aimed_pairs(picture.flat, lights_);
   aimed_ = true, begun_ = false;
   return true;
@@ -127,9 +128,10 @@ bool LightTracingSolver::prepare(transport::Wavefront& wavefront, const Picture&
 
 transport::LightRound LightTracingSolver::round_of(const Picture& picture, uint32_t sample) const {
   const uint64_t pixels = uint64_t{picture.width} * picture.height;
-  const auto asked = uint32_t(picture.task.settings.integer("light.per_round"));
+  const auto requested = uint32_t(picture.task.settings.integer("light.per_round"));
   return {.number = sample,
-          .paths = asked > 0 ? asked : uint32_t(std::clamp<uint64_t>(pixels, k_least_paths, k_most_paths)),
+          .paths =
+              requested > 0 ? requested : uint32_t(std::clamp<uint64_t>(pixels, k_least_paths, k_most_paths)),
           .parts = routes_.parts,
           .account = uint32_t(std::countr_zero(std::max(1u, picture.task.own)))};
 }

@@ -20,7 +20,7 @@ class LightTracingSolver final : public solvers::Solver {
   void bind(gpu::Resources& resources) const override;
   bool serves(const solvers::Task& task) const override;
 
-  void begin(const solvers::Picture& picture, solvers::Spoils spoils) override;
+  void begin(const solvers::Picture& picture, solvers::Invalidation invalidated) override;
   /// Whether it is known which casters light paths are aimed at, and with which shares.
   bool ready() const override { return !aims_ || aimed_; }
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,

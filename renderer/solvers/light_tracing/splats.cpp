@@ -94,9 +94,9 @@ Splats::Went Splats::batch(transport::Wavefront& wavefront, const transport::Lig
   }
   if (traced_ == 0) write_frame(&kernels == &weighed_);
   const uint32_t count = std::min(wavefront.slots(), round.paths - traced_);
-  const EmitPush told{count, traced_, round.number, 1 / float(round.paths),
+  const EmitPush push{count, traced_, round.number, 1 / float(round.paths),
                       transport::LightEmitter::stratum_step(round.paths)};
-  round_.write(&told, sizeof told);
+  round_.write(&push, sizeof push);
   uint32_t counts[k_splat_counts] = {};
   counts_.write(counts, sizeof counts);
   const transport::LightVertexWork work{.vertex = &kernels.vertex,
@@ -107,7 +107,7 @@ Splats::Went Splats::batch(transport::Wavefront& wavefront, const transport::Lig
                                               r.set("SplatCounts", counts_);
                                               bind_sums(r);
                                               r.set("LightRoundBlock", round_);
-                                              if (worths_) r.set("SplatWorths", worths_);
+                                              if (contributions_) r.set("SplatContributions", contributions_);
                                             },
                                         .arrival = &kernels.arrival};
   const Timer timer;
@@ -176,23 +176,23 @@ std::optional<std::vector<double>> Splats::weigh(transport::Wavefront& wavefront
   const uint32_t strata = lights.strata();
   if (!tracing_) {
     gpu::make_room(
-        device_, worths_,
-        {.name = "worths of strata", .bytes = strata * sizeof(LongSum), .memory = gpu::Memory::host});
-    wavefront.stream().fill(worths_, 0);
+        device_, contributions_,
+        {.name = "contributions of strata", .bytes = strata * sizeof(LongSum), .memory = gpu::Memory::host});
+    wavefront.stream().fill(contributions_, 0);
     wavefront.account_stages();
   }
   const Went went = batch(wavefront, lights, round, weighed_, picture, enabled, cancel);
   if (went != Went::complete) return std::nullopt;
   tracing_ = false;
-  std::vector<double> worth;
-  const auto* found = static_cast<const LongSum*>(worths_.mapped());
-  for (uint32_t i = 0; i < strata; ++i) worth.push_back(value(found[i]));
-  return worth;
+  std::vector<double> contributions;
+  const auto* found = static_cast<const LongSum*>(contributions_.mapped());
+  for (uint32_t i = 0; i < strata; ++i) contributions.push_back(value(found[i]));
+  return contributions;
 }
 
 uint64_t Splats::bytes() const {
   uint64_t sum = picture_.bytes();
-  for (const gpu::Buffer* b : {&sums_[0], &sums_[1], &sums_[2], &owners_, &band_picture_, &worths_})
+  for (const gpu::Buffer* b : {&sums_[0], &sums_[1], &sums_[2], &owners_, &band_picture_, &contributions_})
     sum += *b ? b->bytes() : 0;
   return sum;
 }

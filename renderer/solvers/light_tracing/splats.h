@@ -77,7 +77,7 @@ class Splats {
   transport::LightEmitter emitter_;
   Kernels summed_, weighed_;  ///< weighed_: when it is first called for
   gpu::Kernel resolve_;
-  gpu::Buffer counts_, block_, round_, picture_, worths_;
+  gpu::Buffer counts_, block_, round_, picture_, contributions_;
   /// LongSum of each pixel of a band: red, green, blue. One buffer of all would be the largest that a picture
   /// needs.
   std::array<gpu::Buffer, 3> sums_;

@@ -24,38 +24,38 @@ constexpr size_t k_enough_hits = 512, k_least_hits = 16;
 constexpr double k_many = 0.2;
 /// After so many rounds with too few they are aimed at where paths from the eye go on behind lookups.
 constexpr uint32_t k_unaimed_first_hit_rounds = 2, k_reached_vertices = 3;
-constexpr uint32_t k_most_left = 1u << 15;  // texels of left_regions
+constexpr uint32_t k_most_regions = 1u << 15;  // texels of delegated_regions
 
 constexpr double k_least_from_afar = 0.05;  // of all lights' power; less is not looked for
 
 /// The first hits of those of `paths` paths from afar that have brought something.
-std::vector<transport::FirstHit> hits_of_use(std::span<const PhotonWorth> photons, uint32_t paths,
+std::vector<transport::FirstHit> hits_of_use(std::span<const PhotonContribution> photons, uint32_t paths,
                                              const upload::FlatLights& lights) {
   struct Path {
     transport::FirstHit hit;
     uint32_t events = ~0u;  ///< of the photon that it has left first
   };
   std::vector<Path> all(paths);
-  for (const PhotonWorth& p : photons) {
+  for (const PhotonContribution& p : photons) {
     if (!transport::from_afar(lights, p.light)) continue;
     Path& path = all[p.id >> k_photon_id_events];
     const uint32_t events = p.id & k_most_light_events;
-    path.hit.worth += double(p.worth);
+    path.hit.contribution += double(p.contribution);
     if (events < path.events) path.events = events, path.hit.place = p.position;
   }
   std::vector<transport::FirstHit> found;
   for (const Path& path : all)
-    if (path.hit.worth > 0) found.push_back(path.hit);
+    if (path.hit.contribution > 0) found.push_back(path.hit);
   return found;
 }
 
 /// Photons a square metre around a typical lookup: the median over lookups, of which there are at a photon as
 /// many as importance says; from the nearest photons there, each counted `gain` times.
-double typical_density(std::span<const PhotonWorth> photons, std::span<const double> gain) {
+double typical_density(std::span<const PhotonContribution> photons, std::span<const double> gain) {
   constexpr size_t k_places = 128, k_nearest = 32;
-  std::vector<const PhotonWorth*> seen;
-  for (const PhotonWorth& p : photons)
-    if (p.importance > 0 && p.worth > 0) seen.push_back(&p);
+  std::vector<const PhotonContribution*> seen;
+  for (const PhotonContribution& p : photons)
+    if (p.importance > 0 && p.contribution > 0) seen.push_back(&p);
   if (seen.size() < 2 * k_nearest) return 0;
   struct Place {
     double density, lookups;
@@ -63,7 +63,7 @@ double typical_density(std::span<const PhotonWorth> photons, std::span<const dou
   std::vector<Place> places;
   std::vector<std::pair<float, float>> near(seen.size());  // distance squared, gain
   for (size_t k = 0; k < k_places; ++k) {
-    const PhotonWorth& at = *seen[k * seen.size() / k_places];
+    const PhotonContribution& at = *seen[k * seen.size() / k_places];
     for (size_t i = 0; i < seen.size(); ++i) {
       const vec3 away = seen[i]->position - at.position;
       near[i] = {glm::dot(away, away), float(gain[size_t(seen[i] - photons.data())])};
@@ -107,24 +107,25 @@ bool PhotonSolver::may_hide(const Picture& picture) const {
   return false;
 }
 
-void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
+void PhotonSolver::begin_aim(const Picture& picture, solvers::Invalidation invalidated) {
   constexpr uint32_t k_caustics = 1u << k_caustic_part;
-  const bool lit = sends_ && lights_.power() > 0, asked = picture.task.settings.boolean("photons.aim");
-  bundles_ = lit && asked && (parts_ & k_caustics) != 0;
-  enters_ = lit && asked && (parts_ & ~k_caustics) != 0 &&
+  const bool lit = sends_ && lights_.power() > 0, requested = picture.task.settings.boolean("photons.aim");
+  bundles_ = lit && requested && (parts_ & k_caustics) != 0;
+  enters_ = lit && requested && (parts_ & ~k_caustics) != 0 &&
             lights_.power_from_afar() > k_least_from_afar * lights_.power();
   const bool aims = bundles_ || enters_;
-  const bool shares_lights = lit && asked && light_groups_.members.size() > 1;
+  const bool shares_lights = lit && requested && light_groups_.members.size() > 1;
   const bool spares = lit && picture.task.settings.boolean("photons.importons");
-  const bool weighs = lit && leaves_ != 0;
+  const bool weighs = lit && delegable_ != 0;
   hides_ = lit && may_hide(picture);
-  const bool stale = spoils.any() || aims != aims_ || shares_lights != shares_lights_ || spares != spares_ ||
-                     weighs != weighs_ || !transport::same_view(picture.frame, aimed_for_);
+  const bool stale = invalidated.any() || aims != aims_ || shares_lights != shares_lights_ ||
+                     spares != spares_ || weighs != weighs_ ||
+                     !transport::same_view(picture.frame, aimed_for_);
   if (stale) unreachable_found_ = false;
   begin_trials(picture, stale);
   aims_ = aims, shares_lights_ = shares_lights, spares_ = spares, weighs_ = weighs;
   // Whoever only looks from elsewhere finds the same casters.
-  if (spoils.light || spoils.places || !bundles_) casters_.clear(), casters_known_ = false;
+  if (invalidated.light || invalidated.places || !bundles_) casters_.clear(), casters_known_ = false;
   if (!stale) return;
   aimed_ = false;
   aim_step_ = AimStep::casters;
@@ -133,7 +134,7 @@ void PhotonSolver::begin_aim(const Picture& picture, solvers::Spoils spoils) {
   first_hit_rounds_ = 0;
   density_at_lookups_ = 0;
   regions_ = {};
-  write_left();
+  write_delegated_regions();
   lights_.aim(device_, picture.flat, {}, 1);
   lights_.choose_by(lights_.powers());
   map_.store_by_importance(false);
@@ -165,7 +166,7 @@ bool PhotonSolver::prepare(transport::Wavefront& wavefront, const Picture& pictu
       return note_importance(wavefront, picture, cancel);
     case AimStep::first_hits:
       return note_first_hits(wavefront, picture, cancel);
-    case AimStep::worth:
+    case AimStep::contribution:
       return share_out(wavefront, picture, cancel);
   }
   return true;
@@ -205,14 +206,14 @@ bool PhotonSolver::note_importance(transport::Wavefront& wavefront, const Pictur
 }
 
 void PhotonSolver::begin_sharing(const Picture& picture) {
-  aim_step_ = AimStep::worth;
+  aim_step_ = AimStep::contribution;
   map_.store_by_importance(spares_);
   lights_.aim(device_, picture.flat, boxes_, 0.5);
   if (shares_lights_)
     lights_.choose_by(transport::light_weights(light_groups_.members, lights_.powers(), {}));
-  map_.tell_radiance(weighs_);
+  map_.store_radiance(weighs_);
   // Where nothing is aimed there is nothing to share out, but other things may be asked for.
-  aimed_ = boxes_.empty() && !asks_density() && !weighs_ && !shares_lights_ && !hides_;
+  aimed_ = boxes_.empty() && !needs_density() && !weighs_ && !shares_lights_ && !hides_;
 }
 
 bool PhotonSolver::note_first_hits(transport::Wavefront& wavefront, const Picture& picture,
@@ -224,7 +225,7 @@ bool PhotonSolver::note_first_hits(transport::Wavefront& wavefront, const Pictur
   if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
   if (map_.traced() > 0) return true;
   const std::vector<transport::FirstHit> hits =
-      hits_of_use(map_.worths(wavefront, lights_), round.paths, picture.flat);
+      hits_of_use(map_.contributions(wavefront, lights_), round.paths, picture.flat);
   first_hits_.insert(first_hits_.end(), hits.begin(), hits.end());
   ++first_hit_rounds_;
   map_.clear();
@@ -256,82 +257,85 @@ bool PhotonSolver::share_out(transport::Wavefront& wavefront, const Picture& pic
   round.paths = std::max(transport::k_pilot_paths, transport::k_pilot_paths_a_stratum * lights_.strata());
   if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
   if (map_.traced() > 0) return true;
-  const std::vector<PhotonWorth> told = map_.worths(wavefront, lights_);
-  std::vector<double> worth(lights_.strata(), 0.0), by_light(lights_.powers().size(), 0.0);
-  for (const PhotonWorth& p : told) worth[p.stratum] += double(p.worth), by_light[p.light] += double(p.worth);
+  const std::vector<PhotonContribution> photons = map_.contributions(wavefront, lights_);
+  std::vector<double> contribution(lights_.strata(), 0.0), by_light(lights_.powers().size(), 0.0);
+  for (const PhotonContribution& p : photons)
+    contribution[p.stratum] += double(p.contribution), by_light[p.light] += double(p.contribution);
   const double least = parts_ == 1u << k_caustic_part    ? transport::k_least_unaimed_of_caustics
                        : boxes_.size() > casters_.size() ? transport::k_least_unaimed_from_afar
                                                          : transport::k_least_unaimed_of_all;
   const std::vector<double> before(lights_.shares().begin(), lights_.shares().end());
-  lights_.share_out(transport::aim_shares(worth, least));
+  lights_.share_out(transport::aim_shares(contribution, least));
   // A path that is not aimed is as much more likely now as its stratum and its light are.
   std::vector<double> by_entry(by_light.size(), 1.0);
   if (shares_lights_) {
-    const auto weights = [&](std::span<const double> brought) {
-      return transport::light_weights(light_groups_.members, lights_.powers(), brought);
+    const auto weights = [&](std::span<const double> contribution) {
+      return transport::light_weights(light_groups_.members, lights_.powers(), contribution);
     };
     const std::vector<double> pilot = weights({}), now = weights(by_light);
     for (size_t i = 0; i < by_entry.size(); ++i) by_entry[i] = pilot[i] > 0 ? now[i] / pilot[i] : 1;
     lights_.choose_by(now);
   }
   std::vector<double> gain;
-  for (const PhotonWorth& p : told)
+  for (const PhotonContribution& p : photons)
     gain.push_back(lights_.shares()[p.stratum] / before[p.stratum] *
                    (p.stratum == 0 ? by_entry[p.light] : 1));
-  unreachable_found_ = std::any_of(told.begin(), told.end(),
-                                   [](const PhotonWorth& p) { return p.unreachable != 0 && p.worth > 0; });
+  unreachable_found_ = std::any_of(photons.begin(), photons.end(), [](const PhotonContribution& p) {
+    return p.unreachable != 0 && p.contribution > 0;
+  });
   route(picture.task);
-  if (asks_density()) density_at_lookups_ = typical_density(told, gain) / double(round.paths);
+  if (needs_density()) density_at_lookups_ = typical_density(photons, gain) / double(round.paths);
   pairs_ = overlay::aimed_pairs(picture.flat, lights_);
   if (weighs_) {
-    map_.tell_radiance(false);
-    choose_left(picture, told, gain, round.paths);
+    map_.store_radiance(false);
+    choose_delegated_regions(picture, photons, gain, round.paths);
   }
   map_.clear();
   aimed_ = true;
   return true;
 }
 
-void PhotonSolver::choose_left(const Picture& picture, std::span<const PhotonWorth> told,
-                               std::span<const double> gain, uint32_t pilot_paths) {
+void PhotonSolver::choose_delegated_regions(const Picture& picture,
+                                            std::span<const PhotonContribution> photons,
+                                            std::span<const double> gain, uint32_t pilot_paths) {
   const Frame small = small_frame(picture);
   const std::vector<PhotonLookup> noted = map_.lookups();
   // Typical of a picture that is waited for: radii fall slowly.
   const double radius = radius_law(picture.task.settings).at(k_typical_round);
   const uint32_t paths = round_of(picture, 0).paths;
-  const WorthPilot pilot{.lookups = std::span(noted).first(size_t{small.width} * small.height),
-                         .width = small.width,
-                         .height = small.height,
-                         .photons = told,
-                         .gain = gain,
-                         .paths = double(paths) / pilot_paths,
-                         .around = lookup_of(picture, small, k_pilot_radius),
-                         .round = lookup_of(picture, picture.frame, radius)};
+  const EfficiencyPilot pilot{.lookups = std::span(noted).first(size_t{small.width} * small.height),
+                              .width = small.width,
+                              .height = small.height,
+                              .photons = photons,
+                              .gain = gain,
+                              .paths = double(paths) / pilot_paths,
+                              .around = lookup_of(picture, small, k_pilot_radius),
+                              .round = lookup_of(picture, picture.frame, radius)};
   // Where secondary or tertiary light is path traced paths go on behind the first diffuse vertex, and what
   // they meet of caustics costs nothing more.
   const uint32_t behind = picture.frame.automaton[0] & 0xffu;
   const bool goes_on = (picture.frame.automaton[behind] >> 27 & 1u) != 0;
   // Whether nothing else is looked up of what rounds store.
-  const bool alone = picture.task.own == leaves_ && !unreachable_found_;
-  const WorthCosts costs{
+  const bool alone = picture.task.own == delegable_ && !unreachable_found_;
+  const EfficiencyCosts costs{
       .base = k_cost_base + (goes_on ? k_cost_tail : 0),
       .lookup = alone ? k_cost_lookup : 0,
       .onward = goes_on ? 0 : k_cost_onward,
       .paths = alone ? k_cost_light_path * paths / (double(picture.width) * picture.height) : 0};
   regions_ = choose_regions(caustic_moments(pilot), small.width, small.height, costs);
-  if (regions_.left.size() >= k_most_left) regions_ = {};
+  if (regions_.delegated.size() >= k_most_regions) regions_ = {};
   // So few photons do not say that no light is hidden from paths: photons go on to compute that.
   if (regions_.scarce && hides_) unreachable_found_ = true, route(picture.task);
-  write_left();
+  write_delegated_regions();
 }
 
-void PhotonSolver::write_left() {
+void PhotonSolver::write_delegated_regions() {
   const uint32_t width = std::max(1u, regions_.width), height = std::max(1u, regions_.height);
   std::vector<vec4> texels{vec4(std::bit_cast<float>(width), std::bit_cast<float>(height), 0, 0)};
-  for (const float share : regions_.left) texels.emplace_back(share, 0, 0, 0);
+  for (const float share : regions_.delegated) texels.emplace_back(share, 0, 0, 0);
   texels.resize(1 + size_t{width} * height, vec4(0));
-  gpu::make_texel_room(device_, left_regions_, "regions left to paths", k_most_left * sizeof(vec4));
-  left_regions_.write(std::span<const vec4>(texels));
+  gpu::make_texel_room(device_, delegated_regions_, "regions left to paths", k_most_regions * sizeof(vec4));
+  delegated_regions_.write(std::span<const vec4>(texels));
 }
 
 }  // namespace lucerna::photons

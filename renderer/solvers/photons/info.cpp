@@ -36,7 +36,7 @@ std::vector<OptionInfo> option_rows() {
           "Photons: stores them where paths from the eye look, by a short pilot; elsewhere one in four, for "
           "all.",
           "Only where looked at"),
-      boolean_option("photons.worth", "true",
+      boolean_option("photons.efficiency", "true",
                      "Photons: bring caustics only in those parts of the picture where a pilot finds that "
                      "they have less noise for their time than paths from the eye; elsewhere these do. "
                      "Likewise secondary and tertiary light of the whole picture, where those paths have "
@@ -60,7 +60,7 @@ std::vector<OptionInfo> option_rows() {
                      "light. Less: finer pieces, and more grain.",
                      "Photons a piece"),
       without_restart(choice_option(
-          "overlay.photon_density", "off", {"off", "photons", "irradiance", "importance", "worth"}, "",
+          "overlay.photon_density", "off", {"off", "photons", "irradiance", "importance", "caustics"}, "",
           "Shows over the picture how dense the photons of the last round lie, or what they "
           "bring: a heat map on "
           "surfaces, through glass and in mirrors as well, and under the pointer the disc within which "
@@ -96,32 +96,34 @@ std::vector<OptionInfo> option_rows() {
 /// may serve until then.
 std::vector<ChangeRow> change_rows() {
   return {
-      {Change::camera, k_spoils_nothing, "photons lie on surfaces, whoever looks"},
-      {Change::size, k_spoils_nothing, "photons lie on surfaces, whoever looks"},
-      {Change::lamp, k_spoils_light, "other light on the same surfaces"},
-      {Change::environment, k_spoils_light, "other light on the same surfaces"},
-      {Change::colour, k_spoils_light, "of a material, or its emission: other light on the same surfaces"},
-      {Change::material, k_spoils_light, "other light on the same surfaces"},
-      {Change::shape, k_spoils_all, "other surfaces"},
-      {Change::shaders, k_spoils_all, "whatever they compute"},
-      {Change::restart, k_spoils_all, "asked for: all anew"},
-      {"components.", k_spoils_all, "which light is stored"},
-      {"samples", k_spoils_nothing, "of the picture alone"},
-      {"sampling.", k_spoils_nothing, "of the picture alone"},
-      {"film.", k_spoils_nothing, "how it is shown"},
-      {"show.", k_spoils_nothing, "how it is shown"},
-      {"preview.", k_spoils_nothing, "how it is shown"},
-      {"overlay.", k_spoils_nothing, "how it is shown"},
-      {"relight.", k_spoils_light, "groups of the lights, and their light where groups are not kept apart"},
-      {"about", k_spoils_nothing, "words"},
-      {"camera", k_spoils_nothing, "photons lie on surfaces, whoever looks"},
-      {"tracer", k_spoils_nothing, "all tracers find the same surfaces"},
-      {"path.batch", k_spoils_nothing, "how work is cut"},
-      {"lights.", k_spoils_nothing, "paths from the eye alone"},
-      {"path.classes", k_spoils_nothing, "by which kernels hits are shaded"},
-      {"path.", k_spoils_light, "how far paths go"},
-      {"seed", k_spoils_light, "other photons, as good as these"},
-      {"photons.", k_spoils_light, "how many photons, and within which radius they count"},
+      {Change::camera, k_invalidates_nothing, "photons lie on surfaces, whoever looks"},
+      {Change::size, k_invalidates_nothing, "photons lie on surfaces, whoever looks"},
+      {Change::lamp, k_invalidates_light, "other light on the same surfaces"},
+      {Change::environment, k_invalidates_light, "other light on the same surfaces"},
+      {Change::colour, k_invalidates_light,
+       "of a material, or its emission: other light on the same surfaces"},
+      {Change::material, k_invalidates_light, "other light on the same surfaces"},
+      {Change::shape, k_invalidates_all, "other surfaces"},
+      {Change::shaders, k_invalidates_all, "whatever they compute"},
+      {Change::restart, k_invalidates_all, "asked for: all anew"},
+      {"components.", k_invalidates_all, "which light is stored"},
+      {"samples", k_invalidates_nothing, "of the picture alone"},
+      {"sampling.", k_invalidates_nothing, "of the picture alone"},
+      {"film.", k_invalidates_nothing, "how it is shown"},
+      {"show.", k_invalidates_nothing, "how it is shown"},
+      {"preview.", k_invalidates_nothing, "how it is shown"},
+      {"overlay.", k_invalidates_nothing, "how it is shown"},
+      {"relight.", k_invalidates_light,
+       "groups of the lights, and their light where groups are not kept apart"},
+      {"about", k_invalidates_nothing, "words"},
+      {"camera", k_invalidates_nothing, "photons lie on surfaces, whoever looks"},
+      {"tracer", k_invalidates_nothing, "all tracers find the same surfaces"},
+      {"path.batch", k_invalidates_nothing, "how work is cut"},
+      {"lights.", k_invalidates_nothing, "paths from the eye alone"},
+      {"path.classes", k_invalidates_nothing, "by which kernels hits are shaded"},
+      {"path.", k_invalidates_light, "how far paths go"},
+      {"seed", k_invalidates_light, "other photons, as good as these"},
+      {"photons.", k_invalidates_light, "how many photons, and within which radius they count"},
   };
 }
 
@@ -216,15 +218,17 @@ const SolverInfo& info() {
       .serves = {false, true, true, true},
       .looked_up = true,
       .finds_points = true,
-      .lends = true,
+      .provides_lookups = true,
       .by_groups = true,
       .options = option_rows(),
       .changes = change_rows(),
-      .views =
-          {{.option = "overlay.photons", .label = "Photons", .shortcut = 'O'},
-           {.option = "overlay.photon_density", .label = "Density", .shortcut = 'M', .asks_pointer = true},
-           {.option = "overlay.photon_paths", .label = "Paths"},
-           {.option = "overlay.photon_aim", .label = "Aim"}},
+      .views = {{.option = "overlay.photons", .label = "Photons", .shortcut = 'O'},
+                {.option = "overlay.photon_density",
+                 .label = "Density",
+                 .shortcut = 'M',
+                 .inspects_pointer = true},
+                {.option = "overlay.photon_paths", .label = "Paths"},
+                {.option = "overlay.photon_aim", .label = "Aim"}},
       .benches =
           {{"caustics",
             "bundled light alone: path tracing against photons and light tracing, on glass and ring; "

@@ -124,8 +124,9 @@ std::optional<Inspected> PhotonInspector::inspect(const overlay::Canvas& canvas,
   Inspected found{.at = *header, .photons = {}};
   const auto* first = reinterpret_cast<const PhotonInspected*>(header + 1);
   found.photons.assign(first, first + std::min(header->count, k_photons_inspected));
-  std::stable_sort(found.photons.begin(), found.photons.end(),
-                   [](const PhotonInspected& a, const PhotonInspected& b) { return a.brings > b.brings; });
+  std::stable_sort(
+      found.photons.begin(), found.photons.end(),
+      [](const PhotonInspected& a, const PhotonInspected& b) { return a.contribution > b.contribution; });
   draw_disc(canvas, found);
   return found;
 }
@@ -142,10 +143,10 @@ void PhotonInspector::draw_disc(const overlay::Canvas& canvas, const Inspected& 
                          .rank = k_rank_most};
   std::vector<OverlayPoint> points;
   std::vector<OverlaySegment> segments;
-  const float most = found.photons.empty() ? 1 : std::max(1e-37f, found.photons[0].brings);
+  const float most = found.photons.empty() ? 1 : std::max(1e-37f, found.photons[0].contribution);
   for (const PhotonInspected& p : found.photons) {
     const vec3 light = glm::sqrt(p.flux / std::max(1e-37f, std::max({p.flux.x, p.flux.y, p.flux.z})));
-    const float share = std::sqrt(p.brings / most);
+    const float share = std::sqrt(p.contribution / most);
     points.push_back({.position = p.position,
                       .half_width = 0.8f + 1.6f * share,
                       .color = light,

@@ -30,7 +30,7 @@ class IrradianceMap {
   /// ... and until then nothing.
   void clear();
   /// Surfaces are others.
-  void spoil() { clear(), order_.reset(); }
+  void invalidate() { clear(), order_.reset(); }
   bool complete() const { return complete_; }
   /// Lookups find something, or at least that nothing is known.
   bool readable() const { return readable_; }

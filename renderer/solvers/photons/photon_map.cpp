@@ -64,7 +64,7 @@ void PhotonMap::note_importance(transport::Wavefront& wavefront, const PhotonFra
   }
   lookup_.count = 0, lookup_.mask = 0, lookup_.importance_mask = k_photon_importance_entries - 1;
   noted_ = lookup;
-  noted_.importance_counts = 0, noted_.tells_radiance = 0;
+  noted_.importance_counts = 0, noted_.stores_radiance = 0;
   noted_.unreachable_parts = 0, noted_.skips_unreachable = 0;
   write_lookup();
   wavefront.stream().fill(importance_, 0);
@@ -80,32 +80,35 @@ std::vector<PhotonLookup> PhotonMap::reached() const {
   return {all.begin() + std::min<ptrdiff_t>(noted_pixels_, ptrdiff_t(all.size())), all.end()};
 }
 
-std::vector<PhotonWorth> PhotonMap::worths(transport::Wavefront& wavefront,
-                                           const transport::LightSource& lights) {
+std::vector<PhotonContribution> PhotonMap::contributions(transport::Wavefront& wavefront,
+                                                         const transport::LightSource& lights) {
   const uint32_t count = complete_ ? lookup_.count : 0;
   if (count == 0) return {};
-  if (!worth_) worth_ = gpu::Kernel(device_, compiler_, "photons/worth.comp", scene_defines_);
-  const uint32_t at_once = std::min(
-      count,
-      uint32_t(std::min<uint64_t>(device_.info().limits.max_storage_buffer / sizeof(PhotonWorth), ~0u)));
-  gpu::make_room(
-      device_, worths_,
-      {.name = "worths of photons", .bytes = at_once * sizeof(PhotonWorth), .memory = gpu::Memory::host});
+  if (!contribution_kernel_)
+    contribution_kernel_ = gpu::Kernel(device_, compiler_, "photons/contribution.comp", scene_defines_);
+  const uint32_t at_once =
+      std::min(count, uint32_t(std::min<uint64_t>(
+                          device_.info().limits.max_storage_buffer / sizeof(PhotonContribution), ~0u)));
+  gpu::make_room(device_, contributions_,
+                 {.name = "contributions of photons",
+                  .bytes = at_once * sizeof(PhotonContribution),
+                  .memory = gpu::Memory::host});
   gpu::Resources r;
   wavefront.bind_paths(r);
   bind(r);
   lights.bind(r);
   r.set("photon_sorted", cells_.sorted());
   r.set("PhotonRadiances", radiances_);
-  r.set("PhotonWorths", worths_);
-  std::vector<PhotonWorth> all;
+  r.set("PhotonContributions", contributions_);
+  std::vector<PhotonContribution> all;
   for (uint32_t first = 0; first < count; first += at_once) {
     const uint32_t n = std::min(at_once, count - first);
     wavefront.stream().dispatch(
-        worth_, r, PhotonWorthPush{n, transport::LightEmitter::stratum_step(figures_.paths), first},
+        contribution_kernel_, r,
+        PhotonContributionPush{n, transport::LightEmitter::stratum_step(figures_.paths), first},
         gpu::groups_for(n, 64), "photon map");
     wavefront.account_stages();
-    const auto* found = static_cast<const PhotonWorth*>(worths_.mapped());
+    const auto* found = static_cast<const PhotonContribution*>(contributions_.mapped());
     all.insert(all.end(), found, found + n);
   }
   return all;
@@ -123,8 +126,8 @@ void PhotonMap::clear() {
 void PhotonMap::write_lookup() {
   PhotonFrame all = lookup_;
   all.importance_eye = noted_.eye, all.importance_slope = noted_.slope, all.importance_base = noted_.base;
-  all.importance_counts = noted_.importance_counts, all.tells_radiance = noted_.tells_radiance;
-  all.tells_surface = noted_.tells_surface;
+  all.importance_counts = noted_.importance_counts, all.stores_radiance = noted_.stores_radiance;
+  all.stores_surface = noted_.stores_surface;
   all.unreachable_parts = noted_.unreachable_parts, all.skips_unreachable = noted_.skips_unreachable;
   // Where there has been no round, of what photons are stored by.
   if (all.most <= 0) all.most = noted_.most;
@@ -157,20 +160,20 @@ void PhotonMap::store_parts(uint32_t unreachable_parts, bool skips_unreachable) 
   write_lookup();
 }
 
-void PhotonMap::tell_radiance(bool on) {
-  noted_.tells_radiance = on ? 1 : 0;
+void PhotonMap::store_radiance(bool on) {
+  noted_.stores_radiance = on ? 1 : 0;
   write_lookup();
 }
 
-void PhotonMap::tell_surface(bool on) {
-  noted_.tells_surface = on ? 1 : 0;
+void PhotonMap::store_surface(bool on) {
+  noted_.stores_surface = on ? 1 : 0;
   write_lookup();
 }
 
 std::vector<Photon> PhotonMap::photons() const { return first<Photon>(list_, figures_.photons); }
 std::vector<uint32_t> PhotonMap::numbers() const { return first<uint32_t>(ids_, figures_.photons); }
 std::vector<PhotonSurface> PhotonMap::surfaces() const {
-  return first<PhotonSurface>(on_, noted_.tells_surface != 0 ? figures_.photons : 0);
+  return first<PhotonSurface>(on_, noted_.stores_surface != 0 ? figures_.photons : 0);
 }
 
 uint64_t PhotonMap::bytes() const {
@@ -219,11 +222,11 @@ bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSou
 PhotonMap::Went PhotonMap::trace_batch(transport::Wavefront& wavefront, const transport::LightSource& lights,
                                        const Round& round, uint32_t count, const Frame& picture,
                                        uint32_t enabled, const std::function<bool()>& cancel) {
-  const auto short_of = [&](bool told, const gpu::Buffer& buffer, uint64_t bytes) {
-    return told && buffer.bytes() < bytes * capacity_;
+  const auto short_of = [&](bool stored, const gpu::Buffer& buffer, uint64_t bytes) {
+    return stored && buffer.bytes() < bytes * capacity_;
   };
-  if (!list_ || short_of(noted_.tells_radiance != 0, radiances_, 4) ||
-      short_of(noted_.tells_surface != 0, on_, sizeof(PhotonSurface)))
+  if (!list_ || short_of(noted_.stores_radiance != 0, radiances_, 4) ||
+      short_of(noted_.stores_surface != 0, on_, sizeof(PhotonSurface)))
     grow(wavefront, std::min(most_photons(), std::max(k_first_capacity, capacity_)));
   const transport::LightVertexWork work{
       .vertex = &trace_, .stage = "photon vertex", .bind = [&](gpu::Resources& r) { bind_list(r); }};
@@ -270,12 +273,12 @@ void PhotonMap::grow(transport::Wavefront& wavefront, uint32_t needed) {
   const auto capacity = uint32_t(std::min(uint64_t{most_photons()}, std::bit_ceil(uint64_t{needed})));
   gpu::Buffer list = texels(device_, "photons of a round", uint64_t{capacity} * sizeof(Photon));
   gpu::Buffer ids = texels(device_, "numbers of photons", uint64_t{capacity} * 4);
-  const bool radiance = noted_.tells_radiance != 0, surface = noted_.tells_surface != 0;
-  const auto told = [&](const char* name, bool tells, uint64_t bytes) {
-    return gpu::Buffer(device_, {.name = name, .bytes = tells ? capacity * bytes : bytes});
+  const bool radiance = noted_.stores_radiance != 0, surface = noted_.stores_surface != 0;
+  const auto buffer_of = [&](const char* name, bool stored, uint64_t bytes) {
+    return gpu::Buffer(device_, {.name = name, .bytes = stored ? capacity * bytes : bytes});
   };
-  gpu::Buffer radiances = told("radiances of photons", radiance, 4);
-  gpu::Buffer on = told("surfaces of photons", surface, sizeof(PhotonSurface));
+  gpu::Buffer radiances = buffer_of("radiances of photons", radiance, 4);
+  gpu::Buffer on = buffer_of("surfaces of photons", surface, sizeof(PhotonSurface));
   if (stored_ > 0) {
     wavefront.stream().copy(list_, list, uint64_t{stored_} * sizeof(Photon));
     wavefront.stream().copy(ids_, ids, uint64_t{stored_} * 4);

@@ -73,11 +73,11 @@ class PhotonMap {
   /// (k_photon_unreachable); with `skips_unreachable` they store none of that light.
   void store_parts(uint32_t unreachable_parts, bool skips_unreachable);
   /// Whether worths() tells of caustics what paths from the eye would bring of them, in rounds from now on.
-  void tell_radiance(bool on);
+  void store_radiance(bool on);
   /// What each photon of the complete round brings to the picture, by the importance that was noted last; in
   /// the order of the map.
-  std::vector<shared::PhotonWorth> worths(transport::Wavefront& wavefront,
-                                          const transport::LightSource& lights);
+  std::vector<shared::PhotonContribution> contributions(transport::Wavefront& wavefront,
+                                                        const transport::LightSource& lights);
   /// The round that lookups read; false: none.
   bool complete() const { return complete_; }
   uint32_t round() const { return figures_.round; }
@@ -88,7 +88,7 @@ class PhotonMap {
   const RoundFigures& figures() const { return figures_; }
   const shared::PhotonFrame& lookup() const { return lookup_; }
   /// Whether surfaces() tells of them, in rounds from now on.
-  void tell_surface(bool on);
+  void store_surface(bool on);
   /// Of the complete round, in whatever order they have come, as the other two: the photons, the number of
   /// each (k_photon_id_events), and where it lies.
   std::vector<shared::Photon> photons() const;
@@ -111,9 +111,9 @@ class PhotonMap {
   gpu::ShaderCompiler& compiler_;
   gpu::Defines scene_defines_;
   transport::LightEmitter emitter_;
-  gpu::Kernel trace_, worth_;
+  gpu::Kernel trace_, contribution_kernel_;
   PhotonCells cells_;  ///< with the photons of the complete round
-  gpu::Buffer counts_, list_, ids_, block_, importance_, worths_, lookups_, radiances_, on_;
+  gpu::Buffer counts_, list_, ids_, block_, importance_, contributions_, lookups_, radiances_, on_;
   shared::PhotonFrame lookup_{}, noted_{};  ///< noted_: by whose radii importance is noted
   const PhotonMap* importance_of_ = this;
   RoundFigures figures_, next_;  ///< of the last complete round, of the one under way

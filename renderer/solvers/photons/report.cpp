@@ -28,15 +28,15 @@ Card make_card(const Inspected& found) {
   if (at.area < 0.999f) row("Surface in the disc", share_text(double(at.area), 1));
   if (found.photons.empty()) return card;
   double sum = 0;
-  for (const PhotonInspected& p : found.photons) sum += double(p.brings);
+  for (const PhotonInspected& p : found.photons) sum += double(p.contribution);
   add(Card::Rule{}, Card::Room::much);
-  const float most = float(double(found.photons[0].brings) / sum);
+  const float most = float(double(found.photons[0].contribution) / sum);
   for (size_t i = 0; i < std::min<size_t>(found.photons.size(), 5); ++i) {
     const PhotonInspected& p = found.photons[i];
     const uint32_t events = p.bits >> k_photon_events_shift & k_photon_most_events;
     add(Card::Weight{fmt::format("{}{} bounce{}", events, events == k_photon_most_events ? " or more" : "",
                                  events == 1 ? "" : "s"),
-                     float(double(p.brings) / sum), most},
+                     float(double(p.contribution) / sum), most},
         Card::Room::much);
   }
   return card;
@@ -78,8 +78,8 @@ Report make_report(const PhotonReport& r) {
   report.ready = r.ready;
   if (!r.ready)
     report.preparing = "photons: where they are looked for, what bundles light, and where it comes in";
-  const bool all_left = r.tried != 0 && !r.sends_rounds;
-  report.state = all_left                 ? "left to paths"
+  const bool all_delegated = r.tried != 0 && !r.sends_rounds;
+  report.state = all_delegated            ? "left to paths"
                  : r.maps && r.pieces > 0 ? fmt::format("{} pieces", count_text(r.pieces))
                  : r.rounds == 0          ? "beginning"
                                           : fmt::format("round {}", r.last.round + 1);
@@ -146,13 +146,13 @@ Report make_report(const PhotonReport& r) {
                   "their distance.",
                   Tone::warning});
   add_aim_rows(map.items, {r.casters, r.entrances}, r.unaimed, r.aimed);
-  if (r.left != 0)
+  if (r.delegated != 0)
     map.items.push_back(Paragraph{
         fmt::format(
             "A pilot has found that paths from the eye bring {} light with less noise for their time: "
             "noise times cost is {} times less. So they do. Without 'Only where worth it' photons "
             "bring it all the same.",
-            names_of(r.left), real_text(r.left_gain, 1)),
+            names_of(r.delegated), real_text(r.delegation_gain, 1)),
         Tone::warning});
   else if (r.tried != 0 && r.ready)
     map.items.push_back(ValueRow{names_of(r.tried, true), "by photons",
@@ -164,7 +164,7 @@ Report make_report(const PhotonReport& r) {
                  "Of the picture: elsewhere paths from the eye bring them with less noise for "
                  "their time, as a pilot has found."});
     if (r.by_photons < 1)
-      map.items.push_back(ValueRow{"Worth", fmt::format("{} times", real_text(r.worth_gain, 2)),
+      map.items.push_back(ValueRow{"Worth", fmt::format("{} times", real_text(r.efficiency_gain, 2)),
                                    "By how much noise times cost of caustics is less than with photons "
                                    "everywhere, as the pilot sees it."});
   }
@@ -191,7 +191,7 @@ Report make_report(const PhotonReport& r) {
        .items = {OptionRow{"photons.per_round"}, OptionRow{"photons.radius"}, OptionRow{"photons.floor"},
                  OptionRow{"photons.alpha"}, OptionRow{"photons.borders"},
                  OptionRow{"photons.irradiance_map"}, OptionRow{"photons.nearest"}, OptionRow{"photons.aim"},
-                 OptionRow{"photons.importons"}, OptionRow{"photons.worth"}}});
+                 OptionRow{"photons.importons"}, OptionRow{"photons.efficiency"}}});
   report.sections.push_back(
       {.title = "Over the picture",
        .note = "",
@@ -214,7 +214,7 @@ Report make_report(const PhotonReport& r) {
   if (r.density.of > 0 && r.density.hi > 0)
     report.legends.push_back(
         {.title = r.density.of == k_density_of_photons      ? "Photons a m\u00b2, last round"
-                  : r.density.of == k_density_of_worth      ? "Samples whose caustics photons bring"
+                  : r.density.of == k_density_of_caustics   ? "Samples whose caustics photons bring"
                   : r.density.of == k_density_of_importance ? "What hangs on photons there"
                                                             : "Irradiance of the last round's photons",
          .ramp = k_ramp_magma,

@@ -25,10 +25,10 @@ struct PhotonReport {
   double unaimed = 1;                     ///< share of the paths
   bool weighs = false;                    ///< caustics may be left to paths from the eye
   double by_photons = 1;                  ///< share of the picture where they are not
-  double worth_gain = 1;                  ///< of efficiency by that, as the pilot sees it
+  double efficiency_gain = 1;             ///< of efficiency by that, as the pilot sees it
   uint32_t tried = 0;                     ///< components that were tried by photons and by paths
-  uint32_t left = 0;                      ///< of these, that paths bring in the whole picture
-  double left_gain = 1;                   ///< of efficiency by that, as the pilot sees it
+  uint32_t delegated = 0;                 ///< of these, that paths bring in the whole picture
+  double delegation_gain = 1;             ///< of efficiency by that, as the pilot sees it
   bool ready = true;                      ///< the pilot is done
   std::vector<overlay::AimedPair> aimed;  ///< greatest share first
   bool aim_shown = false;

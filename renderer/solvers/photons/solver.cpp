@@ -35,7 +35,7 @@ constexpr float k_widest = 8;
 constexpr float k_most_radius = 0.25f;
 
 paths::LookupRoutes routes_of(const Task& task) {
-  return paths::photon_routes(task.automaton, task.enabled, task.own, task.straight);
+  return paths::photon_routes(task.automaton, task.enabled, task.own, task.directly_visible_by_other);
 }
 
 /// Parts of light that are looked up and that there are: of caustics only where something scatters otherwise
@@ -50,15 +50,15 @@ constexpr uint8_t k_secondary = 1, k_tertiary = 2, k_caustic = 3;  // components
 
 /// Secondary light is looked up by somebody who prepares it by rays of his own, and tertiary light is ours.
 bool feeds(const Task& task) {
-  return (task.own >> k_tertiary & 1u) != 0 && (task.borrowing >> k_secondary & 1u) != 0;
+  return (task.own >> k_tertiary & 1u) != 0 && (task.consuming >> k_secondary & 1u) != 0;
 }
 
 /// Irradiance is to be known beforehand where tertiary light is looked up: behind a diffuse vertex, which is
 /// not so where secondary light is ours as well.
 bool prepares_irradiance(const Task& task) {
   enum : uint32_t { off, records, all };
-  const auto asked = uint32_t(task.settings.choice("photons.irradiance_map"));
-  const bool wanted = asked == all || (asked == records && feeds(task));
+  const auto requested = uint32_t(task.settings.choice("photons.irradiance_map"));
+  const bool wanted = requested == all || (requested == records && feeds(task));
   return wanted && parts_of(task) != 0 && (task.own >> k_tertiary & 1u) != 0 &&
          (task.own >> k_secondary & 1u) == 0;
 }
@@ -85,8 +85,8 @@ uint64_t tertiary_states(const PhotonFrame& lookup) {
 /// for the paths go on for all other light.
 paths::LookupRoutes unreachable_routes(const Task& task, uint32_t components) {
   constexpr uint32_t k_photon_components = 1u << k_secondary | 1u << k_tertiary | 1u << k_caustic;
-  paths::LookupRoutes routes =
-      paths::photon_routes(task.automaton, task.enabled, task.enabled & k_photon_components, task.straight);
+  paths::LookupRoutes routes = paths::photon_routes(
+      task.automaton, task.enabled, task.enabled & k_photon_components, task.directly_visible_by_other);
   routes.parts = 0;
   for (auto& by_part : routes.component)
     for (uint32_t p = 0; p < paths::k_part_count; ++p) {
@@ -128,7 +128,7 @@ const solvers::SolverType& type() {
   static const solvers::SolverType all{.info = photons::info(),
                                        .routing = PhotonSolver::routing_of,
                                        .make = make,
-                                       .leaves = PhotonSolver::leaves,
+                                       .delegable_components = PhotonSolver::delegable_components,
                                        .least_slots = 0,
                                        .sun_threshold = nullptr};
   return all;
@@ -150,10 +150,11 @@ RadiusLaw PhotonSolver::radius_law(const OptionValues& settings) {
           .alpha = settings.real("photons.alpha")};
 }
 
-uint32_t PhotonSolver::leaves(const Task& task) {
+uint32_t PhotonSolver::delegable_components(const Task& task) {
   constexpr uint32_t k_caustics = 1u << k_caustic;
-  const bool brings = (parts_of(task) >> k_caustic_part & 1u) != 0 && (task.straight & k_caustics) == 0;
-  return brings && task.settings.boolean("photons.worth") ? task.own & k_caustics : 0;
+  const bool computes =
+      (parts_of(task) >> k_caustic_part & 1u) != 0 && (task.directly_visible_by_other & k_caustics) == 0;
+  return computes && task.settings.boolean("photons.efficiency") ? task.own & k_caustics : 0;
 }
 
 PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const Task& task)
@@ -161,7 +162,7 @@ PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, c
       compiler_(compiler),
       scene_defines_(*task.scene_defines),
       routes_(routes_of(task)),
-      leaves_(leaves(task)),
+      delegable_(delegable_components(task)),
       parts_(parts_of(task)),
       sends_(parts_ != 0),
       map_(device, compiler, *task.scene_defines, task.automaton),
@@ -171,17 +172,17 @@ PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, c
       inspector_(device, compiler, *task.scene_defines),
       surfaces_(device) {
   if (prepares_irradiance(task))
-    irradiance_.emplace(device, task.effects.groups_in_short() ? task.effects.light_groups : 0);
+    irradiance_.emplace(device, task.effects.has_compact_groups() ? task.effects.light_groups : 0);
   gathers_alone_ = gathers_alone(task);
   route(task);
-  write_left();
+  write_delegated_regions();
 }
 
 gpu::Defines PhotonSolver::defines() const {
   gpu::Defines defines;
   if (sends_) defines["LUCERNA_LOOKUP_BIAS"] = "1";
   if (irradiance_) defines["LUCERNA_PHOTON_IRRADIANCE"] = "1";
-  if (leaves_ != 0) defines["LUCERNA_LEFT_TO_PATHS"] = "1";
+  if (delegable_ != 0) defines["LUCERNA_DELEGATED_REGIONS"] = "1";
   return defines;
 }
 
@@ -191,34 +192,34 @@ void PhotonSolver::bind(gpu::Resources& resources) const {
   shown_map().bind(resources);
   if (irradiance_) irradiance_->bind(resources);
   surfaces_.bind(resources);
-  resources.set("left_regions", left_regions_);
+  resources.set("delegated_regions", delegated_regions_);
 }
 
 bool PhotonSolver::serves(const Task& task) const {
   return routes_of(task).component == routes_.component && parts_of(task) == parts_ &&
-         leaves(task) == leaves_ && (sends_ && feeds(task)) == feeds_ &&
+         delegable_components(task) == delegable_ && (sends_ && feeds(task)) == feeds_ &&
          prepares_irradiance(task) == irradiance_.has_value() && gathers_alone(task) == gathers_alone_;
 }
 
-void PhotonSolver::begin(const Picture& picture, solvers::Spoils spoils) {
-  if (!lit_ || spoils.light || spoils.places) {
+void PhotonSolver::begin(const Picture& picture, solvers::Invalidation invalidated) {
+  if (!lit_ || invalidated.light || invalidated.places) {
     lights_ = transport::LightSource(device_, picture.flat);
     light_groups_ = transport::group_lights(picture.flat, lights_.powers(), k_most_light_groups);
     lit_ = true;
   }
-  if (spoils.places) map_.clear(), surfaces_.spoil();
-  if (spoils.any()) inspector_.forget();
-  if (spoils.places && irradiance_) irradiance_->spoil();
-  if (standing_ && spoils.any()) standing_->clear();
-  if (irradiance_ && spoils.any()) irradiance_->clear();
+  if (invalidated.places) map_.clear(), surfaces_.invalidate();
+  if (invalidated.any()) inspector_.forget();
+  if (invalidated.places && irradiance_) irradiance_->invalidate();
+  if (standing_ && invalidated.any()) standing_->clear();
+  if (irradiance_ && invalidated.any()) irradiance_->clear();
   if ((feeds_ || irradiance_) && !standing_)
     standing_.emplace(device_, compiler_, scene_defines_, picture.task.automaton);
-  if (standing_) standing_->tell_surface(irradiance_.has_value());
+  if (standing_) standing_->store_surface(irradiance_.has_value());
   reads_standing_ = standing_served_ = false;
   map_.restart();
   ++begun_;
   fresh_ = true;
-  begin_aim(picture, spoils);
+  begin_aim(picture, invalidated);
   rounds_ = paths_ = photons_ = escaped_ = dark_ = 0;
   trace_s_ = build_s_ = 0;
   spared_ = 0;
@@ -235,23 +236,24 @@ uint32_t PhotonSolver::whole_parts() const {
 }
 
 uint32_t PhotonSolver::sent_parts() const {
-  return whole_parts() | (parts_ & (unreachable_here_.parts | unreachable_left_.parts));
+  return whole_parts() | (parts_ & (unreachable_here_.parts | unreachable_delegated_.parts));
 }
 
 void PhotonSolver::route(const Task& task) {
   const auto routes = [&](uint32_t delegated) {
-    return paths::photon_routes(task.automaton, task.enabled, task.own & ~delegated, task.straight);
+    return paths::photon_routes(task.automaton, task.enabled, task.own & ~delegated,
+                                task.directly_visible_by_other);
   };
-  here_routes_ = routes(left_), left_routes_ = routes(left_ | leaves_);
+  here_routes_ = routes(delegated_), delegated_routes_ = routes(delegated_ | delegable_);
   // Paths that find no irradiance go on by themselves, too.
-  const uint32_t by_paths = left_ | (gathers() && !feeds_ ? 1u << k_tertiary : 0);
+  const uint32_t by_paths = delegated_ | (gathers() && !feeds_ ? 1u << k_tertiary : 0);
   const auto unreachable = [&](uint32_t components) {
     return unreachable_routes(task, unreachable_found_ ? components & task.own : 0);
   };
-  unreachable_here_ = unreachable(by_paths), unreachable_left_ = unreachable(by_paths | leaves_);
+  unreachable_here_ = unreachable(by_paths), unreachable_delegated_ = unreachable(by_paths | delegable_);
 }
 
-bool PhotonSolver::gathers() const { return irradiance_ && (left_ >> k_tertiary & 1u) == 0; }
+bool PhotonSolver::gathers() const { return irradiance_ && (delegated_ >> k_tertiary & 1u) == 0; }
 
 bool PhotonSolver::reads_rounds() const {
   // Where irradiance is all that is read, rounds are sent for light that no path finds.
@@ -267,8 +269,8 @@ Round PhotonSolver::round_of(const Picture& picture, uint32_t sample) const {
   const OptionValues& s = picture.task.settings;
   Round round;
   round.number = sample;
-  const auto asked = uint32_t(s.integer("photons.per_round"));
-  round.paths = asked > 0 ? asked : paths_of_round(picture);
+  const auto requested = uint32_t(s.integer("photons.per_round"));
+  round.paths = requested > 0 ? requested : paths_of_round(picture);
   round.parts = sent_parts();
   round.account = uint32_t(std::countr_zero(std::max(1u, picture.task.own)));
 
@@ -294,10 +296,10 @@ PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, 
   f.surface_nodes = picture.task.settings.boolean("photons.borders") ? surfaces_.nodes() : 0;
   // Paths that another solver's lookup has left alone find photons as all others do.
   for (uint32_t state = 0; state < k_automaton_states; ++state) {
-    const uint32_t of_eye = state % k_gather_state, own = state % k_left_states;
-    const bool here = state < k_left_states;
-    const paths::LookupRoutes &routes = here ? here_routes_ : left_routes_,
-                              &unreachable = here ? unreachable_here_ : unreachable_left_;
+    const uint32_t of_eye = state % k_gather_state, own = state % k_delegated_states;
+    const bool here = state < k_delegated_states;
+    const paths::LookupRoutes &routes = here ? here_routes_ : delegated_routes_,
+                              &unreachable = here ? unreachable_here_ : unreachable_delegated_;
     f.component[state] = k_photon_no_components;
     // Who goes on because nothing was known looks up no more, but records' rays, which begin so.
     if (own >= (gathers() && !feeds_ ? k_gather_state : k_known_state) || of_eye >= routes.component.size())
@@ -339,9 +341,9 @@ bool PhotonSolver::make_standing(transport::Wavefront& wavefront, const Picture&
   if (!standing_->complete() || standing_->round() < number) {
     Round round = round_of(picture, number);
     const uint64_t pixels = uint64_t{picture.width} * picture.height;
-    const auto asked = uint64_t(s.integer("photons.per_round"));
+    const auto requested = uint64_t(s.integer("photons.per_round"));
     const uint64_t first =
-        asked > 0 ? asked : std::max<uint64_t>(k_gather_paths_a_pixel * pixels, k_least_gather_paths);
+        requested > 0 ? requested : std::max<uint64_t>(k_gather_paths_a_pixel * pixels, k_least_gather_paths);
     round.paths =
         feeds_
             ? std::max(k_paths_for_records, round.paths)
@@ -451,9 +453,9 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.lights_power = lights_.power();
   r.sends = sends_, r.sends_rounds = in_rounds();
   if (tries_) r.tried = trials_.empty() ? 0 : trials_[0].judged;
-  r.left = left_;
+  r.delegated = delegated_;
   for (const Trial& t : trials_)
-    if (t.left == left_ && t.product > 0) r.left_gain = 1 / t.product;
+    if (t.delegated == delegated_ && t.product > 0) r.delegation_gain = 1 / t.product;
   r.maps = gathers_alone_ && !reads_rounds(), r.pieces = irradiance_ ? irradiance_->pieces() : 0;
   r.rounds = rounds_, r.paths = paths_, r.photons = photons_, r.escaped = escaped_, r.dark = dark_;
   r.last = shown_map().figures();
@@ -461,7 +463,7 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.trace_s = trace_s_, r.build_s = build_s_;
   r.casters = uint32_t(casters_.size());
   r.entrances = uint32_t(std::max(boxes_.size(), casters_.size()) - casters_.size());
-  r.weighs = weighs_, r.by_photons = regions_.by_photons, r.worth_gain = regions_.gain;
+  r.weighs = weighs_, r.by_photons = regions_.by_photons, r.efficiency_gain = regions_.gain;
   r.unaimed = lights_.shares().empty() ? 1 : lights_.shares()[0];
   r.ready = ready();
   const auto rate = [](uint64_t n, double seconds) { return seconds > 0 ? double(n) / seconds : 0; };
@@ -512,8 +514,9 @@ nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas& canvas, c
   }
   nlohmann::ordered_json ways = nlohmann::ordered_json::array();
   for (const Trial& t : trials_)
-    ways.push_back(
-        {{"left_to_paths", component_names(t.left)}, {"cost", t.cost}, {"noise_times_cost", t.product}});
+    ways.push_back({{"delegated_to_paths", component_names(t.delegated)},
+                    {"cost", t.cost},
+                    {"noise_times_cost", t.product}});
   return {{"per_second", rates},
           {"rounds", r.rounds},
           {"paths", r.paths},
@@ -525,9 +528,9 @@ nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas& canvas, c
           {"entrances", r.entrances},
           {"unaimed", r.unaimed},
           {"by_photons", r.by_photons},
-          {"worth_gain", r.worth_gain},
+          {"efficiency_gain", r.efficiency_gain},
           {"ways", ways},
-          {"left_to_paths", component_names(left_)},
+          {"delegated_to_paths", component_names(delegated_)},
           {"last_round_photons", r.last.photons},
           {"radius_pixels", r.radius_pixels},
           {"standing_photons", standing_ ? standing_->figures().photons : 0},

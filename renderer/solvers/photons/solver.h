@@ -2,6 +2,7 @@
 // Photons as the renderer sees them: stochastic progressive photon mapping, a round for every sample.
 #include "overlay/light_paths.h"
 #include "schedule/uniform.h"
+#include "solvers/photons/efficiency.h"
 #include "solvers/photons/inspector.h"
 #include "solvers/photons/irradiance_map.h"
 #include "solvers/photons/photon_map.h"
@@ -9,7 +10,6 @@
 #include "solvers/photons/report.h"
 #include "solvers/photons/surface_index.h"
 #include "solvers/photons/trials.h"
-#include "solvers/photons/worth.h"
 #include "solvers/solver.h"
 #include "transport/first_hits.h"
 
@@ -31,14 +31,14 @@ class PhotonSolver final : public solvers::Solver {
   void bind(gpu::Resources& resources) const override;
   bool serves(const solvers::Task& task) const override;
 
-  void begin(const solvers::Picture& picture, solvers::Spoils spoils) override;
+  void begin(const solvers::Picture& picture, solvers::Invalidation invalidated) override;
   /// Whether it is known where lookups take place, which casters light paths are aimed at, and with which
   /// shares; where records' rays or gathering paths read standing photons, whether there are some; and
   /// whether photons are worth their time.
   bool ready() const override {
     return pilot_done() && (!stands() || standing_served_) && (!tries_ || tried_);
   }
-  uint32_t left() const override { return left_; }
+  uint32_t delegated_components() const override { return delegated_; }
   /// Secondary and tertiary light; caustics are for photons to find.
   uint32_t missing(const solvers::Picture& picture) const override;
   /// Drafts note nothing.
@@ -66,8 +66,8 @@ class PhotonSolver final : public solvers::Solver {
   const PhotonInspector& inspector() const { return inspector_; }
   const std::optional<Inspected>& inspected() const { return inspected_; }
   static solvers::Routing routing_of(const solvers::Task& task);
-  /// SolverType::leaves.
-  static uint32_t leaves(const solvers::Task& task);
+  /// SolverType::delegable_components.
+  static uint32_t delegable_components(const solvers::Task& task);
 
  private:
   bool pilot_done() const { return (!aims_ && !shares_lights_ && !spares_ && !weighs_ && !hides_) || aimed_; }
@@ -101,7 +101,7 @@ class PhotonSolver final : public solvers::Solver {
   PhotonReport state(const solvers::Picture& picture) const;
   static RadiusLaw radius_law(const OptionValues& settings);
   Round round_of(const solvers::Picture& picture, uint32_t sample) const;
-  void begin_aim(const solvers::Picture& picture, solvers::Spoils spoils);
+  void begin_aim(const solvers::Picture& picture, solvers::Invalidation invalidated);
   bool may_hide(const solvers::Picture& picture) const;
   /// The frame of a pilot's eye paths: the same view with fewer pixels.
   static shared::Frame small_frame(const solvers::Picture& picture);
@@ -113,14 +113,14 @@ class PhotonSolver final : public solvers::Solver {
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
   gpu::Defines scene_defines_;
-  paths::LookupRoutes routes_;       ///< of all that is ours
-  uint32_t leaves_;                  ///< components; SolverType::leaves
-  uint32_t left_ = 0;                ///< ... that are left everywhere
-  paths::LookupRoutes here_routes_;  ///< without these
-  paths::LookupRoutes left_routes_;  ///< ... where those are left as well
+  paths::LookupRoutes routes_;            ///< of all that is ours
+  uint32_t delegable_;                    ///< components; SolverType::delegable_components
+  uint32_t delegated_ = 0;                ///< ... that are left everywhere
+  paths::LookupRoutes here_routes_;       ///< without these
+  paths::LookupRoutes delegated_routes_;  ///< ... where those are left as well
   /// Where light of components that are left to paths is looked up as far as these cannot find it: points,
   /// spots and directional lights by way of smooth mirrors and glass (k_photon_unreachable).
-  paths::LookupRoutes unreachable_here_, unreachable_left_;
+  paths::LookupRoutes unreachable_here_, unreachable_delegated_;
   bool unreachable_found_ = false;  ///< the pilot has met such light
   uint32_t parts_;                  ///< of light that the scene has: without caustics where nothing focuses
   bool sends_;                      ///< photons; else there is nothing that they could bring
@@ -149,7 +149,7 @@ class PhotonSolver final : public solvers::Solver {
   // Aimed emission (aim.cpp): casters are found, then a few paths from the eye note where lookups take place,
   // then a few from lights far away where those that come to be of use arrive first, then a few from all
   // lights which pairs of light and box bring something.
-  enum class AimStep { casters, importance, first_hits, worth };
+  enum class AimStep { casters, importance, first_hits, contribution };
   /// One piece of each; false: it was cancelled, and will be done again.
   bool note_importance(transport::Wavefront& wavefront, const solvers::Picture& picture,
                        const solvers::Cancel& cancel);
@@ -157,13 +157,14 @@ class PhotonSolver final : public solvers::Solver {
                        const solvers::Cancel& cancel);
   void begin_sharing(const solvers::Picture& picture);  ///< all boxes are known
   /// Whether standing photons are to be made, whose radius hangs on it.
-  bool asks_density() const { return standing_ && !standing_->complete(); }
+  bool needs_density() const { return standing_ && !standing_->complete(); }
   bool share_out(transport::Wavefront& wavefront, const solvers::Picture& picture,
                  const solvers::Cancel& cancel);
-  /// Where caustics are left to paths from the eye, by what the pilot has told; `gain` as WorthPilot's.
-  void choose_left(const solvers::Picture& picture, std::span<const shared::PhotonWorth> told,
-                   std::span<const double> gain, uint32_t pilot_paths);
-  void write_left();
+  /// Where caustics are left to paths from the eye, by what the pilot has told; `gain` as EfficiencyPilot's.
+  void choose_delegated_regions(const solvers::Picture& picture,
+                                std::span<const shared::PhotonContribution> photons,
+                                std::span<const double> gain, uint32_t pilot_paths);
+  void write_delegated_regions();
 
   // Who brings secondary and tertiary light of the whole picture (try_ways.cpp): each way is tried on a small
   // one.
@@ -172,7 +173,7 @@ class PhotonSolver final : public solvers::Solver {
   bool try_ways(transport::Wavefront& wavefront, const solvers::Picture& picture,
                 const solvers::Cancel& cancel);
   /// Which components (of Task::own) are left to paths from the eye everywhere, from now on.
-  void leave(const solvers::Picture& picture, uint32_t components);
+  void delegate(const solvers::Picture& picture, uint32_t components);
   bool tries_ = false;  ///< there is something to choose
   bool tried_ = false;  ///< it is chosen for this picture
   std::vector<Trial> trials_;
@@ -186,7 +187,7 @@ class PhotonSolver final : public solvers::Solver {
   bool spares_ = false;         ///< photons that nobody looks at
   bool weighs_ = false;         ///< where photons are worth their time
   Regions regions_;             ///< none: photons everywhere
-  gpu::Buffer left_regions_;
+  gpu::Buffer delegated_regions_;
   bool aimed_ = false;  ///< importance and shares are those of this picture
   AimStep aim_step_ = AimStep::casters;
   std::vector<Box> casters_;

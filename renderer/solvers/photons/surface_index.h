@@ -31,7 +31,7 @@ class SurfaceIndex {
   /// Whether it is that of this scene, as far as materials say.
   bool serves(const upload::FlatScene& flat) const;
   /// Its surfaces have moved: it serves no more.
-  void spoil() { made_ = false; }
+  void invalidate() { made_ = false; }
   /// Makes it for that scene; bound resources are then stale. Where there is more than the device can hold in
   /// an array it stays empty. Throws Error: no memory.
   void make(gpu::Device& device, const upload::FlatScene& flat);

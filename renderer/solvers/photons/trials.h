@@ -16,10 +16,10 @@ namespace lucerna::photons {
 
 /// One way, and what came of it.
 struct Trial {
-  uint32_t left = 0;    ///< components (bits) that paths from the eye bring in it; the others: photons
-  uint32_t judged = 0;  ///< components (bits) that are compared, the same in all trials
-  film::Image image;    ///< two samples a pixel: one in each half
-  double cost = 0;      ///< of a pixel's sample, in vertices of a path from the eye
+  uint32_t delegated = 0;  ///< components (bits) that paths from the eye bring in it; the others: photons
+  uint32_t judged = 0;     ///< components (bits) that are compared, the same in all trials
+  film::Image image;       ///< two samples a pixel: one in each half
+  double cost = 0;         ///< of a pixel's sample, in vertices of a path from the eye
   /// By how much the variance of each component is less in the picture to come than here.
   std::array<double, film::k_components> variance_factor = {1, 1, 1, 1};
   /// Neighbouring pixels that read the same photons, and so have their noise in common; at least 1.

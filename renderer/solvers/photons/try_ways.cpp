@@ -28,19 +28,19 @@ std::vector<uint32_t> ways(uint32_t own) {
 void PhotonSolver::begin_trials(const Picture& picture, bool stale) {
   // Records' rays, which end in photons, go on for all else and have no pixels to be compared by.
   const bool tries = sends_ && lights_.power() > 0 && !feeds_ && (picture.task.own & k_deep) != 0 &&
-                     picture.task.settings.boolean("photons.worth");
+                     picture.task.settings.boolean("photons.efficiency");
   if (!stale && tries == tries_) return;
   tries_ = tries, tried_ = false;
   trials_.clear(), trial_film_.reset();
-  leave(picture, 0);
+  delegate(picture, 0);
 }
 
 void PhotonSolver::read_standing(transport::Wavefront& wavefront, bool on) {
   if (std::exchange(reads_standing_, on) != on) wavefront.rebind_lookup();
 }
 
-void PhotonSolver::leave(const Picture& picture, uint32_t components) {
-  left_ = components;
+void PhotonSolver::delegate(const Picture& picture, uint32_t components) {
+  delegated_ = components;
   route(picture.task);
 }
 
@@ -48,7 +48,7 @@ uint32_t PhotonSolver::missing(const Picture& picture) const {
   // Paths that records leave alone go on for it by themselves.
   if (feeds_) return 0;
   const bool known = irradiance_ ? irradiance_->readable() : shown_map().complete();
-  return known ? 0 : picture.task.own & k_deep & ~left_;
+  return known ? 0 : picture.task.own & k_deep & ~delegated_;
 }
 
 bool PhotonSolver::try_ways(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
@@ -59,16 +59,16 @@ bool PhotonSolver::try_ways(transport::Wavefront& wavefront, const Picture& pict
                           wavefront.slots(), true);
     trial_film_->clear(wavefront.stream());
     map_.clear();
-    leave(picture, trials_.back().left);
+    delegate(picture, trials_.back().delegated);
   };
   const std::vector<uint32_t> all = ways(picture.task.own);
   if (trials_.empty()) {
     trial_film_ = std::make_unique<film::Film>(device_, small.width, small.height);
-    trials_.push_back({.left = all[0], .judged = picture.task.own & k_deep});
+    trials_.push_back({.delegated = all[0], .judged = picture.task.own & k_deep});
     begin_trial();
   }
   Trial& trial = trials_.back();
-  const uint32_t left = trial.left, looked_up = picture.task.own & k_deep & ~left;
+  const uint32_t delegated = trial.delegated, looked_up = picture.task.own & k_deep & ~delegated;
   const bool by_rounds = reads_rounds();
   const schedule::UniformSchedule before = *eye_schedule_;
   const schedule::WorkItem item = eye_schedule_->next();
@@ -84,14 +84,14 @@ bool PhotonSolver::try_ways(transport::Wavefront& wavefront, const Picture& pict
   // Paths that bring our own light and nothing else. Where irradiance is known they find it, unless they are
   // to go on as if it were not.
   Task task = picture.task;
-  task.own &= ~left;
+  task.own &= ~delegated;
   solvers::Routing routing = routing_of(task);
   if (irradiance_) routing.fallback = picture.task.own;
-  Frame frame = picture.frame_for(routing, left);
-  if (irradiance_ && left != 0)
+  Frame frame = picture.frame_for(routing, delegated);
+  if (irradiance_ && delegated != 0)
     for (uint32_t s = 0; s < k_fallback_state; ++s)
       frame.automaton[s] = frame.automaton[k_fallback_state + s % k_gather_state];
-  transport::set_left(frame, frame);
+  transport::set_delegated_tables(frame, frame);
   frame.width = small.width, frame.height = small.height;
   wavefront.set_frame(frame, picture.task.own);
   const uint64_t rays = wavefront.stats().rays;
@@ -120,20 +120,20 @@ bool PhotonSolver::try_ways(transport::Wavefront& wavefront, const Picture& pict
   }
   trial.image = trial_film_->read();
   if (trials_.size() < all.size()) {
-    trials_.push_back({.left = all[trials_.size()], .judged = trial.judged});
+    trials_.push_back({.delegated = all[trials_.size()], .judged = trial.judged});
     begin_trial();
     return true;
   }
-  leave(picture, trials_[judge(trials_)].left);
+  delegate(picture, trials_[judge(trials_)].delegated);
   for (Trial& t : trials_) t.image = {};
   trial_film_.reset();
   map_.clear();
   tried_ = true;
-  if (irradiance_ && left_ != 0) {
+  if (irradiance_ && delegated_ != 0) {
     irradiance_->clear();
     wavefront.rebind_lookup();
   }
-  read_standing(wavefront, irradiance_ && left_ == 0 && !reads_rounds());
+  read_standing(wavefront, irradiance_ && delegated_ == 0 && !reads_rounds());
   return true;
 }
 

@@ -17,13 +17,13 @@ struct InspectPush {
   SightGrid grid;
 };
 
-LUCERNA_CONST uint k_asks_nothing = 0u;  ///< nothing diffuse is seen
-LUCERNA_CONST uint k_asks_in_vain = 1u;  ///< no record can serve so steep a normal map (k_surface_bent)
-LUCERNA_CONST uint k_asks = 2u;
+LUCERNA_CONST uint k_lookup_none = 0u;  ///< nothing diffuse is seen
+LUCERNA_CONST uint k_lookup_too_steep = 1u;  ///< no record can serve so steep a normal map (k_surface_bent)
+LUCERNA_CONST uint k_lookup_possible = 2u;
 /// What the camera sees in a pixel.
 struct InspectHeader {
   uint solid;  ///< 0: nothing, and then nothing else here holds
-  uint asks;   ///< k_asks_*
+  uint lookup;   ///< k_asks_*
   uint count;  ///< records that serve there; the first k_inspect_most of them are listed
   uint gathers;  ///< not 0: none does, and those that are there say that paths gather (k_record_crowded)
   uint under;  ///< of the records whose discs are drawn there the one whose centre is nearest; k_no_record:

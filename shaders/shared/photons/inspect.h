@@ -15,7 +15,7 @@ struct PhotonDensityPush {
 LUCERNA_CONST uint k_density_of_photons = 1u;     ///< [1/m^2]
 LUCERNA_CONST uint k_density_of_irradiance = 2u;  ///< luminance [W/m^2, of the scene's unit]
 LUCERNA_CONST uint k_density_of_importance = 3u;  ///< of lookups of the pilot, up to a factor
-LUCERNA_CONST uint k_density_of_worth = 4u;       ///< share of the samples in which photons bring caustics
+LUCERNA_CONST uint k_density_of_caustics = 4u;       ///< share of the samples in which photons bring caustics
 LUCERNA_CONST uint k_photons_in_disc = 5u;        ///< their number
 LUCERNA_CONST float k_density_none = -1.0f;       ///< nothing is seen there
 LUCERNA_CONST float k_density_normals = 0.7f;     ///< least cosine to the normal that is seen, which may be of a normal map
@@ -52,7 +52,7 @@ struct PhotonInspectHeader {
 };
 struct PhotonInspected {
   vec3 position;
-  float brings;     ///< of the irradiance's luminance
+  float contribution;     ///< of the irradiance's luminance
   vec3 direction;   ///< whence it comes
   uint bits;        ///< Photon::bits
   vec3 flux;

@@ -66,8 +66,8 @@ struct PhotonFrame {
   uint importance_counts;  ///< 0: all photons are stored
   uint lookups;            ///< entries of PhotonLookups, one a pixel, in which caustics' lookups are noted; 0: none is
   uint vertices;           ///< behind those, so many a pixel: where its path goes on from the first diffuse vertex
-  uint tells_radiance;     ///< 1: stored photons tell what paths from the eye would bring (PhotonRadiances)
-  uint tells_surface;      ///< 1: stored photons tell where on which triangle they lie (PhotonSurfaces)
+  uint stores_radiance;     ///< 1: stored photons tell what paths from the eye would bring (PhotonRadiances)
+  uint stores_surface;      ///< 1: stored photons tell where on which triangle they lie (PhotonSurfaces)
   uint unreachable_parts;  ///< bit p: of part p only photons with k_photon_unreachable are stored; k_photon_ends_reachable
   uint skips_unreachable;  ///< 1: photons with k_photon_unreachable are not stored
   /// By state of the eye path. Bits 4p to 4p+3: the component to which part p contributes. Bit 16+p: of part p only photons
@@ -89,7 +89,7 @@ LUCERNA_INLINE float photon_radius_of(float wanted, float most, vec3 x) {
 }
 LUCERNA_CONST uint k_photon_caustic_part = 3u;  ///< paths::k_caustic_part
 
-struct PhotonWorthPush {
+struct PhotonContributionPush {
   uint count;      ///< photons
   uint step;
   uint first;      ///< of them in the map
@@ -110,11 +110,11 @@ LUCERNA_CONST uint k_photon_most_importance = 4096u;     ///< of one lookup
 LUCERNA_CONST float k_photon_unseen_share = 0.25f;
 
 /// Of a photon of a pilot: what it brings to the picture, and where it comes from.
-struct PhotonWorth {
+struct PhotonContribution {
   uint stratum;      ///< of its path's emission
   uint light;        ///< ... entry of emission_alias
   uint id;           ///< k_photon_id_events
-  float worth;       ///< what it brings to the picture, up to a factor; 0: light straight from a lamp
+  float contribution;       ///< what it brings to the picture, up to a factor; 0: light straight from a lamp
   vec3 position;     ///< [m]
   float importance;  ///< how much of the picture hangs on lookups around it, an area, up to a factor
   // Of caustics, where radiance is told:

@@ -86,9 +86,9 @@ void main() {
 #if TEST_SUBJECT == 0
   Bsdf bsdf = make_bsdf(parameters(m), push.wo.z);
   BsdfSample s = bsdf_sample(bsdf, push.wo, u.xy, u.zw);
-  float p_straight = bsdf_straight_probability(bsdf, push.wo.z);
-  if (uniform_number(i, 4u) < p_straight)
-    s = BsdfSample(-push.wo, bsdf_straight(bsdf, push.wo.z) / p_straight, 0.0, k_event_null, 1.0, true);
+  float p_undeflected = bsdf_undeflected_probability(bsdf, push.wo.z);
+  if (uniform_number(i, 4u) < p_undeflected)
+    s = BsdfSample(-push.wo, bsdf_undeflected(bsdf, push.wo.z) / p_undeflected, 0.0, k_event_null, 1.0, true);
   d.wi = s.wi;
   d.pdf = s.pdf;
   d.weight = s.weight;

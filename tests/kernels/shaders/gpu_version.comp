@@ -4,7 +4,7 @@ layout(local_size_x = 1) in;
 buffer Target { float target[]; };
 void main() {
   target[0] = 1.0;
-#ifdef SPOIL
+#ifdef BREAK
   target[1] = mistake;
 #endif
 }

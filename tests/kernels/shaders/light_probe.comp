@@ -63,7 +63,7 @@ void main() {
   a.value = vec3(0.0);
   vec4 q = questions[i];
 #if TEST_ASK == 1
-#if LUCERNA_SKY_APART
+#if LUCERNA_SEPARATE_SKY
   // Of the sky, or of the sun.
   Environment e = environment_radiance(q.xyz);
   a.value = q.w > 0.0 ? e.sun : e.sky;

@@ -24,8 +24,8 @@ inline const solvers::SolverInfo& ambient_info() {
                               "Ambient light: its radiance, from every direction.", "Radiance"),
                   without_restart(boolean_option("overlay.ambient", "false",
                                                  "Shows a point in the middle of the picture."))},
-      .changes = {{scene::Change::camera, k_spoils_nothing, "it is the same everywhere"},
-                  {"film.", k_spoils_nothing, "how it is shown"}},
+      .changes = {{scene::Change::camera, k_invalidates_nothing, "it is the same everywhere"},
+                  {"film.", k_invalidates_nothing, "how it is shown"}},
       .views = {{.option = "overlay.ambient", .label = "Middle"}},
   };
   return info;
@@ -64,7 +64,9 @@ class AmbientSolver final : public solvers::Solver {
   bool serves(const solvers::Task& task) const override {
     return ambient_routing(task).lookups.component == routes_.component;
   }
-  void begin(const solvers::Picture&, solvers::Spoils spoils) override { begun_ += spoils.any(); }
+  void begin(const solvers::Picture&, solvers::Invalidation invalidated) override {
+    begun_ += invalidated.any();
+  }
   void draw(const overlay::Canvas& canvas, const solvers::Picture& picture) override {
     if (!picture.task.settings.boolean("overlay.ambient")) return;
     const vec3 middle = picture.camera.to_world * vec4(0, 0, -0.01f, 1);

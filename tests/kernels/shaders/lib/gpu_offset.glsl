@@ -2,7 +2,7 @@
 #ifndef GPU_OFFSET_GLSL
 #define GPU_OFFSET_GLSL
 const float k_offset = OFFSET;
-#ifdef SPOIL_THE_INCLUDE
-const float k_spoilt = no_such_name;
+#ifdef BREAK_THE_INCLUDE
+const float k_broken = no_such_name;
 #endif
 #endif

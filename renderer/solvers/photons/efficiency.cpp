@@ -1,4 +1,4 @@
-#include "solvers/photons/worth.h"
+#include "solvers/photons/efficiency.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,8 +26,8 @@ double radius_at(const PhotonFrame& f, const vec3& x) {
 /// Photons by cubes, at least as wide as the radius within which they are looked for.
 class Cubes {
  public:
-  Cubes(std::span<const PhotonWorth> photons, double width) : width_(width) {
-    for (const PhotonWorth& p : photons)
+  Cubes(std::span<const PhotonContribution> photons, double width) : width_(width) {
+    for (const PhotonContribution& p : photons)
       if (p.flux > 0) cubes_[key(cube_of(p.position))].push_back(&p);
   }
   template <class F>
@@ -37,7 +37,7 @@ class Cubes {
       for (int dy = -1; dy <= 1; ++dy)
         for (int dx = -1; dx <= 1; ++dx)
           if (const auto found = cubes_.find(key(at + glm::ivec3(dx, dy, dz))); found != cubes_.end())
-            for (const PhotonWorth* p : found->second) f(*p);
+            for (const PhotonContribution* p : found->second) f(*p);
   }
 
  private:
@@ -48,12 +48,12 @@ class Cubes {
            (uint64_t(uint32_t(c.z)) & k_mask);
   }
   double width_;
-  std::unordered_map<uint64_t, std::vector<const PhotonWorth*>> cubes_;
+  std::unordered_map<uint64_t, std::vector<const PhotonContribution*>> cubes_;
 };
 
 }  // namespace
 
-std::vector<Moments> caustic_moments(const WorthPilot& pilot) {
+std::vector<Moments> caustic_moments(const EfficiencyPilot& pilot) {
   std::vector<Moments> all(pilot.lookups.size());
   std::map<int, Cubes> levels;  // by the power of two that is as wide as a radius
   for (size_t i = 0; i < all.size(); ++i) {
@@ -65,7 +65,7 @@ std::vector<Moments> caustic_moments(const WorthPilot& pilot) {
     Moments& m = all[i];
     const int level = std::ilogb(around) + 1;
     const auto cubes = levels.try_emplace(level, pilot.photons, std::ldexp(1.0, level)).first;
-    cubes->second.near(l.position, [&](const PhotonWorth& p) {
+    cubes->second.near(l.position, [&](const PhotonContribution& p) {
       if (p.unreachable != 0) return;  // photons compute it either way
       const glm::dvec3 away = glm::dvec3(p.position) - glm::dvec3(l.position);
       if (glm::dot(away, away) >= around * around) return;
@@ -89,7 +89,7 @@ std::vector<Moments> caustic_moments(const WorthPilot& pilot) {
 }
 
 Regions choose_regions(std::span<const Moments> moments, uint32_t width, uint32_t height,
-                       const WorthCosts& costs) {
+                       const EfficiencyCosts& costs) {
   Regions out;
   out.width = (width + k_region - 1) / k_region, out.height = (height + k_region - 1) / k_region;
   const auto w = int(out.width), h = int(out.height);
@@ -133,23 +133,23 @@ Regions choose_regions(std::span<const Moments> moments, uint32_t width, uint32_
     double noise = 0, cost = 0;
     double product() const { return noise * cost; }
   };
-  const auto whole = [&](const std::vector<bool>& left) {
+  const auto whole = [&](const std::vector<bool>& delegated) {
     Whole sum;
     bool any = false;
     for (size_t i = 0; i < all.size(); ++i) {
-      sum.noise += all[i].weight * (left[i] ? all[i].paths : all[i].photons);
-      sum.cost += base + (left[i] ? onward : looked);
-      any = any || !left[i];
+      sum.noise += all[i].weight * (delegated[i] ? all[i].paths : all[i].photons);
+      sum.cost += base + (delegated[i] ? onward : looked);
+      any = any || !delegated[i];
     }
     if (any) sum.cost += costs.paths * regions;
     return sum;
   };
   const Whole photons = whole(std::vector<bool>(all.size(), false));
-  out.left.assign(all.size(), 0.0f);
+  out.delegated.assign(all.size(), 0.0f);
   // Few photons come where little light does, and are noise there; what is so rare that the pilot has missed
   // it would be as rare in passes. So paths have these regions, which find all of this light (Moments).
-  std::vector<bool> left(all.size());
-  for (size_t i = 0; i < all.size(); ++i) left[i] = all[i].found < k_least_found;
+  std::vector<bool> delegated(all.size());
+  for (size_t i = 0; i < all.size(); ++i) delegated[i] = all[i].found < k_least_found;
   // Photons reach a region further than they must: their way is the one without outliers.
   const auto spread = [&](const std::vector<bool>& of) {
     std::vector<bool> result(of);
@@ -158,9 +158,9 @@ Regions choose_regions(std::span<const Moments> moments, uint32_t width, uint32_
         if (!of[at(x, y)]) around(x, y, [&](size_t k) { result[k] = false; });
     return result;
   };
-  std::vector<bool> best = spread(left);
+  std::vector<bool> best = spread(delegated);
   // Where the whole is best, each region has the way that adds less to noise and cost, relatively.
-  Whole now = whole(left);
+  Whole now = whole(delegated);
   for (uint32_t step = 0; step < k_most_steps; ++step) {
     std::vector<bool> better(all.size());
     for (size_t i = 0; i < all.size(); ++i) {
@@ -169,15 +169,15 @@ Regions choose_regions(std::span<const Moments> moments, uint32_t width, uint32_
                                                  r.weight * r.photons / now.noise + looked / now.cost;
     }
     const Whole then = whole(better);
-    if (better == left || !(then.product() < now.product())) break;
-    left = better, now = then;
+    if (better == delegated || !(then.product() < now.product())) break;
+    delegated = better, now = then;
   }
-  const std::vector<bool> none(all.size(), true), mixed_left = spread(left);
-  const Whole mixed = whole(mixed_left), paths = whole(none);
+  const std::vector<bool> none(all.size(), true), mixed_delegated = spread(delegated);
+  const Whole mixed = whole(mixed_delegated), paths = whole(none);
   double least = whole(best).product();
-  if (mixed.product() < least) best = mixed_left, least = mixed.product();
+  if (mixed.product() < least) best = mixed_delegated, least = mixed.product();
   if (found >= k_least_found_in_all && paths.product() < least) best = none, least = paths.product();
-  for (size_t i = 0; i < out.left.size(); ++i) out.left[i] = best[i] ? 1 : 0;
+  for (size_t i = 0; i < out.delegated.size(); ++i) out.delegated[i] = best[i] ? 1 : 0;
   const auto by_photons = std::count(best.begin(), best.end(), false);
   out.by_photons = double(by_photons) / regions;
   out.nowhere = by_photons == 0;

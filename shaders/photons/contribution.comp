@@ -7,11 +7,11 @@
 #include "photons/importance.glsl"
 
 layout(local_size_x = 64) in;
-layout(push_constant, scalar) uniform Push { PhotonWorthPush push; };
+layout(push_constant, scalar) uniform Push { PhotonContributionPush push; };
 uniform samplerBuffer photon_texels;
 uniform usamplerBuffer photon_sorted;  // SortEntry64: its lower word is the photon's number
 layout(scalar) readonly buffer PhotonRadiances { float photon_radiances[]; };
-layout(scalar) writeonly buffer PhotonWorths { PhotonWorth photon_worths[]; };
+layout(scalar) writeonly buffer PhotonContributions { PhotonContribution photon_contributions[]; };
 
 void main() {
   uint to = global_index(), i = push.first + to;
@@ -29,11 +29,11 @@ void main() {
   light = e.light;
   own = stratum == 0u ? e.unaimed : 1.0;
 #endif
-  float worth = part > 0u ? own * luminance(b.rgb) * importance : 0.0;
-  bool told = photons.tells_radiance != 0u && part == k_photon_caustic_part;
+  float contribution = part > 0u ? own * luminance(b.rgb) * importance : 0.0;
+  bool stored = photons.stores_radiance != 0u && part == k_photon_caustic_part;
   vec3 front = facet_unpack(floatBitsToUint(b.w) & k_photon_facet);
   bool lit_front = dot(photon_direction(floatBitsToUint(a.w)), front) > 0.0;
-  photon_worths[to] = PhotonWorth(stratum, light, id, worth, a.xyz, importance, told ? luminance(b.rgb) : 0.0,
-                                  told ? photon_radiances[entry.z] : 0.0, facet_pack(lit_front ? front : -front),
+  photon_contributions[to] = PhotonContribution(stratum, light, id, contribution, a.xyz, importance, stored ? luminance(b.rgb) : 0.0,
+                                  stored ? photon_radiances[entry.z] : 0.0, facet_pack(lit_front ? front : -front),
                                   (floatBitsToUint(b.w) & k_photon_unreachable) != 0u ? 1u : 0u);
 }

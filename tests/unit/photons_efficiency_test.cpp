@@ -5,20 +5,20 @@
 #include <random>
 
 #include "base/math.h"
-#include "solvers/photons/worth.h"
+#include "solvers/photons/efficiency.h"
 
 using namespace lucerna;
-using photons::Moments, photons::Regions, photons::WorthCosts, photons::WorthPilot;
+using photons::Moments, photons::Regions, photons::EfficiencyCosts, photons::EfficiencyPilot;
 
 namespace {
 
 /// Photons of equal flux, evenly distributed over a square of the plane y = 0 with side 2 around the origin,
 /// arriving from above.
-std::vector<shared::PhotonWorth> even(uint32_t n, float flux, float radiance) {
+std::vector<shared::PhotonContribution> even(uint32_t n, float flux, float radiance) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> unit(-1, 1);
-  std::vector<shared::PhotonWorth> all(n);
-  for (shared::PhotonWorth& p : all) {
+  std::vector<shared::PhotonContribution> all(n);
+  for (shared::PhotonContribution& p : all) {
     p.position = {unit(random), 0, unit(random)};
     p.flux = flux, p.radiance = radiance;
     p.facet = shared::facet_pack(vec3(0, 1, 0));
@@ -26,14 +26,14 @@ std::vector<shared::PhotonWorth> even(uint32_t n, float flux, float radiance) {
   return all;
 }
 
-WorthPilot pilot_of(const std::vector<shared::PhotonWorth>& photons,
-                    const std::vector<shared::PhotonLookup>& lookups, std::span<const double> gain) {
-  WorthPilot pilot{.lookups = lookups,
-                   .width = uint32_t(lookups.size()),
-                   .height = 1,
-                   .photons = photons,
-                   .gain = gain,
-                   .paths = 1};
+EfficiencyPilot pilot_of(const std::vector<shared::PhotonContribution>& photons,
+                         const std::vector<shared::PhotonLookup>& lookups, std::span<const double> gain) {
+  EfficiencyPilot pilot{.lookups = lookups,
+                        .width = uint32_t(lookups.size()),
+                        .height = 1,
+                        .photons = photons,
+                        .gain = gain,
+                        .paths = 1};
   for (shared::PhotonFrame* f : {&pilot.around, &pilot.round}) f->most = 1;
   pilot.around.base = 0.5f, pilot.round.base = 0.1f;
   return pilot;
@@ -46,17 +46,17 @@ std::vector<Moments> halves(const Moments& left, const Moments& right) {
   for (uint32_t i = 0; i < k_side * k_side; ++i) all.push_back(i % k_side < k_side / 2 ? left : right);
   return all;
 }
-Regions choose(const std::vector<Moments>& moments, const WorthCosts& costs) {
+Regions choose(const std::vector<Moments>& moments, const EfficiencyCosts& costs) {
   return photons::choose_regions(moments, k_side, k_side, costs);
 }
-constexpr WorthCosts k_costs{.base = 2, .lookup = 0.5, .onward = 1.5, .paths = 2};
+constexpr EfficiencyCosts k_costs{.base = 2, .lookup = 0.5, .onward = 1.5, .paths = 2};
 
 }  // namespace
 
 TEST_CASE("light paths estimate the moments of photons and of camera paths", "[photons_worth]") {
   const float albedo = 0.6f, flux = 2e-5f, radiance = 40;
   const uint32_t n = 200000;
-  const std::vector<shared::PhotonWorth> all = even(n, flux, radiance);
+  const std::vector<shared::PhotonContribution> all = even(n, flux, radiance);
   const shared::PhotonLookup here{vec3(0), albedo, shared::facet_pack(vec3(0, 1, 0))};
   const std::vector<shared::PhotonLookup> lookups{here};
   const std::vector<double> as_before(n, 1), twice(n, 2);
@@ -74,7 +74,7 @@ TEST_CASE("light paths estimate the moments of photons and of camera paths", "[p
   CHECK(m.paths == Approx(value * value * p * (1 - p)).epsilon(0.03));
 
   // Twice as many paths of half the flux: half the variance. The same if each path is twice as likely.
-  WorthPilot more = pilot_of(all, lookups, as_before);
+  EfficiencyPilot more = pilot_of(all, lookups, as_before);
   more.paths = 2;
   CHECK(photons::caustic_moments(more)[0].photons == Approx(m.photons / 2));
   CHECK(photons::caustic_moments(pilot_of(all, lookups, twice))[0].photons == Approx(m.photons / 2));
@@ -82,7 +82,7 @@ TEST_CASE("light paths estimate the moments of photons and of camera paths", "[p
 }
 
 TEST_CASE("photons on the other side, or on no surface, do not contribute", "[photons_worth]") {
-  const std::vector<shared::PhotonWorth> all = even(10000, 1, 1);
+  const std::vector<shared::PhotonContribution> all = even(10000, 1, 1);
   const uint32_t up = shared::facet_pack(vec3(0, 1, 0)), down = shared::facet_pack(vec3(0, -1, 0)),
                  across = shared::facet_pack(vec3(1, 0, 0));
   const std::vector<shared::PhotonLookup> lookups{{vec3(0), 1, down},
@@ -115,7 +115,7 @@ TEST_CASE("each region gets the method that makes the whole most efficient", "[p
     CHECK(r.gain > 1);
     // The left half; regions with a neighbour in it, which are judged together; and one region further.
     for (uint32_t y = 0; y < r.height; ++y)
-      for (uint32_t x = 0; x < r.width; ++x) CHECK(r.left[y * r.width + x] == (x < 6 ? 0 : 1));
+      for (uint32_t x = 0; x < r.width; ++x) CHECK(r.delegated[y * r.width + x] == (x < 6 ? 0 : 1));
     CHECK(r.by_photons == Approx(6.0 / 8));
   }
   SECTION("paths where the pilot found little or no light") {
@@ -125,13 +125,14 @@ TEST_CASE("each region gets the method that makes the whole most efficient", "[p
       const Regions half = choose(halves(hard, few), k_costs);
       CHECK((!half.nowhere && !half.scarce));
       for (uint32_t y = 0; y < half.height; ++y)
-        for (uint32_t x = 0; x < half.width; ++x) CHECK(half.left[y * half.width + x] == (x < 6 ? 0 : 1));
+        for (uint32_t x = 0; x < half.width; ++x)
+          CHECK(half.delegated[y * half.width + x] == (x < 6 ? 0 : 1));
     }
     CHECK_FALSE(choose(halves(soft, soft), k_costs).scarce);
   }
   SECTION("light that no camera path hits") {
     const Moments unmet{1, 0.1, double(shared::k_radiance_unmet), 50};
-    CHECK(choose(halves(unmet, soft), k_costs).left[0] == 0);
+    CHECK(choose(halves(unmet, soft), k_costs).delegated[0] == 0);
     CHECK(choose(halves(unmet, unmet), k_costs).by_photons == 1);
   }
   SECTION("what is sent and looked up for other light costs caustics nothing") {

@@ -75,7 +75,7 @@ TEST_CASE("each part of the picture uses the more efficient method, with the sam
   CHECK(both.by_photons < 0.9);
   CHECK(both.regions.gain > 1);
   // Compared with many photons everywhere: blurred by less than 1 %.
-  const Rendered photons = render(scene, with(k_by_photons, {{"photons.worth", "false"}}), 256);
+  const Rendered photons = render(scene, with(k_by_photons, {{"photons.efficiency", "false"}}), 256);
   CHECK(photons.by_photons == 1);
   for (const auto& [first, end] : {std::pair{2u, 10u}, {10u, 22u}, {22u, 30u}}) {
     const test::MeanOf a = test::mean_of(both.image, 3, first, 0, end, k_size),
@@ -86,7 +86,8 @@ TEST_CASE("each part of the picture uses the more efficient method, with the sam
     }
   }
   // The wide lamp's light has less noise than with this number of photons; the small lamp's has the same.
-  const Rendered few = render(scene, with(with(k_by_photons, k_few), {{"photons.worth", "false"}}), 2048);
+  const Rendered few =
+      render(scene, with(with(k_by_photons, k_few), {{"photons.efficiency", "false"}}), 2048);
   const auto noise = [](const film::Image& image, uint32_t first, uint32_t end) {
     double sum = 0;
     for (uint32_t y = 4; y < k_size - 4; ++y)
@@ -104,11 +105,11 @@ TEST_CASE("where photons are nowhere more efficient none are traced, and the pic
           "[photons_worth]") {
   scene::Scene scene = two_lamps();
   scene.materials[3].emission = vec3(0);  // the wide lamp alone
-  const Rendered left = render(scene, with(k_by_photons, k_few), 8), path = render(scene, k_caustics, 8);
-  CHECK(left.regions.nowhere);
-  CHECK(left.by_photons == 0);
-  CHECK(test::identical(left.image, path.image));
-  CHECK(test::mean(left.image.components[3]) > 0);
+  const Rendered delegated = render(scene, with(k_by_photons, k_few), 8), path = render(scene, k_caustics, 8);
+  CHECK(delegated.regions.nowhere);
+  CHECK(delegated.by_photons == 0);
+  CHECK(test::identical(delegated.image, path.image));
+  CHECK(test::mean(delegated.image.components[3]) > 0);
 }
 
 TEST_CASE("regions are shown, and depend on scene, view and settings only", "[photons_worth]") {
@@ -130,9 +131,9 @@ TEST_CASE("regions are shown, and depend on scene, view and settings only", "[ph
   CHECK(at(26) == 1);
   CHECK(at(5) == 0);
   // In between: photons everywhere, another size, and paths in flight.
-  test::set(r, {{"photons.worth", "false"}});
+  test::set(r, {{"photons.efficiency", "false"}});
   CHECK_FALSE(test::identical(once, test::finish(r)));
-  test::set(r, {{"photons.worth", "true"}});
+  test::set(r, {{"photons.efficiency", "true"}});
   r.set_size(20, 24);
   test::finish(r);
   r.set_size(k_size, k_size);
@@ -164,7 +165,8 @@ TEST_CASE("the pilot's noise estimates are correct for both methods", "[photons_
     const scene::Scene scene = two_lamps(roughness);
     const Rendered reported = render(scene, photons, 1);
     const film::Image path = render(scene, k_caustics, k_samples).image,
-                      counted = render(scene, with(photons, {{"photons.worth", "false"}}), k_samples).image;
+                      counted =
+                          render(scene, with(photons, {{"photons.efficiency", "false"}}), k_samples).image;
     for (const uint32_t x : {4u, 22u}) {
       photons::Region mean;
       double n = 0;

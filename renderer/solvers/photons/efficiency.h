@@ -24,7 +24,7 @@ inline constexpr double k_cost_base = 2, k_cost_tail = 3, k_cost_onward = 0.4, k
 inline constexpr uint32_t k_typical_round = 16;
 
 /// In those units.
-struct WorthCosts {
+struct EfficiencyCosts {
   double base = 0;    ///< a pixel's sample, whatever brings its caustics
   double lookup = 0;  ///< of photons, beside that; spared where paths bring caustics
   double onward = 0;  ///< following a path on for caustics alone; 0: it goes on anyway
@@ -32,10 +32,10 @@ struct WorthCosts {
 };
 
 /// What is known of the pilot and of the rounds to come.
-struct WorthPilot {
+struct EfficiencyPilot {
   std::span<const shared::PhotonLookup> lookups;  ///< a pixel each, row by row; carried 0: none
   uint32_t width = 0, height = 0;                 ///< of that picture
-  std::span<const shared::PhotonWorth> photons;
+  std::span<const shared::PhotonContribution> photons;
   std::span<const double> gain;  ///< a photon each: how likely its path is in a round, over in the pilot
   double paths = 0;              ///< paths of a round over those of the pilot
   shared::PhotonFrame around{};  ///< within whose radii photons are counted here ...
@@ -48,7 +48,7 @@ struct Moments {
   uint32_t found = 0;  ///< photons of the pilot that tell of it
 };
 /// One a lookup, 0 where there is none.
-std::vector<Moments> caustic_moments(const WorthPilot& pilot);
+std::vector<Moments> caustic_moments(const EfficiencyPilot& pilot);
 
 /// What is known of a region and its neighbours: means over their pixels.
 struct Region {
@@ -60,15 +60,15 @@ struct Region {
 struct Regions {
   uint32_t width = 0, height = 0;
   std::vector<Region> all;
-  std::vector<float> left;  ///< share of samples in which paths bring caustics: 0 or 1, row by row
-  bool nowhere = false;     ///< photons: all are left
-  bool scarce = false;      ///< the pilot has found too few photons to say anything
-  double by_photons = 1;    ///< share of the picture
-  double gain = 1;          ///< of efficiency, over photons everywhere; as the pilot sees it
+  std::vector<float> delegated;  ///< share of samples in which paths bring caustics: 0 or 1, row by row
+  bool nowhere = false;          ///< photons: all are left
+  bool scarce = false;           ///< the pilot has found too few photons to say anything
+  double by_photons = 1;         ///< share of the picture
+  double gain = 1;               ///< of efficiency, over photons everywhere; as the pilot sees it
 };
 /// `moments`: of a picture of width x height pixels. Regions are of 2x2 of these, each judged with its eight
 /// neighbours; where a lookup has found few photons, paths have it. `moments` are of light that paths find.
 Regions choose_regions(std::span<const Moments> moments, uint32_t width, uint32_t height,
-                       const WorthCosts& costs);
+                       const EfficiencyCosts& costs);
 
 }  // namespace lucerna::photons
