@@ -88,7 +88,7 @@ struct BenchLatencyArguments {
   std::vector<std::string> solvers, edits;  ///< empty: all
   std::string size = "960x540", references = "latency-references", pictures, device;
   uint32_t reference_samples = 64, repeats = 1;
-  uint64_t seed = 0;  ///< of the edits' amounts
+  uint64_t seed = 0;  ///< seed of the edits' amounts
   std::string reference_solver = "path";
   double seconds = 10, settle = 120;
   std::vector<std::string> set;

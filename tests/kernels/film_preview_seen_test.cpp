@@ -103,9 +103,9 @@ TEST_CASE("the error that a preview reports is close to its true error") {
   }
 }
 
-TEST_CASE("samples that a preview has not used correct the error that it reports") {
-  // The light of the left half has doubled, which the preview is not given to know: what was there before
-  // stays, until samples say otherwise.
+TEST_CASE("the error that a preview reports is corrected by samples that the preview has not used") {
+  // The light of the left half has doubled, which the preview does not know: the previous picture stays until
+  // samples contradict it.
   Stage stage(160, 96);
   std::mt19937 random(11);
   std::exponential_distribution<float> noise(1);

@@ -114,8 +114,8 @@ TEST_CASE("of several runs the median of each figure is reported; unreached targ
   CHECK(median_of(std::vector{a, c}).rise == 0.3);
 }
 
-TEST_CASE("the error of tiles: their median, and what a tenth of them exceed") {
-  // Nine tiles in ten are off by a tenth or less, the others by more.
+TEST_CASE("the error of tiles: their median, and the value that a tenth of them exceed") {
+  // Nine tiles in ten have an error of a tenth or less, the others more.
   constexpr uint32_t k_width = 160, k_height = 32;
   std::vector<float> reference(k_width * k_height, 0.5f), shown = reference;
   for (size_t i = 0; i < shown.size(); ++i) {
@@ -141,7 +141,7 @@ TEST_CASE("reported errors are compared with the true ones of the same pictures"
   CHECK(e.ratio[2] == Approx(3));
 }
 
-TEST_CASE("an edit is taken back to the values before it; seeds draw other amounts") {
+TEST_CASE("an edit is undone to the previous values, and seeds give other amounts") {
   scene::Scene s;
   scene::Light lamp;
   lamp.intensity = vec3(3);

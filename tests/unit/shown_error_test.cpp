@@ -1,5 +1,5 @@
 // links: film
-// How wrong the shown picture is: tiles' expected errors and what samples measure of them.
+// The error of the displayed picture: expected errors of tiles, corrected by measurements of samples.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -15,9 +15,8 @@ namespace {
 
 constexpr uint32_t k_across = 40, k_down = 30;
 
-/// Tiles that expect an error of 0.1 each, where the true error is factor(x, y) times that, and that of the
-/// tile's mean smaller by the square root of 2. Samples measure that mean with a standard deviation of
-/// `noise`.
+/// Tiles with an expected error of 0.1 each, a true error of factor(x, y) times that, and a smaller error of
+/// the tile's mean by the square root of 2. Samples measure that mean with a standard deviation of `noise`.
 template <class Factor>
 std::vector<PreviewTile> tiles(const Factor& factor, float noise, std::mt19937& random) {
   std::vector<PreviewTile> all;
@@ -32,7 +31,7 @@ std::vector<PreviewTile> tiles(const Factor& factor, float noise, std::mt19937& 
 
 }  // namespace
 
-TEST_CASE("without measurements a picture has the errors that it expects; there are none of no tiles") {
+TEST_CASE("without measurements a picture has its expected errors; without tiles it has none") {
   std::mt19937 random(1);
   ShownJudge judge;
   const ShownError e =
@@ -44,7 +43,7 @@ TEST_CASE("without measurements a picture has the errors that it expects; there 
   CHECK(judge.ratio() == Approx(1));
 }
 
-TEST_CASE("measurements of more noise than signal correct the whole picture's error") {
+TEST_CASE("measurements with more noise than signal correct the whole picture's error") {
   std::mt19937 random(2);
   ShownJudge judge;
   ShownError e;
@@ -56,7 +55,7 @@ TEST_CASE("measurements of more noise than signal correct the whole picture's er
   CHECK(e.worst_tenth < 1.6 * expected);
 }
 
-TEST_CASE("a region that is wrong is found, and the rest keeps its small error") {
+TEST_CASE("a region with a larger error is found, and the rest keeps its small error") {
   std::mt19937 random(3);
   ShownJudge judge;
   const auto factor = [](uint32_t x, uint32_t) { return x < 8 ? 5.0f : 0.7f; };
@@ -77,7 +76,7 @@ TEST_CASE("the next picture does not inherit measurements of tiles") {
   CHECK(e.median == Approx(e.worst_tenth));
 }
 
-TEST_CASE("tiles without a measurement, and squares below 0, leave a sane error") {
+TEST_CASE("tiles without a measurement, and squares below 0, give a finite error") {
   ShownJudge judge;
   std::vector<PreviewTile> all(k_across * k_down, {0.1f, 0.01f, 0, -1});
   CHECK(judge.judge(all, k_across, true).median > 0);
