@@ -112,7 +112,7 @@ TEST_CASE("reciprocity: f is the same in both directions, over n^2 of the side t
     }
   }
   Probe probe(materials);
-  const auto a = probe.ask(there), b = probe.ask(back);
+  const auto a = probe.evaluate(there), b = probe.evaluate(back);
   size_t bad = 0, improper = 0, bright[2] = {0, 0};
   std::string worst;
   for (size_t i = 0; i < a.size(); ++i) {
@@ -233,7 +233,7 @@ TEST_CASE("a black surface without specular absorbs everything") {
   const vec3 wo = direction(0.5, 1);
   size_t bad = 0;
   for (const Draw& d : probe.draw(0, wo, 4096, 1)) bad += d.weight != vec3(0);
-  for (const Value& v : probe.ask({{0, wo, direction(0.3, 2)}, {0, wo, direction(-0.3, 2)}}))
+  for (const Value& v : probe.evaluate({{0, wo, direction(0.3, 2)}, {0, wo, direction(-0.3, 2)}}))
     bad += v.diffuse != vec3(0) || v.glossy != vec3(0);
   CHECK(bad == 0);
 }

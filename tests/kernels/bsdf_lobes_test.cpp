@@ -87,7 +87,7 @@ TEST_CASE("a smaller variant of the shader gives the results of the full one") {
       const auto a = full.draw(0, wo, 4096, 9), b = lean.draw(0, wo, 4096, 9);
       std::vector<Question> questions;
       for (const Draw& d : a) questions.push_back({0, wo, d.wi});
-      const auto va = full.ask(questions), vb = lean.ask(questions);
+      const auto va = full.evaluate(questions), vb = lean.evaluate(questions);
       size_t draws = 0, values = 0;
       const auto differ = [](const vec3& x, const vec3& y) {
         return !(glm::length(x - y) <= 1e-4f * (glm::length(x) + 1e-3f));

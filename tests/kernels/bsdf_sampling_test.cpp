@@ -207,7 +207,7 @@ TEST_CASE("a draw's label, side and density are correct") {
     // The densities again, evaluated in the drawn directions.
     std::vector<Question> questions;
     for (const Draw& d : o.draws) questions.push_back({o.index, o.wo, d.wi});
-    const std::vector<Value> values = probe().ask(questions);
+    const std::vector<Value> values = probe().evaluate(questions);
     size_t bad_length = 0, bad_side = 0, bad_scale = 0, bad_pdf = 0, bad_delta = 0, bad_weight = 0;
     for (size_t i = 0; i < o.draws.size(); ++i) {
       const Draw& d = o.draws[i];

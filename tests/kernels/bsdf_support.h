@@ -77,8 +77,8 @@ class Probe {
     resources_.set("bsdf_table", tables());
   }
 
-  std::vector<Value> ask(const std::vector<Question>& questions) {
-    if (!ask_) ask_ = kernel("0");
+  std::vector<Value> evaluate(const std::vector<Question>& questions) {
+    if (!evaluate_) evaluate_ = kernel("0");
     std::vector<Value> values;
     values.reserve(questions.size());
     for (size_t first = 0; first < questions.size(); first += k_batch) {
@@ -86,7 +86,7 @@ class Probe {
       reserve(questions_, "Questions", n * sizeof(Question));
       reserve(answers_, "Values", n * sizeof(Value));
       questions_.write(std::span(questions).subspan(first, n));
-      run(ask_, {static_cast<uint32_t>(n), 0, 0, vec3(0)});
+      run(evaluate_, {static_cast<uint32_t>(n), 0, 0, vec3(0)});
       values.resize(first + n);
       answers_.read(&values[first], n * sizeof(Value));
     }
@@ -137,7 +137,7 @@ class Probe {
   gpu::Defines defines_;
   gpu::Buffer materials_, questions_, answers_, draws_;
   gpu::Resources resources_;
-  gpu::Kernel ask_, draw_;
+  gpu::Kernel evaluate_, draw_;
   gpu::Stream stream_{device()};
 };
 
@@ -305,7 +305,7 @@ inline std::vector<Sphere> integrate(Probe& probe, const std::vector<View>& view
                                vec3(s * std::cos(p), s * std::sin(p), 1 - h)});
         }
     }
-    const std::vector<Value> values = probe.ask(questions);
+    const std::vector<Value> values = probe.evaluate(questions);
     for (size_t i = 0; i < open.size(); ++i) {
       Sphere::Cell& c = spheres[open[i].view].cells[open[i].cell];
       const double area = (c.h1 - c.h0) * (c.p1 - c.p0);

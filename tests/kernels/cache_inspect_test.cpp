@@ -81,7 +81,7 @@ session::Renderer& bed() {
   return *renderer;
 }
 
-Inspection ask(session::Renderer& r, uint32_t x, uint32_t y) {
+Inspection inspect_pixel(session::Renderer& r, uint32_t x, uint32_t y) {
   r.inspect(vec2((float(x) + 0.5f) / k_size, (float(y) + 0.5f) / k_size));
   r.picture(false);
   return test::cache_report(r)->inspection;
@@ -150,7 +150,7 @@ TEST_CASE("the inspected records of a pixel are those with a weight computed on 
   size_t solid = 0, listed = 0, unders = 0;
   for (uint32_t y = 3; y < k_size; y += 18)
     for (uint32_t x = 4; x < k_size; x += 22) {
-      const Inspection found = ask(r, x, y);
+      const Inspection found = inspect_pixel(r, x, y);
       INFO("pixel " << x << " " << y);
       REQUIRE(found.x == x);
       REQUIRE(found.y == y);
@@ -333,7 +333,7 @@ TEST_CASE("lines lead from the pixel to the records that it reads, and nowhere e
   vec2 here(0), centre(0);
   for (uint32_t y = k_size - 5; y > k_size / 3 && centre == vec2(0); y -= 5)
     for (uint32_t x = 10; x < k_size - 10 && centre == vec2(0); x += 5) {
-      found = ask(r, x, y);
+      found = inspect_pixel(r, x, y);
       here = vec2(float(x), float(y)) + 0.5f;
       if (!found.solid || !found.under) continue;
       for (const auto& s : found.serving) {

@@ -102,13 +102,13 @@ TEST_CASE("no kernel tests a macro before its definition, in any variant") {
 TEST_CASE("macros are tested by #if only, which the check above covers") {
   // #ifdef, #ifndef and defined() test existence, not order. #ifndef may start a file or define a missing
   // value.
-  const std::regex asks("^\\s*#\\s*(ifdef|ifndef)\\s+(\\w+).*$|\\bdefined\\b");
+  const std::regex existence("^\\s*#\\s*(ifdef|ifndef)\\s+(\\w+).*$|\\bdefined\\b");
   for (const fs::path& file : files({".comp", ".glsl", ".h"})) {
     std::istringstream text(text_of(file));
     std::string line, next;
     for (int number = 1; std::getline(text, line); ++number) {
       std::smatch m;
-      if (line[0] != '#' || !std::regex_search(line, m, asks) || m[2] == "__cplusplus") continue;
+      if (line[0] != '#' || !std::regex_search(line, m, existence) || m[2] == "__cplusplus") continue;
       INFO(file.string() << ":" << number << ": " << line);
       REQUIRE(m[1] == "ifndef");
       std::getline(text, next), ++number;

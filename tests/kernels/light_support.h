@@ -60,9 +60,9 @@ class Lights {
   std::vector<Answer> environment(const std::vector<vec3>& directions, bool sun = false) {
     std::vector<vec4> questions;
     for (const vec3& d : directions) questions.emplace_back(d, sun ? 1 : 0);
-    return ask("1", questions);
+    return query("1", questions);
   }
-  std::vector<Answer> triangle_pdf(const std::vector<vec4>& questions) { return ask("2", questions); }
+  std::vector<Answer> triangle_pdf(const std::vector<vec4>& questions) { return query("2", questions); }
   /// Draws entries of a given table.
   std::vector<Answer> choose(const std::vector<vec4>& table, uint32_t count, uint32_t seed) {
     gpu::Buffer buffer(device(), {"table", table.size() * sizeof(vec4), gpu::Memory::device, true});
@@ -84,7 +84,7 @@ class Lights {
     uint32_t count, seed;
     vec3 position;
   };
-  std::vector<Answer> ask(const char* what, const std::vector<vec4>& questions) {
+  std::vector<Answer> query(const char* what, const std::vector<vec4>& questions) {
     questions_ = gpu::Buffer(device(), {"questions", questions.size() * sizeof(vec4)});
     questions_.write(std::span<const vec4>(questions));
     resources_.set("Questions", questions_);

@@ -80,26 +80,26 @@ float segment_left_of(float d) { return 0.5f + (std::asin(d) + d * std::sqrt(1 -
 TEST_CASE("inside a surface the whole disc counts, at its border the share of the closed form") {
   std::vector<Place> places;
   std::vector<vec2> expected;
-  const auto ask_both = [&](const vec3& at, float radius, const vec2& area, const vec3& normal) {
+  const auto expect_both = [&](const vec3& at, float radius, const vec2& area, const vec3& normal) {
     places.push_back({at, radius, normal}), expected.push_back(area);
   };
-  const auto ask = [&](const vec3& at, float radius, float area, const vec3& normal = vec3(0, 1, 0)) {
-    ask_both(at, radius, vec2(area), normal);
+  const auto expect = [&](const vec3& at, float radius, float area, const vec3& normal = vec3(0, 1, 0)) {
+    expect_both(at, radius, vec2(area), normal);
   };
   const vec3 up(0, 1, 0);
   for (const float r : {1e-4f, 0.01f, 0.2f}) {
-    ask({0.1f, 0, 0.3f}, r, 1);
-    ask({0, 0, 0}, r, 1);  // on the diagonal that two triangles share
-    ask({1, 0, 0.1f}, r, 0.5f);
-    ask({-1, 0, 1}, r, 0.25f);
+    expect({0.1f, 0, 0.3f}, r, 1);
+    expect({0, 0, 0}, r, 1);  // on the diagonal that two triangles share
+    expect({1, 0, 0.1f}, r, 0.5f);
+    expect({-1, 0, 1}, r, 0.25f);
     for (const float d : {-0.5f, 0.2f, 0.9f})
-      ask_both({1 - d * r, 0, 0.1f}, r, {left_of(d), segment_left_of(d)}, up);
-    ask_both({0.1f, 0.1f * r, 0.3f}, r, {0.99f * 0.99f, 0.99f}, up);  // above it: (1 - c^2)^2, 1 - c^2
-    ask({0.1f, 0.3f * r, 0.3f}, r, 1.0f / 64);                        // too far above
-    ask({0.1f, 0, 0.3f}, r, 1.0f / 64, {1, 0, 0});                    // another side
-    ask({0.1f, 0, 0.3f}, r, 1, {0, -1, 0});                           // opposite winding
+      expect_both({1 - d * r, 0, 0.1f}, r, {left_of(d), segment_left_of(d)}, up);
+    expect_both({0.1f, 0.1f * r, 0.3f}, r, {0.99f * 0.99f, 0.99f}, up);  // above it: (1 - c^2)^2, 1 - c^2
+    expect({0.1f, 0.3f * r, 0.3f}, r, 1.0f / 64);                        // too far above
+    expect({0.1f, 0, 0.3f}, r, 1.0f / 64, {1, 0, 0});                    // another side
+    expect({0.1f, 0, 0.3f}, r, 1, {0, -1, 0});                           // opposite winding
   }
-  ask_both({0, 0, 0}, 10, {2 / k_pi / 100 * 4, 1.0f / 64}, up);  // smaller than the disc
+  expect_both({0, 0, 0}, 10, {2 / k_pi / 100 * 4, 1.0f / 64}, up);  // smaller than the disc
   const std::vector<vec2> found = areas(floor(), places);
   for (size_t i = 0; i < places.size(); ++i) {
     INFO(places[i].position.x << " " << places[i].position.y << " " << places[i].position.z << ", radius "

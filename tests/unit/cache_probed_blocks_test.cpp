@@ -64,9 +64,9 @@ TEST_CASE("a cancelled pass keeps the estimate of the previous one") {
 TEST_CASE("the estimated share of gaps is unbiased over the turns") {
   // Unknown blocks have random gaps, some many.
   std::mt19937 random(5);
-  std::vector<double> asks(40 * 24);
-  for (double& a : asks) a = random() % 50 == 0 ? double(random() % 30) : 0;
-  const double truth = std::accumulate(asks.begin(), asks.end(), 0.0);
+  std::vector<double> gaps(40 * 24);
+  for (double& a : gaps) a = random() % 50 == 0 ? double(random() % 30) : 0;
+  const double truth = std::accumulate(gaps.begin(), gaps.end(), 0.0);
   ProbedBlocks blocks;
   double sum = 0;
   for (uint32_t turn = 0; turn < 4; ++turn) {
@@ -75,7 +75,7 @@ TEST_CASE("the estimated share of gaps is unbiased over the turns") {
     blocks.end();
     blocks.begin(40, 24, 4 + turn);
     for (uint32_t i = 0; i < blocks.list().size(); ++i)
-      sum += blocks.stands_for(i) * asks[blocks.list()[i]] / 4;
+      sum += blocks.stands_for(i) * gaps[blocks.list()[i]] / 4;
   }
   CHECK(sum == Approx(truth).epsilon(0.02));
 }
