@@ -1,4 +1,4 @@
-"""Shops of the arcade: fronts, what stands in the windows, lettering of glass tubes. Parts are about the middle of a bay's
+"""Shops of the arcade: fronts, goods in the windows, lettering of glass tubes. Parts are about the middle of a bay's
 wall, x along the wall, +z towards the street; lists of (Mesh, material) that `Scene.mesh` takes."""
 import numpy as np
 
@@ -61,7 +61,7 @@ def ring(radius, thick, segments=28, sides=6):
 
 
 def shell(wall, floor_at=0.0):
-    """Walls, floor and ceiling of a shop, closed but towards the street; they reach into the street's wall."""
+    """Walls, floor and ceiling of a shop, closed except towards the street; they overlap the street's wall."""
     w, d, h, t = WIDE, DEEP, HIGH, 0.08
     return [(join([box((-w - t, -0.3, -d - t), (w + t, h + t, -d), "-z"),
                    box((-w - t, -0.3, -d - t), (-w, h + t, -0.10), "-x"),

@@ -149,14 +149,14 @@ def coffer(s):
 
 
 def light_ceiling():
-    """White fabric, lit from behind, stretched over the coffer's ceiling but for a border of oak; the lamp hangs through it."""
+    """White fabric, lit from behind, stretched over the coffer's ceiling except for a border of oak; the lamp hangs through it."""
     a, b, y = COFFER[0] - 0.10, COFFER[1] - 0.10, COFFER_TOP - 0.010
     return quad((-a, y, -b), (a, y, -b), (a, y, b), (-a, y, b))
 
 
 def lamps(s):
     """The twenty spots, each at the mouth of its cylinder: two for the picture, eight for the table, seven for the walls;
-    three, narrow and strong, come in low from the right and throw what shines through carafes and glasses across the table."""
+    three, narrow and strong, come in low from the right and cast the light through carafes and glasses across the table."""
     def lamp(kind, n, x, z, target, candela, inner, outer):
         at = np.array([x, MOUTH - 0.004, z])
         s.spot(f"{kind} lamp {n}", at, np.array(target) - at, WARM, candela, inner, outer)

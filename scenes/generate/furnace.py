@@ -1,4 +1,4 @@
-"""Analytic scenes: what every pixel must show is known, so a test needs no reference picture.
+"""Analytic scenes: the value of every pixel is known, so a test needs no reference picture.
 
 `furnace-open` and `furnace-closed`: everything has albedo 1, everything sees radiance 1, so every pixel is 1.
 `furnace-disk` and `furnace-sphere`: a Lambertian floor under one light whose irradiance has a closed form.

@@ -28,7 +28,7 @@ def schlick(cosine):
 
 
 def closure_curve(cosine, ior=CLOSURE_IOR):
-    """How Blender's Principled closure goes from the colour at normal incidence (0) to white (1)."""
+    """Transition of Blender's Principled closure from the colour at normal incidence (0) to white (1)."""
     cosine = np.clip(cosine, 0, 1)
     t = np.sqrt(1 - (1 - cosine * cosine) / ior ** 2)
     p, q = (ior * cosine - t) / (ior * cosine + t), (cosine - ior * t) / (cosine + ior * t)
@@ -77,7 +77,7 @@ def average(values):
 
 
 def exit_term(cosine):
-    """How Principled's diffuse term at roughness 0 goes with either direction, relative to Lambert."""
+    """Dependence of Principled's diffuse term at roughness 0 on either direction, relative to Lambert."""
     return 1 - 0.5 * schlick(cosine)
 
 
@@ -95,7 +95,7 @@ def fit_positive(columns, wanted):
 
 
 def coat(f0, f90):
-    """What a coat lets through, 1 - E: (ROUGH, MU), for one channel; and weights (ROUGH, 2) of 1 and exit_term
+    """Transmittance of a coat, 1 - E: (ROUGH, MU), for one channel; and weights (ROUGH, 2) of 1 and exit_term
     that sum, as functions of the other direction's cosine, to (1 - E) / (1 - E_avg); and E over the albedo of Blender's
     plain GGX closure of the same colour (ROUGH, MU)."""
     t = lobes()

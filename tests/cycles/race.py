@@ -47,13 +47,13 @@ class Racer:
         self.job, self.name, self.references = job, name, []
 
     def render(self, samples, seeds, settings=()):
-        """Renders a picture a seed; what making the first took [s]."""
+        """Renders a picture per seed; returns the render time of the first [s]."""
         if self.name == "cycles":
             return self.job.cycles(seeds, samples)["render_s"]
         return [self.job.lucerna(seed, samples, settings)["render_s"] for seed in seeds][0]
 
     def run(self, samples, seed):
-        """The error of a picture, and what making it took [s]."""
+        """The error of a picture, and its render time [s]."""
         seconds = self.render(samples, [seed], self.job.a.set)
         return relative_mse(exr.rgb(self.job.path(self.name, samples, seed)), *self.references), seconds
 
@@ -66,7 +66,7 @@ class Racer:
         self.references = [exr.rgb(path) for path in paths.values()]
 
     def samples_for(self, error):
-        """Samples that reach it, with the pilots as (samples, error, seconds)."""
+        """Samples that reach the error, with the pilots as (samples, error, seconds)."""
         samples, pilots = self.job.a.samples, []
         for _ in range(8):
             found, seconds = self.run(samples, 1)
