@@ -441,7 +441,7 @@ void draw_menu_bar(Ui& ui, const Area& area) {
     draw_text(list, {state_left, area.lo.y}, {right, area.hi.y}, elided(states[which], right - state_left),
               colour::text, Align::right);
     const float preview_end = state_left - px(16),
-                preview_begin = preview_end - text_width("88 % from before the edit");
+                preview_begin = preview_end - text_width("100 % from before the edit");
     if (const std::string preview = preview_text(*s); !preview.empty() && preview_begin > menus_end) {
       draw_text(list, {preview_begin, area.lo.y}, {preview_end, area.hi.y}, preview, colour::accent,
                 Align::right);

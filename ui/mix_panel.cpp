@@ -144,21 +144,21 @@ void draw_mix(Ui& ui) {
   const std::vector<vec3> weights = scene::mix_weights(mix, groups);
   const std::string how = ui.setting("relight.enabled");
   const bool keeps = how != "off", by_component = how == "on";
-  const float half = std::floor(0.5f * (ImGui::CalcItemWidth() - px(6)));
-  if (button("##apart", "Track light groups", keeps, half))
+  const float both = ImGui::CalcItemWidth() - px(6), first = std::floor(0.56f * both);
+  if (button("##apart", "Track light groups", keeps, first))
     ui.act("set", "relight.enabled", keeps ? "off" : "auto");
   tooltip(
       "Stores the light of each group separately, so a mix traces no ray. Takes 16 bytes per pixel and "
       "group. A change restarts the picture.");
   ImGui::SameLine(0, px(6));
-  if (button("##components", "By component", by_component, half))
+  if (button("##components", "By component", by_component, both - first))
     ui.act("set", "relight.enabled", by_component ? "auto" : "on");
   tooltip(
       "Stores each group's light by component. Takes 200 bytes per pixel and group, and more time. Without "
       "it the picture of a mix is exact, but its components are estimates. A change restarts the picture.");
   const std::string why = ui.snapshot ? ui.snapshot->lights_together : "";
   if (!why.empty()) {
-    label("A change of the mix restarts the picture", colour::text_faint, nullptr, ImGui::CalcItemWidth());
+    label("A new mix restarts the picture", colour::text_faint, nullptr, ImGui::CalcItemWidth());
     tooltip("Light groups are not tracked: " + why + ".");
   }
   for (size_t g = 0; g < groups.groups.size(); ++g) {
