@@ -139,9 +139,9 @@ TEST_CASE("samples that a preview has not used correct the error that it reports
                                   << first->worst_tenth << ", later " << later.worst_tenth);
   CHECK(off_later > 0.1);
   CHECK(first->worst_tenth < 0.6 * off_first);
-  // What is measured is the picture before.
+  // What is measured is the picture before, over the mean of old and new light.
   CHECK(later.worst_tenth > 0.7 * off_later);
-  CHECK(later.worst_tenth < 1.5 * off_first);
+  CHECK(later.worst_tenth < 2.2 * off_first);
 }
 
 TEST_CASE(
