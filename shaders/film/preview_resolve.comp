@@ -188,7 +188,7 @@ bool isolated(ivec2 at, PreviewSurface here) {
 
 void main() {
   uint pixel = global_index(), lane = gl_LocalInvocationIndex;
-  vec4 shares = vec4(0.0);
+  vec4 totals = vec4(0.0);
   if (pixel < push.width * push.height) {
     vec4 surface = vec4(-1.0, 0.0, 0.0, 0.0);
     PreviewLight own;
@@ -318,24 +318,24 @@ void main() {
       bool nothing = weights <= 1e-5 && here.samples <= 0.0;
       if (nothing) keep = has_old ? 1.0 : 0.0;
       now = mix(now, before, keep);
-      // Where light has changed, the error that is told counts all that samples hold against the old, chance or not.
+      // Where light has changed, the reported error counts all that samples hold against the old, chance or not.
       float doubt = push.same_light != 0u ? change : max(square(difference) - u - v, 0.0);
       float of_before = keep * keep * (u + doubt), left = sqrt(square((1.0 - keep) * error) + of_before);
       result.of[c] = vec4(now, nothing && !has_old ? -1.0 : left);
       if ((push.show >> c & 1u) != 0u) color += now;
       float showing = float(push.show >> c & 1u), shown = luminance(now) * showing;
-      shares.xyz += vec3(shown, keep * shown, amount * (1.0 - keep) * shown);
+      totals.xyz += vec3(shown, keep * shown, amount * (1.0 - keep) * shown);
       // Pixels' own samples are independent; what is filtered, or was there before, errs alike in pixels side by side.
       variance += showing * (square(1.0 - keep) * (square((1.0 - amount) * noise[c]) / 9.0 + square(amount * smooth_error)) + of_before);
       unknown = unknown || (nothing && !has_old);
     }
-    told.xyz = min(told.xyz, vec3(4.0));
-    told.w = unknown ? 1.0 : min(k_mean_deviation * sqrt(variance) / max(luminance(color), k_preview_dark), 1.0);
-    shown_pixels[pixel] = packHalf2x16(vec2(min(luminance(color), 60000.0), told.w));
+    totals.xyz = min(totals.xyz, vec3(4.0));
+    totals.w = unknown ? 1.0 : min(k_mean_deviation * sqrt(variance) / max(luminance(color), k_preview_dark), 1.0);
+    shown_pixels[pixel] = packHalf2x16(vec2(min(luminance(color), 60000.0), totals.w));
     LUCERNA_PREVIEW_STORE(packed, pixel, result)
     picture[pixel] = picture_packed(tone_map(color, push.curve));
   }
-  group_shares[lane] = shares;
+  group_shares[lane] = totals;
   barrier();
   if (lane == 0u) {
     vec4 sum = vec4(0.0);

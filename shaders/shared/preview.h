@@ -107,10 +107,9 @@ struct PreviewJudgePush {
 };
 /// A tile of what is shown. Errors are relative: of means over a few pixels, over their luminance or k_preview_dark.
 struct PreviewTile {
-  float error;     ///< expected of what is shown now: mean over its pixels
-  float expected;  ///< of what was shown before: mean square of the expected errors
-  float square;    ///< ... and square of the tile's mean error by samples taken since; below 0 by chance
-  float noise;     ///< variance of the tile's mean of these samples, relative; below 0: there are none
+  float error;   ///< expected of what is shown now: mean over its pixels
+  float square;  ///< of what was shown before: square of the tile's mean error by samples taken since; below 0 by chance
+  float noise;   ///< variance of the tile's mean of these samples, relative; below 0: there are none
 };
 
 /// Pixels darker than this, of white, err in proportion to it.

@@ -142,7 +142,7 @@ std::vector<SharedStruct> structs() {
       SHARED("preview.h", PreviewChangePush, across, down, blocks_across, blocks_down, all),
       SHARED("preview.h", PreviewShares, all, stale, filtered),
       SHARED("preview.h", PreviewJudgePush, width, height, film_width, film_height, step),
-      SHARED("preview.h", PreviewTile, error, expected, square, noise),
+      SHARED("preview.h", PreviewTile, error, square, noise),
       SHARED("irradiance_cache/records.h", RelightPreviewPush, factor, count, sky_group),
       SHARED("irradiance_cache/records.h", CacheFrame, routes, record_count, normal_tolerance, off_plane,
              probing, off_plane_least, least_of_distance, least_most, parallel, eye, branches),
