@@ -328,7 +328,8 @@ void Program::add_bench_latency() {
                    "sessions of each scene and solver; the median of each figure is reported")
       ->check(CLI::Range(1u, 1000u))
       ->capture_default_str();
-  latency_->add_option("--seed", bt.seed, "seed of the edits' amounts; 0: fixed amounts")->capture_default_str();
+  latency_->add_option("--seed", bt.seed, "seed of the edits' amounts; 0: fixed amounts")
+      ->capture_default_str();
   latency_->add_option("--settle", bt.settle, "maximum seconds to wait before an edit for a finished picture")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();

@@ -139,7 +139,7 @@ TEST_CASE("the error that a preview reports is corrected by samples that the pre
                                   << first->worst_tenth << ", later " << later.worst_tenth);
   CHECK(off_later > 0.1);
   CHECK(first->worst_tenth < 0.6 * off_first);
-  // What is measured is the picture before, over the mean of old and new light.
+  // The measurement is of the previous picture, relative to the mean of old and new light.
   CHECK(later.worst_tenth > 0.7 * off_later);
   CHECK(later.worst_tenth < 2.2 * off_first);
 }
