@@ -68,7 +68,8 @@ const test::Settings k_by_photons = with(k_caustics, {{"components.caustic", "ph
 /// Few enough photons that the wide lamp's light has less noise by path tracing.
 const test::Settings k_few{{"photons.per_round", "4"}};
 
-TEST_CASE("each part of the picture uses the more efficient method, with the same light", "[photons_worth]") {
+TEST_CASE("each part of the picture uses the more efficient method, with the same light",
+          "[photons_efficiency]") {
   const scene::Scene scene = two_lamps();
   const Rendered both = render(scene, with(k_by_photons, k_few), 2048);
   CHECK(both.by_photons > 0.2);
@@ -102,7 +103,7 @@ TEST_CASE("each part of the picture uses the more efficient method, with the sam
 }
 
 TEST_CASE("where photons are nowhere more efficient none are traced, and the picture is path traced",
-          "[photons_worth]") {
+          "[photons_efficiency]") {
   scene::Scene scene = two_lamps();
   scene.materials[3].emission = vec3(0);  // the wide lamp alone
   const Rendered delegated = render(scene, with(k_by_photons, k_few), 8), path = render(scene, k_caustics, 8);
@@ -112,7 +113,7 @@ TEST_CASE("where photons are nowhere more efficient none are traced, and the pic
   CHECK(test::mean(delegated.image.components[3]) > 0);
 }
 
-TEST_CASE("regions are shown, and depend on scene, view and settings only", "[photons_worth]") {
+TEST_CASE("regions are shown, and depend on scene, view and settings only", "[photons_efficiency]") {
   const scene::Scene scene = two_lamps();
   session::Renderer r(test::renderer_options());
   r.settings().set("path.batch", test::k_batch);
@@ -145,7 +146,7 @@ TEST_CASE("regions are shown, and depend on scene, view and settings only", "[ph
   CHECK(test::identical(once, again.image));
 }
 
-TEST_CASE("the pilot's noise estimates are correct for both methods", "[photons_worth]") {
+TEST_CASE("the pilot's noise estimates are correct for both methods", "[photons_efficiency]") {
   const test::Settings photons =
       with(k_by_photons, {{"photons.per_round", "64"}, {"photons.alpha", "1"}, {"photons.radius", "0.8"}});
   // Variance of one sample, over pixels of the middle rows from column `x`, from the halves of few samples:

@@ -53,7 +53,7 @@ constexpr EfficiencyCosts k_costs{.base = 2, .lookup = 0.5, .onward = 1.5, .path
 
 }  // namespace
 
-TEST_CASE("light paths estimate the moments of photons and of camera paths", "[photons_worth]") {
+TEST_CASE("light paths estimate the moments of photons and of camera paths", "[photons_efficiency]") {
   const float albedo = 0.6f, flux = 2e-5f, radiance = 40;
   const uint32_t n = 200000;
   const std::vector<shared::PhotonContribution> all = even(n, flux, radiance);
@@ -81,7 +81,7 @@ TEST_CASE("light paths estimate the moments of photons and of camera paths", "[p
   CHECK(photons::caustic_moments(pilot_of(all, lookups, twice))[0].mean == Approx(m.mean));
 }
 
-TEST_CASE("photons on the other side, or on no surface, do not contribute", "[photons_worth]") {
+TEST_CASE("photons on the other side, or on no surface, do not contribute", "[photons_efficiency]") {
   const std::vector<shared::PhotonContribution> all = even(10000, 1, 1);
   const uint32_t up = shared::facet_pack(vec3(0, 1, 0)), down = shared::facet_pack(vec3(0, -1, 0)),
                  across = shared::facet_pack(vec3(1, 0, 0));
@@ -97,7 +97,7 @@ TEST_CASE("photons on the other side, or on no surface, do not contribute", "[ph
   }
 }
 
-TEST_CASE("each region gets the method that makes the whole most efficient", "[photons_worth]") {
+TEST_CASE("each region gets the method that makes the whole most efficient", "[photons_efficiency]") {
   const Moments hard{1, 0.1, 1000, 50}, soft{1, 0.5, 0.2, 50}, unknown{1, 0.5, 0.2, 0};
   SECTION("photons everywhere if paths rarely find the light") {
     const Regions r = choose(halves(hard, hard), k_costs);
