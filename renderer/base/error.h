@@ -7,9 +7,9 @@
 
 namespace lucerna {
 
-/// Thrown at the edges: loading, options, device creation, output. `where` locates the cause (a file, "file:
-/// element", an option's name); `what` says what is wrong and what was expected, as one line without a final
-/// stop. `what()` is "where: what", or only "what" when `where` is empty.
+/// Thrown by loading, options, device creation and output. `where` locates the cause (a file, "file:
+/// element", an option's name); `what` states what is wrong and what was expected, in one line without a
+/// final stop. `what()` is "where: what", or only "what" if `where` is empty.
 class Error : public std::runtime_error {
  public:
   Error(std::string where, const std::string& what)

@@ -1,7 +1,7 @@
 #pragma once
-// Options as data: name, type, range, unit, default, help in one row. Tables of rows feed window, command
-// line, settings.json, scripts and documentation (plan/settings.h joins them into one); an unknown key or a
-// wrong value is a located Error that says what is valid.
+// Options as data: name, type, range, unit, default and help in one row. Window, command line, settings.json,
+// scripts and documentation use these tables (joined by plan/settings.h); an unknown key or a wrong value is
+// a located Error that states what is valid.
 #include <map>
 #include <span>
 #include <string>

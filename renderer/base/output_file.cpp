@@ -31,8 +31,8 @@ fs::path folder_of(const fs::path& file) {
 /// Where bytes for a name really go.
 struct Place {
   fs::path path;               ///< behind all symbolic links
-  std::optional<int> own;      ///< or the descriptor of this process that the name stands for
-  std::optional<mode_t> mode;  ///< of what is there
+  std::optional<int> own;      ///< or the descriptor of this process that the name refers to
+  std::optional<mode_t> mode;  ///< of the existing file
 };
 
 /// "/proc/self/fd/1" -> 1. Links in that folder lead to open files, whatever the names that they show.
@@ -79,8 +79,7 @@ Place place_of(const fs::path& file) {
   return place;
 }
 
-/// A write into a pipe that nobody reads any more is an error (EPIPE) of this thread's, not the program's
-/// end.
+/// Writing into a closed pipe returns an error (EPIPE) in this thread instead of ending the program.
 ssize_t write_without_signal(int handle, const char* bytes, size_t size) {
   sigset_t pipe, before, pending;
   sigemptyset(&pipe);

@@ -15,15 +15,15 @@ double median_variance(size_t n) {
   return n < 6 ? k_small[n] : 1.5708 / double(n);
 }
 
-/// The curve over the last `factor` of its time; nothing where it begins later than that.
+/// The part of a curve in the last `factor` of its time; none if it begins later.
 std::span<const Point> last_factor(std::span<const Point> curve, double factor) {
   if (curve.empty() || curve.front().seconds > curve.back().seconds / factor) return {};
   const auto from = std::ranges::lower_bound(curve, curve.back().seconds / factor, {}, &Point::seconds);
   return {from, curve.end()};
 }
 
-/// error^2 * t by the mean of its logarithm over the last factor of four of the time; nothing where the curve
-/// has not seen all of that.
+/// Mean of error^2 * t, in logarithms, over the last factor of four of the time; none if the curve does not
+/// cover it.
 std::optional<double> log_constant(std::span<const Point> curve) {
   const auto last = last_factor(curve, 4);
   if (last.empty()) return std::nullopt;
@@ -51,7 +51,7 @@ Reach time_to(std::span<const Point> curve, double target) {
   }
   const auto constant = log_constant(curve);
   if (!constant) return {};
-  // Never before the end, where it was seen not to be reached.
+  // Not before the end, where it has not been reached.
   return {ReachKind::extrapolated,
           std::max(curve.back().seconds, std::exp(*constant - 2 * std::log(target)))};
 }
@@ -121,7 +121,7 @@ std::vector<Band> common_curve(std::span<const std::vector<Point>> curves, size_
   if (!(from > 0) || from >= to || steps < 2) return {};
   std::vector<Band> bands;
   for (size_t i = 0; i < steps; ++i) {
-    // The ends exactly, so that no rounding puts them outside a curve.
+    // Exact ends, so that rounding does not put them outside a curve.
     const double t = i == 0           ? from
                      : i + 1 == steps ? to
                                       : from * std::pow(to / from, double(i) / double(steps - 1));

@@ -14,7 +14,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 bool within_noise(double ratio, double noise) {
-  noise *= 1 + 1e-9;  // repeats that are equal to the bit have no noise at all
+  noise *= 1 + 1e-9;  // bit-identical repeats have no noise
   return ratio <= noise && ratio >= 1 / noise;
 }
 
@@ -30,7 +30,7 @@ std::optional<double> number(const Json& json, const char* pointer) {
   return json.at(at).get<double>();
 }
 
-/// The noise of a ratio of two figures that each have their own.
+/// Noise of a ratio of two figures with noise.
 std::optional<double> joint_noise(const Json& a, const Json& b, const char* pointer) {
   const auto x = number(a, pointer), y = number(b, pointer);
   if (!x || !y) return std::nullopt;

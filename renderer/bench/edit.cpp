@@ -23,7 +23,7 @@ std::optional<uint32_t> brightest_lamp(const Scene& s) {
   return best;
 }
 
-/// Of the materials that weigh more than 0, each times its surface, the one that weighs most.
+/// The material with the largest product of weight and surface area, of weight above 0.
 template <class Weight>
 std::optional<uint32_t> heaviest_material(const Scene& s, const Weight& weight) {
   std::vector<double> area(s.materials.size(), 0);
@@ -41,7 +41,7 @@ std::optional<uint32_t> heaviest_material(const Scene& s, const Weight& weight) 
   return best;
 }
 
-/// Of opaque diffuse materials without textures, the one with the largest surface.
+/// The opaque diffuse material without textures that has the largest surface.
 std::optional<uint32_t> largest_plain_material(const Scene& s) {
   return heaviest_material(s, [](const scene::Material& x) {
     const bool plain = !x.base_color_texture && x.metallic < 1 && x.transmission == 0 && !x.unlit &&
@@ -50,7 +50,7 @@ std::optional<uint32_t> largest_plain_material(const Scene& s) {
   });
 }
 
-/// The one that sends most light.
+/// The material that emits most light.
 std::optional<uint32_t> brightest_emitter(const Scene& s) {
   return heaviest_material(
       s, [](const scene::Material& x) { return x.unlit ? 0.0 : double(luminance(x.emission)); });

@@ -1,5 +1,5 @@
 #pragma once
-// Edits of a scene as a person makes them, for measurements.
+// Edits of a scene for measurements, as users make them.
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -11,12 +11,12 @@
 namespace lucerna::bench {
 
 enum class Edit {
-  load,      ///< the scene is loaded; the clock runs from when that is done
+  load,      ///< loading the scene; time is counted from its end
   strength,  ///< strength of the brightest lamp, or without lamps of the material that emits most light
-  move,      ///< that lamp moves aside; a lamp without a place turns; without lamps nothing is measured
-  sky,       ///< the environment turns; without an image nothing is measured
+  move,      ///< moves that lamp aside, or turns a lamp without a position; not measured without lamps
+  sky,       ///< turns the environment; not measured without an image
   material,  ///< another colour for the material of the largest surface without a texture
-  undo,      ///< the last of the edits above but load is taken back
+  undo,      ///< undoes the last of the edits above except load
   camera,    ///< turns and steps aside
   solver     ///< from path tracing to the solver, or back
 };
@@ -25,7 +25,7 @@ inline constexpr std::array<const char*, 8> k_edit_names = {"load",     "strengt
 /// Throws Error listing the names.
 Edit edit_of(const std::string& name);
 
-/// New values, as Session and Renderer take them.
+/// New values, as for Session and Renderer.
 struct Change {
   std::optional<scene::Camera> camera;
   std::optional<std::pair<uint32_t, scene::Light>> light;
@@ -46,7 +46,7 @@ struct Change {
 /// % of the radius. Other seeds draw these.
 std::optional<Change> change_of(Edit edit, const scene::Scene& scene, const scene::Camera& camera,
                                 uint64_t seed = 0);
-/// The change that takes `change` back, of the scene and camera before it.
+/// The change that undoes `change`, from the scene and camera before it.
 Change reverse_of(const Change& change, const scene::Scene& scene, const scene::Camera& camera);
 
 }  // namespace lucerna::bench

@@ -13,12 +13,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// How a ratio is told: how much better, or worse, than the first setting.
+/// Text for a ratio: how much better or worse than the first setting.
 std::string gain_text(double ratio, const char* better, const char* worse) {
   return fmt::format("{:.2f} times {}", ratio > 1 ? ratio : 1 / ratio, ratio > 1 ? better : worse);
 }
 
-/// A scene's line of what its settings were found to do; what is to be said when none does anything.
+/// Line of a scene with the findings on its settings; `none`: text without findings.
 std::string scene_line(const Json& scene, const std::vector<std::string>& found,
                        const std::string& otherwise) {
   const std::string name = text_of(scene, "name");
@@ -26,7 +26,7 @@ std::string scene_line(const Json& scene, const std::vector<std::string>& found,
                        : fmt::format("{}: {}.", name, fmt::join(found, "; "));
 }
 
-/// What settings were found to do, one after the other; of those of one curve the one that does best.
+/// Findings on the settings; of the settings of one curve only on the best.
 class Found {
  public:
   explicit Found(const Json& report) : report_(report) {}
@@ -55,7 +55,7 @@ class Found {
   std::vector<Finding> findings_;
 };
 
-/// What is to be said of one measure of one scene; only what was measured, never what was extrapolated.
+/// Finding on one measure of one scene; from measured values only, never extrapolated ones.
 std::string finding(const Json& report, const Json& scene, const std::string& first, const char* measure,
                     const char* what) {
   Found found(report);
@@ -68,7 +68,7 @@ std::string finding(const Json& report, const Json& scene, const std::string& fi
     const double ratio = common.at("ratio").get<double>();
     found.add(
         text_of(setting, "name"), ratio,
-        fmt::format("{} brings {} to {:.4g} % in {}, {} in {}: {}", text_of(setting, "name"), what,
+        fmt::format("{}: {} to {:.4g} % in {}, {} in {}: {}", text_of(setting, "name"), what,
                     100 * common.at("error").get<double>(), seconds_text(common.at("seconds").get<double>()),
                     first, seconds_text(common.at("first_seconds").get<double>()),
                     gain_text(ratio, "sooner", "later")));
@@ -81,8 +81,8 @@ std::string finding(const Json& report, const Json& scene, const std::string& fi
       fmt::format("for {}, no setting differs from {} by more than the measurement’s noise", what, first));
 }
 
-/// What the settings' relative squared errors come to, against the first setting's after the same time;
-/// marked where the latter is foretold from an earlier one. "" for reports from before it was measured.
+/// Final relative squared errors of the settings, relative to the first setting's after the same time, marked
+/// if that is extrapolated. "" for reports from before they were measured.
 std::string relative_finding(const Json& report, const Json& scene, const std::string& first) {
   Found found(report);
   size_t compared = 0;
@@ -107,8 +107,8 @@ std::string relative_finding(const Json& report, const Json& scene, const std::s
                   first));
 }
 
-/// The fewest records with which a curve has that error, which is no less than its least; interpolated in the
-/// logarithms. Its fewest where it begins with less.
+/// Minimum number of records with which a curve has that error (not below its minimum); interpolated in
+/// logarithms. Its first number if it begins with less error.
 double records_to(const PlotLine& curve, double error) {
   const auto at = std::find_if(curve.points.begin(), curve.points.end(),
                                [&](const PlotLine::Point& p) { return p.error.median <= error; });
@@ -122,22 +122,22 @@ double least_error(const PlotLine& curve) {
       .error.median;
 }
 
-/// What each further curve makes of its records, against the first, at the least error that both come to; ""
-/// where there are no two.
+/// Number of records of each further curve relative to the first, at the smallest error that both reach; ""
+/// with fewer than two curves.
 std::string records_finding(const Json& report, const Json& scene) {
   const std::vector<PlotLine> curves = record_curves(report, scene);
   std::vector<std::string> found;
   for (size_t i = 1; i < curves.size(); ++i) {
     const double error = std::max(least_error(curves[0]), least_error(curves[i]));
     const double first = records_to(curves[0], error), own = records_to(curves[i], error);
-    found.push_back(fmt::format(
-        "{} brings the whole picture to {:.3g} % with {:.0f} records, {} with {:.0f}: {}", curves[i].name,
-        100 * error, own, curves[0].name, first, gain_text(first / own, "fewer", "more")));
+    found.push_back(fmt::format("{}: the whole picture to {:.3g} % with {:.0f} records, {} with {:.0f}: {}",
+                                curves[i].name, 100 * error, own, curves[0].name, first,
+                                gain_text(first / own, "fewer", "more")));
   }
   return found.empty() ? "" : scene_line(scene, found, "");
 }
 
-/// What a mean factor over all scenes says of a setting against another one.
+/// Finding from the mean factor over all scenes of a setting relative to another one.
 std::string seen_finding(const Json& entry, const std::string& other) {
   const std::string what = fmt::format("{}, {}", text_of(entry, "setting"), text_of(entry, "budget"));
   if (entry.value("noise", false))
@@ -152,7 +152,7 @@ std::string seen_finding(const Json& entry, const std::string& other) {
                      entry.at("scenes").get<double>(), ratio_text(ratio), range, other);
 }
 
-/// Of a matrix of the error as seen: the mean factors over all scenes.
+/// For a matrix of the error as seen: mean factors over all scenes.
 std::vector<std::string> seen_findings(const Json& report) {
   std::vector<std::string> lines;
   const Json& settings = report.at("matrix").at("settings");

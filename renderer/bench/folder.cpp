@@ -18,9 +18,9 @@ using Json = nlohmann::ordered_json;
 
 const char* const k_claim = "bench.json";
 
-/// The first place where two values differ, as "scenes/0/size".
+/// Path of the first difference of two values, as "scenes/0/size".
 std::string first_difference(Json a, Json b) {
-  a.erase("name"), b.erase("name");  // a matrix by another name is the same
+  a.erase("name"), b.erase("name");  // the name of a matrix does not matter
   const nlohmann::json patch = nlohmann::json::diff(nlohmann::json(a), nlohmann::json(b));
   return patch.empty() ? "" : patch[0]["path"].get<std::string>().substr(1);
 }
@@ -38,7 +38,7 @@ void check_claim(const std::string& where, const std::string& text, const Json& 
                 at, found["identity"].value(at, "another"), wanted["identity"].value(at, "another"));
 }
 
-/// Proves by a file that the folder can be written: permissions alone do not tell.
+/// Tests by writing a file: permissions alone are not sufficient.
 void check_writable(const fs::path& folder) {
   const fs::path probe = folder / fmt::format(".bench-{}", getpid());
   const int handle = open(probe.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600);

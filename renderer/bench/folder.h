@@ -1,7 +1,8 @@
 #pragma once
-// The report folder: bench.json says whose it is (matrix, device, version), cells/ has one file a finished
-// render, pictures/ what the page shows. Every file is written under a temporary name and renamed, so that an
-// interruption leaves whole files only; half ones from elsewhere are recognised and measured again.
+// The report folder: bench.json identifies it (matrix, device, version), cells/ has one file per finished
+// render, pictures/ the pictures of the page. Every file is written under a temporary name and renamed, so
+// that an interruption leaves only complete files; incomplete ones from elsewhere are recognised and measured
+// again.
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
@@ -15,17 +16,17 @@
 
 namespace lucerna::bench {
 
-/// One line for a person.
+/// Receives a one-line message.
 using Message = std::function<void(const std::string&)>;
 
-/// A folder that one bench has to itself.
+/// A folder in exclusive use by one bench.
 class ReportFolder {
  public:
-  /// Makes the folder, with folders `parts` in it, or goes on with one that holds the same measurement
-  /// (`matrix`: any JSON object that says what is measured, but for its "name"), by the same version on the
-  /// same device (`identity`: likewise; its keys are named when they differ). Throws Error, located at
-  /// the folder, and leaves everything as it was: when it cannot be written, is another bench's, holds files
-  /// that no bench made, or another bench is at work in it.
+  /// Makes the folder with folders `parts` in it, or continues one with the same measurement (`matrix`: any
+  /// JSON object that describes it, apart from its "name"), by the same version on the same device
+  /// (`identity`: likewise; differing keys are named). Throws Error, located at the folder, and changes
+  /// nothing, if it cannot be written, belongs to another bench, contains other files, or is in use by
+  /// another bench.
   ReportFolder(const std::filesystem::path& path, const nlohmann::ordered_json& matrix,
                const nlohmann::ordered_json& identity, std::initializer_list<const char*> parts);
   ~ReportFolder();
@@ -41,7 +42,7 @@ class ReportFolder {
   int lock_ = -1;
 };
 
-/// Of a matrix.
+/// Report folder of a matrix.
 class Folder : public ReportFolder {
  public:
   /// Throws Error as ReportFolder.
@@ -49,8 +50,8 @@ class Folder : public ReportFolder {
 
   std::filesystem::path pictures() const { return path_ / "pictures"; }
 
-  /// Results of the matrix that are there, by Matrix::id(). Those that cannot be read, belong to another cell
-  /// or whose scene has changed since (`scene_hashes` by scene name) are told of and left out.
+  /// Stored results of the matrix, by Matrix::id(). Those that cannot be read, belong to another cell or to a
+  /// changed scene (`scene_hashes` by scene name) are reported and left out.
   std::map<std::string, Result> load(const Matrix& matrix,
                                      const std::map<std::string, std::string>& scene_hashes,
                                      const Message& message) const;

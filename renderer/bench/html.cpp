@@ -8,7 +8,7 @@
 namespace lucerna::bench {
 namespace {
 
-/// Three figures, never as a power of ten.
+/// Three significant digits, without exponent.
 std::string three(double x) {
   if (!(x > 0)) return "0";
   const int digits = std::max(0, 2 - int(std::floor(std::log10(x))));

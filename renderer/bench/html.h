@@ -1,5 +1,5 @@
 #pragma once
-// Words and numbers for the page, and its look.
+// Texts and numbers of the page, and its style sheet.
 #include <string>
 
 namespace lucerna::bench {
@@ -15,8 +15,8 @@ std::string ratio_text(double ratio);
 /// 12345678 as "12.3 M"
 std::string count_text(double count);
 
-/// Colour of the setting of that index, as "#rrggbb": the first off-white, the others told apart by
-/// lightness and hue with any colour vision; none is one of the four components'.
+/// Colour of the setting of that index, as "#rrggbb": the first off-white, the others distinguishable by
+/// lightness and hue with any colour vision; none equals a component's colour.
 const char* setting_colour(size_t index);
 
 /// The style sheet.

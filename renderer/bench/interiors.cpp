@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// How much is measured, where nothing else is given.
+/// Default amounts of measurements.
 struct Form {
   const char* name;
   int repeats;
@@ -41,30 +41,30 @@ const std::vector<Way> k_ways = {
     {"cache-learned", "secondary and tertiary light cached, lights chosen by what arrived nearby", "cache",
      "learned"}};
 
-/// Whether a program whose help this is has the setting, and the value where it lists values.
+/// True if a program with this help has the setting, and the value if it lists values.
 bool knows(const std::string& help, const std::string& key, const std::string& value) {
   const size_t at = help.find("  " + key + " ");
   if (at == std::string::npos) return false;
   return help.substr(at, help.find('\n', at) - at).find(value) != std::string::npos;
 }
 
-/// A way as one entry of a matrix's settings; `help`: of another program, which may know less. Null: it lacks
-/// what the way needs.
+/// A method as an entry of a matrix's settings; `help`: that of another program, perhaps with fewer settings.
+/// Null: a required setting is missing.
 Json setting_of(const Way& way, const std::string& budget, const std::string* help) {
-  // Whatever the scene's own settings say.
+  // Overrides the scene's own settings.
   Json set{{"components.secondary", way.indirect},
            {"components.tertiary", way.indirect},
            {"components.caustic", "path"}};
   for (const char* key : {"components.secondary", "components.tertiary"})
     if (help && !knows(*help, key, way.indirect)) return nullptr;
-  // From before lights could be chosen otherwise they were chosen by their power.
+  // Programs without this setting choose lights by power.
   const bool choice = !help || knows(*help, "lights.sampling", way.lights);
   if (!choice && way.lights != std::string("power")) return nullptr;
   if (choice) set["lights.sampling"] = way.lights;
   return {{"name", way.name}, {"about", way.about}, {"set", set}, {"budget", budget}};
 }
 
-/// The size for a scene: turned for one that is taller than wide.
+/// Size for a scene: exchanged for one that is taller than wide.
 std::string size_for(const fs::path& scene, const std::string& size) {
   const size_t at = size.find('x');
   const double aspect = camera_aspect(scene);
@@ -72,7 +72,7 @@ std::string size_for(const fs::path& scene, const std::string& size) {
   return size.substr(at + 1) + "x" + size.substr(0, at);
 }
 
-/// What is left of a name where only letters, digits, '-' and '_' may stand, and no more than 36 of them.
+/// A name reduced to letters, digits, '-' and '_', at most 36 characters.
 std::string plain_name(const std::string& name) {
   std::string plain = name.substr(0, 36);
   for (char& c : plain)

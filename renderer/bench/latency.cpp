@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 using scene::Scene;
 
 constexpr double k_black_share = 1e-3;
-/// Pictures of one edit that are kept to be looked at: no more than this a second.
+/// Maximum number of stored pictures of an edit per second.
 constexpr double k_moments_s = 1.0 / 60;
 
 struct Shown {
@@ -34,7 +34,7 @@ struct Shown {
   std::shared_ptr<const session::Snapshot> snapshot;
 };
 
-/// A reference picture in the luminance that is shown, and half of what the halves of its samples differ by.
+/// A reference picture in shown luminance, and half of the difference of its halves.
 struct Reference {
   std::vector<float> mean, half_difference;
 };
@@ -45,7 +45,7 @@ Reference developed(const film::ReferencePair& halves, float exposure) {
     vec3 mean(0), half(0);
     for (int k = 0; k < 3; ++k) {
       const float a = exposure * halves.first[i][k], b = exposure * halves.second[i][k];
-      // Where one half alone is brighter than white it is noise: cut off it would be missing in the mean.
+      // A pixel above white in only one half is noise: clipping it would bias the mean.
       const bool white = a > 1 && b > 1;
       mean[k] = white ? 1 : 0.5f * (a + b);
       half[k] = white ? 0 : 0.5f * (a - b);
@@ -63,7 +63,7 @@ class Latency {
       : o_(options), message_(message), done_(done), interrupted_(interrupted) {}
 
   std::vector<LatencyResult> run() {
-    // A session would report a refused one and go on without it.
+    // A session would only report a refused setting.
     plan::Settings checked;
     for (const auto& [key, value] : o_.set) checked.set(key, value, "--set");
     for (const fs::path& folder : {o_.references, o_.pictures}) {
@@ -82,7 +82,7 @@ class Latency {
     if (interrupted_ && interrupted_()) throw Error("bench", "interrupted");
   }
 
-  /// Every picture that is published until `seconds` after the clock's start.
+  /// Every picture published until `seconds` after the clock's start.
   std::vector<Shown> watch(session::Session& s, const Timer& clock, double seconds) const {
     std::vector<Shown> all{{0, s.snapshot()}};
     while (clock.seconds() < seconds) {
@@ -96,7 +96,7 @@ class Latency {
     return all;
   }
 
-  /// Until the picture has LatencyOptions::settle.samples, with all that is prepared before.
+  /// Until the picture has LatencyOptions::settle.samples, after all preparation.
   void settle(session::Session& s) const {
     const uint64_t posted = s.commands();
     const Timer timer;
@@ -144,7 +144,7 @@ class Latency {
       std::string done = done_edits_ + std::string("-") + k_edit_names[size_t(edit)];
       const bool back = edit == Edit::undo && !back_.empty();
       if (edit == Edit::undo) {
-        // What a camera or a solver did in between stays.
+        // Changes of camera or solver in between remain.
         if (back) change = back_.back().change, done = back_.back().edits;
         back_.clear();
       } else {
@@ -177,7 +177,7 @@ class Latency {
     const Reference& reference = reference_of(file, float(std::exp2(s.settings().real("film.ev"))));
     std::vector<Moment> moments;
     for (const Shown& at : shown) {
-      // What is shown while a scene is loaded is what it begins with.
+      // Pictures shown during loading count from the start.
       Moment m{std::max(0.0, at.seconds - loading), {1, 1, 1, 1}, {}};
       if (at.snapshot && at.snapshot->rgba.size() == reference.mean.size() * 4)
         m.distance = picture_distance(shown_luminance(at.snapshot->rgba), reference.mean, o_.width,
@@ -204,7 +204,7 @@ class Latency {
     s.set_paused(false);
   }
 
-  /// As it is shown.
+  /// As shown.
   const Reference& reference_of(const fs::path& file, float exposure) {
     const std::string key = fmt::format("{}{}", file.string(), done_edits_);
     const auto known = references_.find(key);
@@ -213,7 +213,7 @@ class Latency {
     return references_[key] = developed(read_halves(image, file.string()), exposure);
   }
 
-  /// With both halves of its samples. Rendered where no earlier run has left it.
+  /// With both halves of its samples. Rendered unless stored by an earlier run.
   film::FilmImage reference_image(const fs::path& file) {
     const uint32_t samples = std::max(2u, o_.reference_samples);
     const std::string key =
@@ -256,13 +256,13 @@ class Latency {
   const std::function<void(const LatencyResult&)>& done_;
   const std::function<bool()>& interrupted_;
   std::vector<Change> changes_;  // made so far
-  std::string done_edits_;       // names of those that are in force
-  /// Takes the last edit back, and the edits that are in force then.
+  std::string done_edits_;       // names of the effective ones
+  /// Undoes the last edit; afterwards these edits are effective.
   struct Back {
     Change change;
     std::string edits;
   };
-  std::vector<Back> back_;  // one at most
+  std::vector<Back> back_;  // at most one
   std::map<std::string, Reference> references_;
   std::vector<LatencyResult> results_;
 };

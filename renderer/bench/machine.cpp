@@ -10,7 +10,7 @@
 namespace lucerna::bench {
 namespace {
 
-/// What stands behind the separator in the first line that begins with `key`.
+/// Text after the separator in the first line that begins with `key`.
 std::string find_line(const char* file, const std::string& key, char separator) {
   std::ifstream in(file);
   for (std::string line; std::getline(in, line);) {

@@ -1,17 +1,17 @@
 #pragma once
-// The machine that measured, as far as it tells.
+// Description of the measuring machine.
 #include <string>
 
 namespace lucerna::bench {
 
 struct Machine {
-  std::string cpu, system;  ///< "unknown" where it cannot be told
+  std::string cpu, system;  ///< "unknown" if not available
   unsigned cores = 0;       ///< logical, that this process may use
   double memory_gib = 0;
 };
 Machine this_machine();
 
-/// Programs that wanted to run in the last minute, on average, this one included; < 0: not known.
+/// Mean number of runnable programs in the last minute, including this one; < 0: unknown.
 double load_average();
 
 /// "2026-11-21 14:30 UTC".

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// A JSON value that knows where it stands.
+/// A JSON value with its location.
 class Node {
  public:
   Node(const Json& json, std::string where) : json_(json), where_(std::move(where)) {}
@@ -59,7 +59,7 @@ class Node {
     return x;
   }
   uint32_t count(double lo, double hi) const { return uint32_t(number(lo, hi, true)); }
-  /// {"key": value} for the options; values may be texts, numbers and booleans.
+  /// Options as {"key": value}; values may be texts, numbers and booleans.
   SettingValues settings() const {
     if (!json_.is_object()) throw_error(where_, "expected an object {{...}}, found {}", json_.type_name());
     SettingValues values;
@@ -82,7 +82,7 @@ class Node {
   std::string where_;
 };
 
-/// A name that may be part of a file's.
+/// A name suitable as part of a file name.
 std::string read_name(const Node& node) {
   const std::string name = node.text();
   const bool good = !name.empty() && name.size() <= 40 && std::all_of(name.begin(), name.end(), [](char c) {
@@ -99,7 +99,7 @@ std::string read_curve(const Node& node) {
   return curve;
 }
 
-/// A file that can be run, from the root.
+/// An executable file, as an absolute path.
 std::string read_program(const Node& node) {
   const std::string file = absolute_path(node.text()).string();
   if (!is_plain_file(file) || access(file.c_str(), X_OK) != 0)
@@ -182,8 +182,8 @@ void read_size(const Node& size, SceneEntry& scene) {
   scene.width = w, scene.height = h;
 }
 
-/// One entry of "scenes"; `m` holds those before it and all settings. `budgets` and `reference_samples`:
-/// where it has none of its own.
+/// One entry of "scenes"; `m` contains the former ones and all settings. `budgets` and `reference_samples`:
+/// defaults.
 SceneEntry read_scene(const Node& node, const Matrix& m, const fs::path& folder,
                       const std::array<std::vector<double>, 3>& budgets, uint32_t reference_samples) {
   node.only({"name", "file", "size", "camera", "set", "reference_samples", "budgets"});
@@ -202,7 +202,7 @@ SceneEntry read_scene(const Node& node, const Matrix& m, const fs::path& folder,
   if (node.has("camera")) s.camera = node.at("camera").text();
   if (node.has("set")) {
     s.set = node.at("set").settings();
-    // It would change what kind of budget a setting takes.
+    // This would change the kind of budget of a setting.
     if (s.set.contains("sampling.mode"))
       throw_error(node.where() + ".set", "'sampling.mode' belongs into settings, not into a scene");
   }

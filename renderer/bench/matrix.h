@@ -1,5 +1,5 @@
 #pragma once
-// What `lucerna bench` measures: scenes x settings x budgets x repeats, read from a JSON file or built in.
+// Measurements of `lucerna bench`: scenes x settings x budgets x repeats, from a JSON file or built in.
 #include <array>
 #include <filesystem>
 #include <map>
@@ -12,11 +12,11 @@
 
 namespace lucerna::bench {
 
-/// What ends a render.
+/// Criterion that ends a render.
 enum class BudgetKind {
-  samples,  ///< samples a pixel, the same for all
-  errors,   ///< relative error that every tile is to reach; adaptive sampling only
-  seconds   ///< wall seconds of rendering alone
+  samples,  ///< samples a pixel, equal for all
+  errors,   ///< relative error of every tile; adaptive sampling only
+  seconds   ///< seconds of rendering
 };
 inline constexpr std::array<const char*, 3> k_budget_names = {"samples", "errors", "seconds"};
 
@@ -29,19 +29,19 @@ struct Budget {
 
 using SettingValues = std::map<std::string, std::string>;
 
-/// One way of rendering, by what it changes in the options (plan/settings.h).
+/// One method of rendering, as changes of options (plan/settings.h).
 struct Setting {
   std::string name, about;
   SettingValues set;
-  /// "" or the curve that it is a point of: settings of one curve differ in how many records a solver comes
-  /// to, and the report joins them by a line, error against records.
+  /// "" or the curve of this point: settings of one curve differ in the number of records of a solver, and
+  /// the report connects them by a line, error against records.
   std::string curve;
   BudgetKind budget = BudgetKind::samples;
-  /// "" or another lucerna (a file), whose verb `render` makes the pictures: in a process of its own, and
-  /// known are the figures of the picture in the end alone.
+  /// "" or the file of another lucerna, whose verb `render` makes the pictures in a separate process; only
+  /// the figures of the final picture are available.
   std::string program{};
-  /// "" or the name of another setting that this one is held against besides the first, such as the same
-  /// rendered by another program.
+  /// "" or the name of another setting to compare with besides the first, such as the same method in another
+  /// program.
   std::string beside{};
 };
 
@@ -50,12 +50,12 @@ struct SceneEntry {
   std::filesystem::path file;
   uint32_t width = 0, height = 0;
   std::string camera;  ///< "": the scene's own
-  SettingValues set;   ///< for every setting on this scene, and its reference
+  SettingValues set;   ///< options of all settings for this scene, and of its reference
   uint32_t reference_samples = 0;
-  std::array<std::vector<double>, 3> budgets;  ///< by BudgetKind, smallest effort first
+  std::array<std::vector<double>, 3> budgets;  ///< by BudgetKind, in order of effort
 };
 
-/// One render to be measured.
+/// A render to measure.
 struct Cell {
   size_t scene = 0, setting = 0, budget = 0;  ///< indices; budget into SceneEntry::budgets[setting's kind]
   int repeat = 0;
@@ -65,12 +65,12 @@ struct Cell {
 struct Matrix {
   std::string name;
   int repeats = 3;
-  uint32_t warmup = 8;                         ///< samples a pixel rendered and thrown away before the clock
+  uint32_t warmup = 8;  ///< samples a pixel rendered and discarded before the measurement
   uint32_t seed = 1, reference_seed = 900001;  ///< repeat k has seed + k
   SettingValues set;                           ///< for all
-  bool as_seen = false;                        ///< the report's page is of the error as seen alone
+  bool as_seen = false;                        ///< the page shows only the error as seen
   std::vector<SceneEntry> scenes;
-  std::vector<Setting> settings;  ///< the first is what the others are held against
+  std::vector<Setting> settings;  ///< the first is the baseline of comparisons
 
   const std::vector<double>& budgets(size_t scene, size_t setting) const {
     return scenes[scene].budgets[size_t(settings[setting].budget)];
@@ -78,14 +78,14 @@ struct Matrix {
   Budget budget(const Cell& c) const {
     return {settings[c.setting].budget, budgets(c.scene, c.setting)[c.budget]};
   }
-  /// All cells in the order in which they are measured: scene by scene, and within a scene the repeats
-  /// outermost, every second one backwards, so that a machine that drifts meets all settings alike.
+  /// All cells in the order of measurement: scene by scene, and within a scene the repeats outermost, every
+  /// second one backwards, so that a drift of the machine affects all settings equally.
   std::vector<Cell> cells() const;
-  /// A name for a cell that serves as a file's: "glass.adaptive.2.0".
+  /// A name for a cell, suitable for files: "glass.adaptive.2.0".
   std::string id(const Cell& c) const;
 };
 
-/// Its place in Matrix::settings.
+/// Its index in Matrix::settings.
 std::optional<size_t> find_setting(const Matrix& matrix, const std::string& name);
 
 /// Reads a matrix; `where` locates messages, `folder` is what relative scene files start from. Throws Error,
@@ -93,7 +93,7 @@ std::optional<size_t> find_setting(const Matrix& matrix, const std::string& name
 /// types, values out of range, unknown settings, programs that cannot be run, names used twice, scenes that
 /// do not exist, and settings without a budget. k_matrix_help says what may stand in it.
 Matrix parse_matrix(const std::string& text, const std::string& where, const std::filesystem::path& folder);
-/// The same from a file, whose folder scene files are relative to.
+/// Likewise, from a file; relative scene files start from its folder.
 Matrix read_matrix(const std::filesystem::path& file);
 
 struct BuiltinInfo {
@@ -101,7 +101,7 @@ struct BuiltinInfo {
   std::string matrix;  ///< JSON
 };
 /// "quick": three scenes in small pictures, within ten minutes on two cores. "full": larger, with the atrium,
-/// more budgets and the settings that solvers want to be measured with. Then those that solvers bring.
+/// more budgets and the solvers' bench settings. Then the matrices of solvers.
 std::vector<BuiltinInfo> builtin_matrices();
 /// One of them, with scenes taken from `scenes`. Throws Error when there is none of that name.
 Matrix builtin_matrix(const std::string& name, const std::filesystem::path& scenes);

@@ -54,7 +54,7 @@ const char* const k_full = R"({
   ]
 })";
 
-/// k_full with the settings that solvers want to be measured with in it.
+/// k_full with the settings that solvers provide for it.
 std::string full_matrix() {
   std::string text = k_full, rows;
   for (const solvers::SolverInfo* solver : solvers::registered())

@@ -10,13 +10,13 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// 0 where it is missing: older programs write fewer figures.
+/// 0 if missing: older programs write fewer figures.
 double number(const Json& stats, const char* key) {
   const auto at = stats.find(key);
   return at != stats.end() && at->is_number() ? at->get<double>() : 0;
 }
 
-/// A layer's colours; all 0 where there is no such layer.
+/// Colours of a layer; all 0 if it is missing.
 std::vector<vec3> layer(const film::FilmImage& picture, const std::string& name) {
   std::vector<vec3> all(size_t{picture.width} * picture.height, vec3(0));
   for (int k = 0; k < 3; ++k)
@@ -95,7 +95,7 @@ Result read_outside(const OutsideFiles& files, const SceneEntry& scene, const Re
   r.dropped = uint64_t(number(stats, "dropped"));
   r.samples = double(r.paths) / (double(scene.width) * scene.height);
   if (const auto error = stats.find("error"); error != stats.end() && error->is_object()) {
-    // Programs from before errors as seen name it so.
+    // Name of the error in programs from before errors as seen.
     r.estimated[0] = number(*error, error->contains("of_mean") ? "of_mean" : "relative");
     r.tiles.median = number(*error, "tile_median"), r.tiles.decile = number(*error, "tile_worst_decile");
     r.tiles.worst = number(*error, "tile_worst");

@@ -18,15 +18,15 @@ struct OutsideFiles {
   std::filesystem::path shown;  ///< PNG; "": none is wanted
 };
 
-/// The arguments of `PROGRAM render` for a cell, `values` the settings of all levels together but samples,
-/// seed and target error. What ends it is the cell's budget alone, whatever limits the scene itself names;
-/// where that is of seconds, so many `times` as long.
+/// Arguments of `PROGRAM render` for a cell; `values`: settings of all levels except samples, seed and target
+/// error. Only the cell's budget ends it, whatever limits the scene sets; a budget in seconds is multiplied
+/// by `times`.
 std::vector<std::string> outside_arguments(const Matrix& matrix, const Cell& cell,
                                            const SettingValues& values, const std::string& device,
                                            const scene::LoadOptions& scenes, const OutsideFiles& files,
                                            double times = 1);
 
-/// Whether it has ended because no pixel had a sample when its time was over.
+/// True if it ended because no pixel had a sample within its time.
 bool out_of_time(const ProgramResult& result);
 
 /// The figures of the picture that it has written, which are a curve of one point; names and budget of the

@@ -44,7 +44,7 @@ std::string heading(const Json& report) {
   return html + settings_table(report);
 }
 
-/// Nothing for reports from before it was measured.
+/// "" for reports from before it was measured.
 std::string relative_times(const Json& report) {
   for (const Json& scene : report.at("scenes"))
     for (const Json& s : scene.at("settings"))
@@ -93,7 +93,7 @@ std::string relative_times(const Json& report) {
          "plain sampling does.</p>\n";
 }
 
-/// Nothing for reports from before it was measured.
+/// "" for reports from before it was measured.
 std::string seen_times(const Json& report) {
   for (const Json& scene : report.at("scenes"))
     for (const Json& s : scene.at("settings"))
@@ -147,7 +147,7 @@ std::string index_table(const Json& report) {
   return html + "</table></div>\n";
 }
 
-/// That light was looked up in; 0 without any, and in reports from before they were counted.
+/// Number of records for lookups; 0 without any, and in reports from before they were counted.
 double records_of(const Json& cell) { return cell.contains("records") ? median_of(cell.at("records")) : 0; }
 
 bool has_records(const Json& scene) {
@@ -170,14 +170,15 @@ std::string cells_table(const Json& report, const Json& scene) {
   std::string html =
       "<div class=\"wrap\"><table><tr><th class=\"l\">setting</th><th "
       "class=\"l\">budget</th><th>seconds</th><th>samples<br/>a pixel</th><th>rays</th><th>rays a "
-      "second</th><th>error told of<br/>the mean</th><th>of the<br/>median tile</th><th>of the "
+      "second</th><th>estimated error<br/>of the mean</th><th>of the<br/>median tile</th><th>of the "
       "worst<br/>tenth of "
       "the tiles</th><th>true error<br/>of the mean</th><th>not<br/>reached</th>";
   const bool with_records = has_records(scene);
-  html += with_records
-              ? "<th>records</th><th>their rays</th><th>told of the mean:<br/>paths</th><th>records</th>"
-                "<th>inter-<br/>polation</th></tr>\n"
-              : "</tr>\n";
+  html +=
+      with_records
+          ? "<th>records</th><th>their rays</th><th>estimated for the mean:<br/>paths</th><th>records</th>"
+            "<th>inter-<br/>polation</th></tr>\n"
+          : "</tr>\n";
   for (const Json& s : scene.at("settings")) {
     for (const Json& c : s.at("cells")) {
       const double seconds = median_of(c.at("wall_s"));

@@ -7,13 +7,13 @@
 
 namespace lucerna::bench {
 
-/// HTML (well-formed as XML but for its first line) of a report as make_report() makes it; `pictures` is the
-/// folder that the runner left pictures in (what is missing there is left out; error pictures are also
-/// written there as PNG). Throws Error when the report lacks what every report has.
+/// HTML (well-formed XML apart from the first line) of a report by make_report(). `pictures`: folder with the
+/// runner's pictures (missing ones are left out; error pictures are also written there as PNG). Throws Error
+/// if the report is incomplete.
 std::string make_page(const nlohmann::ordered_json& report, const std::filesystem::path& pictures);
 
-/// One sentence a scene and measure on what the figures say, ratios within the noise never told as a gain. Of
-/// the settings of one curve the best is told; and of two curves how many records they take to one error.
+/// One sentence per scene and measure; ratios within the noise are never reported as a gain. Of the settings
+/// of one curve the best is reported; of two curves, the number of records for one error.
 std::vector<std::string> findings(const nlohmann::ordered_json& report);
 
 }  // namespace lucerna::bench

@@ -14,9 +14,9 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr uint32_t k_picture_width = 344;  ///< at most, on the page
+constexpr uint32_t k_picture_width = 344;  ///< maximum on the page
 
-/// An error as a measure gives it: relative mean squared errors as they are, others in per cent.
+/// An error in the form of its measure: relative mean squared errors as numbers, others in per cent.
 std::string error_text(const std::string& measure, double error) {
   return measure == "relmse_time" ? fmt::format("{:.3g}", error) : fmt::format("{:.4g} %", 100 * error);
 }
@@ -84,7 +84,7 @@ std::string key_of(size_t setting) {
   return fmt::format("<span class=\"key\" style=\"background:{}\"></span>", setting_colour(setting));
 }
 
-/// A ratio, accented when it is a gain beyond the noise and dim when it is none.
+/// A ratio, accented if it is a gain beyond the noise and dim if within.
 std::string ratio_cell(const Json& entry, bool extrapolated) {
   if (!entry.contains("ratio")) return "<span class=\"noise\">1</span>";
   const double ratio = entry.at("ratio").get<double>();
@@ -142,7 +142,7 @@ std::string pictures(const Json& scene, const fs::path& folder, const ErrorPictu
   uint32_t width = 0, height = 0;
   if (std::sscanf(text_of(scene, "size").c_str(), "%ux%u", &width, &height) != 2 || !width || !height)
     return "";
-  // Whole screen pixels a pixel where there is room for them.
+  // Whole screen pixels per pixel if there is room.
   const double zoom =
       width <= k_picture_width ? double(k_picture_width / width) : double(k_picture_width) / width;
   const auto w = uint32_t(std::lround(zoom * width)), h = uint32_t(std::lround(zoom * height));

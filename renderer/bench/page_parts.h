@@ -8,7 +8,7 @@
 
 namespace lucerna::bench {
 
-/// What the error as seen is, for a person: one sentence or two.
+/// Explanation of the error as seen: one sentence or two.
 extern const char* const k_about_seen;
 
 /// From <!DOCTYPE to <main>.

@@ -49,7 +49,7 @@ std::vector<PlotLine> record_curves(const Json& report, const Json& scene) {
     const double records = median_of(cell.at("records"));
     Spread error = spread_of(cell.at("true"));
     if (!(records > 0) || !(error.median > 0) || cell.value("in_reference_noise", false)) continue;
-    // A repeat that is lost in that noise has an error of less than can be told, not of nothing.
+    // A repeat lost in that noise has an error below the measurable one, not an error of 0.
     if (!(error.low > 0)) error.low = floor > 0 ? std::min(floor, error.median) : error.median;
     auto line =
         std::find_if(curves.begin(), curves.end(), [&](const PlotLine& l) { return l.name == curve; });
@@ -92,7 +92,7 @@ size_t index_of(const Json& report, const std::string& setting) {
     const std::string curve = text_of(s, "curve");
     size_t here = place;
     if (curve.empty()) {
-      curves.emplace_back();  // a place of its own
+      curves.emplace_back();  // separate curve
       ++place;
     } else if (const auto at = std::find(curves.begin(), curves.end(), curve); at != curves.end()) {
       here = size_t(at - curves.begin());

@@ -1,5 +1,5 @@
 #pragma once
-// The plots of one scene on the page, and what they share with its tables.
+// Plots of one scene on the page, and what tables share with them.
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>

@@ -33,13 +33,13 @@ std::string lead(const Json& report) {
                   : "Of one repeat each, how far they can be trusted is not known.");
 }
 
-/// A list of the report; an empty one where it has none of that name.
+/// A list of the report; empty if it is missing.
 const Json& list_of(const Json& report, const char* key) {
   static const Json k_none = Json::array();
   return report.contains(key) ? report.at(key) : k_none;
 }
 
-/// The geometric means over the scenes.
+/// Geometric means over the scenes.
 std::string means(const Json& report) {
   if (!report.contains("seen_ratios") && !report.contains("seen_besides")) return "";
   std::vector<std::string> budgets;
@@ -75,7 +75,7 @@ std::string means(const Json& report) {
   return html + "</table>\n";
 }
 
-/// The cell of a budget; null where it was not rendered.
+/// The cell of a budget; null if it was not rendered.
 const Json* cell_of(const Json& setting, const std::string& budget) {
   for (const Json& cell : setting.at("cells"))
     if (text_of(cell, "budget") == budget) return &cell;
@@ -128,7 +128,7 @@ std::string errors_table(const Json& report) {
   return html + "</table></div>\n";
 }
 
-/// What references leave to the figures, scene by scene.
+/// Uncertainty of the figures from the references, scene by scene.
 std::string references_table(const Json& report) {
   std::string html =
       "<h2>The measurement itself</h2>\n<p>References are plain path tracing with another seed; the two "

@@ -25,8 +25,8 @@ struct Slope {
   double value = 0, low = 0, high = 0;
 };
 
-/// One render: luminance of each pixel after each of several rounds, and an independent estimate of the truth
-/// with noise of its own (empty: bias is not asked for).
+/// One render: luminance of each pixel after each of several rounds, and an independent noisy estimate of the
+/// truth (empty: no bias is measured).
 struct SeedPictures {
   std::vector<std::vector<float>> after;
   std::vector<float> truth;
@@ -46,9 +46,9 @@ struct ErrorCurves {
 ErrorCurves error_curves(std::span<const SeedPictures> renders, std::span<const uint8_t> mask,
                          std::optional<size_t> without = {});
 
-/// Slopes of the three curves over `x` (one a picture), with intervals by the jackknife over renders (R.
-/// Miller 1974): the slopes of all curves that leave one render out. Nothing for a curve that is lost in
-/// noise at a point, in whole or with a render left out, and with fewer than three renders.
+/// Slopes of the three curves over `x` (one per picture), with jackknife intervals over renders (R. Miller
+/// 1974). nullopt for a curve below the noise at a point, in whole or with a render left out, and with fewer
+/// than three renders.
 std::array<std::optional<Slope>, 3> error_slopes(std::span<const double> x,
                                                  std::span<const SeedPictures> renders,
                                                  std::span<const uint8_t> mask);

@@ -27,9 +27,9 @@ using Values = std::vector<std::pair<std::string, std::string>>;
 
 constexpr uint32_t k_reference_seed = 900001;
 constexpr double k_progress_every_s = 0.1;
-/// Two pixels show one plane where the cosine between their mean normals is this near to 1.
+/// Minimum cosine between the mean normals of two pixels on one plane is 1 minus this.
 constexpr float k_plane = 1e-5f;
-constexpr uint32_t k_light_paths = 8192;  ///< of a round whose errors are measured
+constexpr uint32_t k_light_paths = 8192;  ///< light paths of a round for measured errors
 constexpr uint32_t k_lamp_paths = 65536, k_lamp_side = 128, k_rounds_side = 128, k_free_side = 128,
                    k_free_samples = 12;
 
@@ -42,7 +42,7 @@ double median(std::vector<double> v) {
 }
 
 Values alone(const char* component) {
-  Values v{{"photons.efficiency", "false"}};  // photons are measured, not whether they pay
+  Values v{{"photons.efficiency", "false"}};  // photons are measured even if they are less efficient
   for (const char* c : {"primary", "secondary", "tertiary", "caustic"})
     if (c != std::string(component)) v.emplace_back(std::string("components.") + c, "off");
   return v;
@@ -53,19 +53,19 @@ Values operator+(Values a, const Values& b) {
   return a;
 }
 
-/// Renders of which errors are told, over rounds or over radii.
+/// Renders for error curves, over rounds or over radii.
 struct Series {
   const char* name;
   const char* scene;
   const char* component;
-  const char* reference;  ///< who computes the component for the truth; "": noise alone is measured
+  const char* reference;  ///< solver that computes the true component; "": only noise is measured
   double radius, floor, alpha;
-  bool over_radius;  ///< one picture a radius, of so many times `radius`; else one after 1, 2, 4 .. rounds
-  /// Rounds from which on the slope is taken: before, where light is fine, most of the noise is of where
-  /// paths from the eye fall within their pixels, which is stratified over the samples and soon gone.
+  bool over_radius;  ///< one picture per radius, a multiple of `radius`; else one after 1, 2, 4 .. rounds
+  /// First round for the slope: before, in regions of fine light most noise is from the positions of eye
+  /// paths within their pixels, which is stratified over the samples and vanishes soon.
   uint32_t first;
 };
-/// Radii in units of the series' own.
+/// Radii in units of the series' radius.
 constexpr std::array<double, 4> k_radii = {1, 1.26, 1.5874, 2};
 constexpr Series k_series[] = {
     {"caustic, floor off", "glass", "caustic", "light", 3, 0, 2.0 / 3, false, 32},
@@ -88,7 +88,7 @@ class Bench {
   Json run();
 
  private:
-  // Units: what is measured in one go and kept as a file, with about what it takes.
+  // Unit: a measurement stored as one file, with its approximate effort.
   struct Unit {
     std::string name;
     fs::path file;
@@ -124,7 +124,7 @@ class Bench {
     for (const auto& [key, value] : values) list.push_back({key, value, ""});
     return list;
   }
-  /// Until every pixel has so many samples.
+  /// Renders until every pixel has that many samples.
   void render_to(Renderer& r, uint32_t samples) {
     while (r.samples() < samples && !r.done()) {
       if (hooks_.interrupted()) throw Interrupted{};
@@ -137,7 +137,7 @@ class Bench {
     if (!at_once && since_progress_.seconds() < k_progress_every_s) return;
     since_progress_.restart();
     status_.fraction = std::min(1.0, fraction);
-    // By how long what is done has taken, the unit under way with its part.
+    // From the time of finished units, including the finished part of the current one.
     const double done = done_ + status_.fraction * current_, all = effort_;
     if (done > 0.02 * all) status_.left_s = clock_.seconds() * (all - done) / done;
     hooks_.progress(status_);
@@ -151,7 +151,8 @@ class Bench {
   const ReportFolder& folder_;
   const Hooks& hooks_;
   std::vector<Unit> units_;
-  std::map<std::string, std::unique_ptr<Renderer>> renderers_;  ///< of the slopes, one a series' settings
+  std::map<std::string, std::unique_ptr<Renderer>>
+      renderers_;  ///< renderers of the slopes, one per settings of a series
   Status status_;
   Timer clock_, since_progress_;
   double effort_ = 0, done_ = 0, current_ = 0;
@@ -164,8 +165,7 @@ std::vector<float> luminance_of(const film::Image& image) {
   return all;
 }
 
-/// 1 where a pixel and the four around it show one plane: what is seen there is lit itself, and is no mirror
-/// image in something curved.
+/// 1 if a pixel and its four neighbours show one plane, which excludes mirror images in curved surfaces.
 std::vector<float> planes_of(const film::Image& image) {
   std::vector<float> plane(image.samples.size(), 1.0f);
   const auto w = int(image.width), h = int(image.height);
@@ -180,7 +180,7 @@ std::vector<float> planes_of(const film::Image& image) {
   return plane;
 }
 
-/// After 1, 2, 4 .. rounds, or of every radius after all of them.
+/// After 1, 2, 4 .. rounds, or for every radius after all of them.
 std::vector<double> places_of(const Series& s, uint32_t rounds) {
   std::vector<double> places;
   if (s.over_radius)
@@ -202,7 +202,7 @@ film::FilmImage Bench::after_rounds(const Series& s, uint32_t seed) {
     r = load(s.scene, o_.side, v);
   }
   const std::vector<double> places = places_of(s, o_.rounds);
-  // Bias is what is wanted of a radius: few rounds are enough.
+  // Only the bias is needed for radii: few rounds suffice.
   const uint32_t samples = s.over_radius ? std::max(8u, o_.rounds / 8) : o_.rounds;
   for (size_t k = 0; k < places.size(); ++k) {
     if (k == 0 || s.over_radius) {
@@ -306,7 +306,7 @@ Json Bench::slopes() const {
       if (*s.reference) point["bias"] = curves.bias[k], point["error"] = curves.error[k];
       j["points"].push_back(point);
     }
-    // The slopes are taken from where the law has settled.
+    // Slopes start where the law is asymptotic.
     size_t from = 0;
     while (!s.over_radius && from + 3 < places.size() && places[from] < s.first) ++from;
     const std::vector<double> x(places.begin() + long(from), places.end());
@@ -342,7 +342,7 @@ Json Bench::slopes() const {
   return all;
 }
 
-/// Medians over rounds, the first (which compiles) left out.
+/// Medians over rounds without the first, which compiles.
 Json Bench::timed_rounds(Renderer& r, uint32_t paths) {
   std::vector<double> wall, cpu, trace, build;
   double photons = 0;
@@ -377,7 +377,7 @@ Json Bench::timed_rounds(Renderer& r, uint32_t paths) {
           {"gathered_per_s", rates.value("gathered", 0.0)},
           {"casters", statistics.value("casters", 0)},
           {"bytes", statistics.value("bytes", 0.0)},
-          // Of light paths and their photons' sorting.
+          // Time of light paths and the sorting of their photons.
           {"cpu_us_a_path", w > 0 ? 1e6 * median(cpu) * (t + b) / w / paths : 0}};
 }
 
@@ -393,8 +393,8 @@ void Bench::plan_rounds() {
          }});
 }
 
-/// The scene `glass` without its lamp, under so many lamps without extent, spread over its ceiling, that are
-/// as strong together.
+/// The scene `glass` without its lamp, under that many point lamps spread over its ceiling, with equal total
+/// power.
 std::shared_ptr<const scene::Scene> with_lamps(const fs::path& file, uint32_t count) {
   scene::Scene s = scene::load(file);
   for (scene::Material& m : s.materials) m.emission = vec3(0), m.emission_texture = {};
@@ -426,7 +426,7 @@ void Bench::plan_lamps() {
                       }});
 }
 
-/// Renders of a scene where nothing mirrors or refracts, in turns, every second pair the other way round.
+/// Renders of a scene without mirrors or glass, alternately, every second pair in reverse order.
 void Bench::plan_free() {
   units_.push_back(
       {"cornell, nothing that bundles light", unit("free.json"), 2.0 * o_.pairs, [this](const fs::path& f) {
@@ -496,7 +496,7 @@ Json Bench::run() {
 }  // namespace
 
 nlohmann::ordered_json to_json(const PhotonBenchOptions& o) {
-  // What belongs to some parts alone is told with these: another list of paths measures no slope anew.
+  // Values of single parts are stored with them, so that another list of paths does not repeat the slopes.
   return {{"name", "photons"},
           {"side", o.side},
           {"seeds", o.seeds},
@@ -513,7 +513,7 @@ std::optional<nlohmann::ordered_json> measure_photons(const PhotonBenchOptions& 
   } catch (const Interrupted&) {
     return std::nullopt;
   } catch (const Error&) {
-    // Loading and compiling end with an Error when they are cancelled.
+    // Loading and compiling end with an Error if cancelled.
     if (!hooks.interrupted()) throw;
     return std::nullopt;
   }

@@ -28,12 +28,12 @@ struct PhotonBenchOptions {
   std::string device;
 };
 
-/// For the report folder's claim: what is measured.
+/// Description of the measurement, for the report folder.
 nlohmann::ordered_json to_json(const PhotonBenchOptions& options);
 
-/// Measures what the folder ("units" is its part) does not hold yet: a unit is one render of the slopes, one
-/// number of paths or lamps, or all pairs. Throws Error as loading and rendering do; nothing where it was
-/// interrupted: what was finished is kept. The result, by part (those asked for):
+/// Measures what the folder ("units" is its part) does not contain yet: a unit is one render of the slopes,
+/// one number of paths or lamps, or all pairs. Throws Error like loading and rendering; nullopt if
+/// interrupted: finished units are kept. The result, by requested part:
 ///   slopes [{series, scene, what, radius, floor, alpha, points [{rounds, noise, bias, error}], slopes [{of,
 ///     over, value, low, high, expected, why}], pixels, seeds, mean}]: "over" rounds or radius;
 ///   rounds [{paths, photons, wall_s, cpu_s, trace_s, build_s, build_share, emitted_per_s, stored_per_s,
@@ -49,7 +49,7 @@ std::string photons_text(const nlohmann::ordered_json& report);
 /// The page, as make_page() makes one.
 std::string photons_page(const nlohmann::ordered_json& report);
 
-/// Whether a measured slope keeps its promise: within a tenth of the expected one.
+/// True if a measured slope is within a tenth of the expected one.
 bool slope_kept(double measured, double expected);
 
 }  // namespace lucerna::bench

@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Costs that differ by less than this factor are told to be the same.
+/// Costs within this factor are reported as equal.
 constexpr double k_flat = 1.25;
 constexpr double k_free_promise = 0.01;
 
@@ -30,7 +30,7 @@ std::string measured(const Json& slope) {
                      slope_text(slope.at("low").get<double>()), slope_text(slope.at("high").get<double>()));
 }
 
-/// Of rows from `from` on: the largest cost of a path over the smallest.
+/// Largest over smallest cost of a path in the rows from `from`.
 double growth(const Json& rows, size_t from) {
   double least = 1e300, most = 0;
   for (size_t i = from; i < rows.size(); ++i) {
@@ -40,7 +40,7 @@ double growth(const Json& rows, size_t from) {
   return least > 0 && least < 1e300 ? most / least : 0;
 }
 
-/// What a light path costs by `what`, and from where on it is the same for all.
+/// Cost of a light path over `what`, and the value from which it is constant.
 std::string cost_text(const Json& rows, const char* what) {
   const auto at = [&](size_t i) { return rows[i].at(what).get<uint32_t>(); };
   std::string text = fmt::format(
@@ -76,7 +76,7 @@ std::vector<std::string> photon_findings(const Json& report) {
                     f.at("rays_with_photons").get<uint64_t>(), f.at("rays").get<uint64_t>(),
                     high < k_free_promise  ? "under 1 %"
                     : low > k_free_promise ? "over 1 %"
-                                           : "not to be told from 1 %"));
+                                           : "not distinguishable from 1 %"));
   }
   return all;
 }
@@ -122,7 +122,7 @@ Table rounds_table(const Json& rows, const char* what) {
   return t;
 }
 
-/// Of the largest round.
+/// Figures of the largest round.
 std::optional<double> bytes_a_million(const Json& rows) {
   const double photons = rows.back().at("photons").get<double>();
   if (!(photons > 0)) return std::nullopt;

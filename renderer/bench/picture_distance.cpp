@@ -47,7 +47,7 @@ PictureDistance picture_distance(std::span<const float> shown, std::span<const f
     ++lit;
     black += a[i] < 0.05f * b[i];
   }
-  // What remains of a right picture is as often below 0 as above, and sums to nothing.
+  // For a correct picture the rest is below 0 as often as above, with expectation 0.
   std::vector<double> errors;
   for (const Tile& t : tiles) {
     const double left = t.square > 0 ? 1 - t.noise / t.square : 0;

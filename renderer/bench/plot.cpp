@@ -18,7 +18,7 @@ struct Axis {
   double at(double x) const { return from + (to - from) * std::log(x / lo) / std::log(hi / lo); }
 };
 
-/// Widened to at least a factor and by a little on both sides, so that lines do not touch the frame.
+/// Range widened to a minimum factor and by a margin on both sides, so that lines do not touch the frame.
 void widen(double& lo, double& hi, double factor, double margin) {
   const double k = std::sqrt(std::max(1.0, factor / (hi / lo)));
   lo /= k * margin, hi *= k * margin;
@@ -40,12 +40,12 @@ const char* across_text(Across across) {
   return "seconds of rendering";
 }
 
-/// Thousands of records as "5 k": the whole number would not fit between two ticks.
+/// Thousands of records as "5 k", which fits between two ticks.
 std::string tick_text(double x, Across across) {
   return across == Across::records && x >= 1000 ? short_number(x / 1000) + " k" : short_number(x);
 }
 
-/// 1-2-5 ticks, thinned to powers of ten when they would crowd; of a short axis more than these.
+/// 1-2-5 ticks, reduced to powers of ten if crowded; more for a short axis.
 std::vector<double> axis_ticks(const Axis& axis, double gap) {
   std::vector<double> ticks = log_ticks(axis.lo, axis.hi);
   if (ticks.size() < 3)

@@ -20,7 +20,7 @@ constexpr int k_poll_ms = 50;
 constexpr double k_patience_s = 2;
 constexpr int k_not_started = 127;
 
-/// In the child: only what is safe after a fork of a program with threads.
+/// In the child process: only calls that are safe after fork() in a program with threads.
 [[noreturn]] void become(const char* program, char* const* arguments, int output) {
   setpgid(0, 0);
   prctl(PR_SET_PDEATHSIG, SIGKILL);

@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-/// FNV-1a of pieces, each with its length so that they cannot run into each other.
+/// FNV-1a of strings, each with its length, so that concatenations differ.
 class Pieces {
  public:
   void add(std::string_view bytes) {
@@ -41,7 +41,7 @@ std::string decode_uri(const std::string& uri) {
   return text;
 }
 
-/// Every text under a key "uri" (buffers, images) or "file" (environments), wherever it stands.
+/// Every text under a key "uri" (buffers, images) or "file" (environments), at any depth.
 void collect_files(const Json& json, std::set<std::string>& files) {
   if (json.is_object()) {
     for (const auto& [key, value] : json.items()) {
@@ -74,7 +74,7 @@ void set_aside(const fs::path& file, const std::string& why, const Message& mess
   std::error_code code;
   fs::rename(file, old, code);
   if (code) throw_error(file.string(), "{}, and it cannot be renamed: {}", why, code.message());
-  message(fmt::format("{}: {}; it is made anew (the old one is now {})", file.string(), why,
+  message(fmt::format("{}: {}; it is rendered again (the old one is now {})", file.string(), why,
                       old.filename().string()));
 }
 
@@ -108,7 +108,7 @@ std::string reference_key(const Matrix& matrix, const SceneEntry& scene, const s
          {"camera", scene.camera}, {"seed", matrix.reference_seed}, {"version", LUCERNA_VERSION},
          {"halves", true}};
   SettingValues values = scene.set;
-  values.insert(matrix.set.begin(), matrix.set.end());  // the scene's stand
+  values.insert(matrix.set.begin(), matrix.set.end());  // the scene's values take precedence
   for (const auto& [key, value] : values)
     if (!solvers::owner_of(key)) j["set"][key] = value;
   Pieces hash;
@@ -137,7 +137,7 @@ void add_odd_half(film::FilmImage& reference, const film::Image& image) {
 
 film::ReferencePair read_halves(const film::FilmImage& reference, const std::string& where) {
   const std::vector<float>* samples = reference.find("samples");
-  if (!samples) throw_error(where, "no channel 'samples'; the halves of the samples cannot be told");
+  if (!samples) throw_error(where, "no channel 'samples'; the halves of the samples cannot be separated");
   film::ReferencePair pair{.width = reference.width,
                            .first = std::vector<vec3>(samples->size()),
                            .second = std::vector<vec3>(samples->size())};
@@ -190,7 +190,7 @@ std::optional<ReferenceInfo> find_reference(const fs::path& folder, const SceneE
     else if (info.samples < scene.reference_samples)
       why = fmt::format("has {} samples, {} are wanted", info.samples, scene.reference_samples);
     else if (!reference.noise)
-      why = "does not tell its own noise";
+      why = "has no estimate of its own noise";
   } catch (const Error& e) {
     why = e.what();
     // The message names the file itself.

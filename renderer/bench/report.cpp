@@ -21,14 +21,14 @@ Json to_json(const Spread& s) { return {{"median", s.median}, {"low", s.low}, {"
 /// The repeats of one setting on one scene, by budget.
 struct Group {
   std::vector<std::vector<const Result*>> budgets;
-  /// Those of the largest budget that has any: their curves are the setting's.
+  /// Results of the largest budget with any: their curves are those of the setting.
   const std::vector<const Result*>& largest() const {
     static const std::vector<const Result*> k_none;
     for (size_t b = budgets.size(); b-- > 0;)
       if (!budgets[b].empty()) return budgets[b];
     return k_none;
   }
-  /// Of a setting with a program of its own, by repeats: the points of all its budgets in one. Its curves.
+  /// For a setting with a separate program, by repeat: the points of all its budgets as one curve.
   std::vector<Result> joined;
   std::vector<const Result*> with_curves() const {
     if (joined.empty()) return largest();
@@ -38,7 +38,7 @@ struct Group {
   }
 };
 
-/// Of another program only the end of a render is known: the ends of a repeat's budgets are its curve.
+/// Joins a repeat's budgets into its curve, because only the end of another program's render is available.
 std::vector<Result> join_budgets(const Group& group) {
   std::map<int, Result> repeats;
   for (const auto& results : group.budgets)
@@ -63,7 +63,7 @@ std::vector<double> collect(const std::vector<const Result*>& results, F value) 
   return values;
 }
 
-/// Points whose error is to be told from the reference's noise.
+/// Points whose error exceeds the reference's noise.
 Curve true_curve(const Result& r, double reference_noise) {
   Curve curve;
   for (const CurvePoint& p : r.curve)
@@ -78,7 +78,7 @@ Curve tiles_curve(const Result& r) {
   return curve;
 }
 
-/// Of the roots, so that its square falls as one over the time like that of the other errors.
+/// Curve of the roots, whose square falls as 1 / time, like the other errors.
 Curve relmse_curve(const Result& r) {
   Curve curve;
   for (const CurvePoint& p : r.curve)
@@ -86,7 +86,7 @@ Curve relmse_curve(const Result& r) {
   return curve;
 }
 
-/// As relmse_curve().
+/// Like relmse_curve().
 Curve seen_curve(const Result& r) {
   Curve curve;
   for (const CurvePoint& p : r.curve)
@@ -116,17 +116,17 @@ Reached reached(const std::vector<Curve>& curves, double target) {
     seconds.push_back(r.seconds), ++kinds[size_t(r.kind)];
   }
   if (seconds.empty()) return {};
-  // Half the repeats decide, for theirs is the median.
+  // Half of the repeats suffice, because the median is reported.
   ReachKind kind = ReachKind::measured;
   for (const ReachKind k : {ReachKind::at_once, ReachKind::extrapolated})
     if (2 * kinds[size_t(k)] >= seconds.size()) kind = k;
   return {kind, spread(seconds), seconds};
 }
 
-/// What errors are called in the report.
+/// Names of errors in the report.
 struct Scale {
-  std::vector<double> targets;  ///< of the curves
-  bool squared = false;         ///< the report gives their squares
+  std::vector<double> targets;  ///< targets of the curves
+  bool squared = false;         ///< the report contains their squares
   double shown(double error) const { return squared ? error * error : error; }
   double from_shown(double error) const { return squared ? std::sqrt(error) : error; }
 };
@@ -152,7 +152,7 @@ std::vector<double> mean_times(const std::vector<Curve>& curves, const Scale& sc
   return times;
 }
 
-/// 1 / (squared error as seen * seconds) of each, as far as it is known.
+/// 1 / (squared error as seen * seconds) of each render, if known.
 std::vector<double> seen_indices(const std::vector<const Result*>& results) {
   std::vector<double> values;
   for (const Result* r : results)
@@ -171,12 +171,12 @@ std::vector<double> indices(const std::vector<const Result*>& results) {
 void add_ratio(Json& json, double ratio, const std::optional<double>& noise) {
   json["ratio"] = ratio;
   if (!noise) return;
-  const double bound = *noise * (1 + 1e-9);  // repeats that are equal to the bit have no noise at all
+  const double bound = *noise * (1 + 1e-9);  // bit-identical repeats have no noise
   json["noise"] = ratio <= bound && ratio >= 1 / bound;
   json["low"] = ratio / *noise, json["high"] = ratio * *noise;
 }
 
-/// The ratio of two times with its noise: that of the scene, or of these very times when they scatter more.
+/// Ratio of two times with its noise: that of the scene, or of these times if they scatter more.
 void add_time_ratio(Json& json, const Reached& here, const Reached& there,
                     const std::optional<double>& of_scene) {
   const std::vector<double> both[] = {here.repeats, there.repeats};
@@ -201,14 +201,14 @@ Json times_json(const std::vector<Curve>& curves, const std::vector<Curve>& base
   return list;
 }
 
-/// Two figures, rounded up.
+/// Two significant digits, rounded up.
 double round_up(double x) {
   const double unit = std::pow(10.0, std::floor(std::log10(x)) - 1);
   return std::ceil(x / unit - 1e-9) * unit;
 }
 
-/// The smallest error that half the repeats of both settings have reached for good, and how much sooner: the
-/// one ratio that rests on nothing but measurements.
+/// The smallest error that half the repeats of both settings reach permanently, and the ratio of times: the
+/// only ratio without extrapolation.
 std::optional<Json> common_json(const std::vector<Curve>& curves, const std::vector<Curve>& baseline,
                                 const std::optional<double>& noise, const Scale& scale) {
   double error = 0;
@@ -295,7 +295,7 @@ std::optional<Json> forecast_json(const std::vector<const Result*>& results) {
               {"of", n}};
 }
 
-/// The largest time of the series 1, 2, 5, 10 .. that is not above t.
+/// Largest time of the series 1, 2, 5, 10 .. up to t.
 double round_down(double t) {
   const double power = std::pow(10.0, std::floor(std::log10(t)));
   for (const double step : {5.0, 2.0})
@@ -303,7 +303,7 @@ double round_down(double t) {
   return power;
 }
 
-/// Short times that all settings have seen on this scene.
+/// Short times covered by all settings on this scene.
 std::vector<double> fixed_times(const std::vector<std::vector<Curve>>& settings) {
   double from = 0, to = 0;
   for (const auto& curves : settings)
@@ -320,7 +320,7 @@ std::vector<double> fixed_times(const std::vector<std::vector<Curve>>& settings)
   return times;
 }
 
-/// What the relative error came to, and the first setting's after as many seconds.
+/// Final relative error, and the first setting's after as many seconds.
 void add_relmse_end(Json& e, const std::vector<const Result*>& results, const std::vector<Curve>& curves,
                     const std::vector<Curve>& baseline, bool is_baseline,
                     const std::optional<double>& noise) {
@@ -343,12 +343,13 @@ void add_relmse_end(Json& e, const std::vector<const Result*>& results, const st
   const Spread first = spread(std::move(theirs));
   e["relmse_end"]["first"] = to_json(first);
   e["relmse_end"]["kind"] = k_kinds[size_t(kind)];
-  // An error after a time scatters as the time to an error does, for it falls as one over it.
+  // Relative noise of a squared error at a time equals that of the time to an error, because error^2 * time
+  // is constant.
   if (own.median > 0) add_ratio(e["relmse_end"], first.median / own.median, noise);
 }
 
-/// How much more efficient as seen, by variance x time, a setting's cells are than those of the same budget
-/// of another one, to each of them as `key`.
+/// Adds to the cells of a setting, as `key`, their efficiency as seen, by variance x time, relative to
+/// another setting's cells of the same budget.
 void add_seen_ratios(Json& cells, const char* key, const std::vector<std::vector<const Result*>>& own,
                      const std::vector<std::vector<const Result*>>& others,
                      const std::optional<double>& noise) {
@@ -456,8 +457,8 @@ Json scene_json(const Matrix& m, size_t s, const std::vector<Group>& groups, dou
   return j;
 }
 
-/// Geometric means over the scenes of what cells have under `key`, by settings and budgets; with an interval
-/// where all scenes' ratios have one.
+/// Geometric means over the scenes of the cells' `key`, by setting and budget; with an interval if the ratios
+/// of all scenes have one.
 void summarize_seen(Json& report, const char* key) {
   struct Mean {
     std::string setting, budget;

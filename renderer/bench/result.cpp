@@ -61,7 +61,7 @@ struct Reader {
     if (!list.is_array() || list.size() != 3) throw_error(where, "'{}': expected three numbers", key);
     x = {number(key, list[0]), number(key, list[1]), number(key, list[2])};
   }
-  /// What older files are without.
+  /// Defaults for older files.
   template <class T>
   void later(const char* key, T& x) const {
     if (json.contains(key)) (*this)(key, x);

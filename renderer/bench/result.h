@@ -1,5 +1,5 @@
 #pragma once
-// What one render of the bench came to, as it lies in the report folder: cells/ID.json.
+// Result of one render of the bench, stored in the report folder: cells/ID.json.
 #include <array>
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
@@ -22,13 +22,13 @@ struct CurvePoint {
   /// Rms error over mean luminance, by the render itself: of the sum stats::Entry::OfMean::sum, of the
   /// components the paths' noise.
   Layers estimated{};
-  Layers truth{};     ///< the same against the reference, its noise taken off; 0: lost in that noise
+  Layers truth{};     ///< likewise, against the reference, without its noise; 0: lost in that noise
   double tiles = 0;   ///< estimated relative error that nine tiles in ten are under
-  double relmse = 0;  ///< as Result::relmse
-  double seen = 0;    ///< as Result::seen
+  double relmse = 0;  ///< like Result::relmse
+  double seen = 0;    ///< like Result::seen
 };
 
-/// What was foretold when a tenth of the render's time was over, against what it came to.
+/// Forecast at a tenth of the render's time, and the final value.
 struct ForecastResult {
   double at_s = 0;  ///< when the forecast was made
   stats::Band seconds, rays;
@@ -39,43 +39,43 @@ struct Result {
   std::string budget;  ///< Budget::text()
   int repeat = 0;
   uint32_t seed = 0;
-  std::string scene_hash;      ///< of the files when it was rendered
-  std::string reference_hash;  ///< of the reference that it was held against
+  std::string scene_hash;      ///< hash of the files when it was rendered
+  std::string reference_hash;  ///< hash of its reference
   std::string tracer;
-  double wall_s = 0, device_s = 0;  ///< of rendering alone
+  double wall_s = 0, device_s = 0;  ///< rendering only
   double setup_s = 0;               ///< loading, compiling, warming up: not in wall_s
   uint64_t rays = 0, paths = 0;
   double samples = 0;
   Layers estimated{}, truth{}, component_s{};
   struct {
     double paths = 0, records = 0, interpolation = 0;
-  } parts;  ///< of estimated[0], by where it comes from (base/error_sum.h); 0 in files from before they were
-            ///< told apart
-  double mse = 0;  ///< squared true rms error in luminance, the reference's noise taken off
+  } parts;         ///< parts of estimated[0] (base/error_sum.h); 0 in files from before they were
+                   ///< separated
+  double mse = 0;  ///< squared true rms error in luminance, without the reference's noise
   /// Relative mean squared error of R, G, B against the reference's halves, without the worst pixels
-  /// (film/io/relative_mse.h), and with them; 0: less than nothing, lost in their noise.
+  /// (film/io/relative_mse.h), and with them; 0: below 0, lost in their noise.
   double relmse = 0, relmse_all = 0;
-  /// The squared error as it is seen, without the worst pixels (film/io/relative_mse.h), and with them; 0:
-  /// less than nothing, lost in the references' noise, or in files from before it was measured.
+  /// The squared error as seen, without the worst pixels (film/io/relative_mse.h), and with them; 0: below 0,
+  /// lost in the references' noise, or in files from before it was measured.
   double seen = 0, seen_all = 0;
-  bool in_reference_noise = false;  ///< truth not to be told from the reference's own noise
+  bool in_reference_noise = false;  ///< truth is not distinguishable from the reference's noise
   struct {
     double median = 0, decile = 0, worst = 0;  ///< estimated relative errors
-    uint64_t heavy = 0;                        ///< whose light comes in rare large amounts
-    uint64_t over = 0;  ///< adaptive: over the target with all the samples they may have
+    uint64_t heavy = 0;                        ///< number with light in rare large amounts
+    uint64_t over = 0;  ///< adaptive: number above the target with the maximum of samples
   } tiles;
-  uint64_t dropped = 0;  ///< contributions that were not finite
-  /// Records that light was looked up in, in the end, and their rays; 0 without any, and in files
-  /// from before they were counted.
+  uint64_t dropped = 0;  ///< number of contributions that were not finite
+  /// Final number of records for lookups, and their rays; 0 without records, and in files from before they
+  /// were counted.
   uint64_t records = 0, record_rays = 0;
   std::optional<ForecastResult> forecast;
   std::vector<CurvePoint> curve;
 };
 
 nlohmann::ordered_json to_json(const Result& result);
-/// Throws Error, located at `where`, for anything that to_json() does not write: half a file, missing or
-/// wrong values (only records, record_rays, relmse_all, a point's relmse and what is as seen may be missing),
-/// a curve that does not go forward.
+/// Throws Error, located at `where`, for anything that to_json() does not write: truncated files, missing or
+/// wrong values (only records, record_rays, relmse_all, a point's relmse and values as seen may be missing),
+/// a curve that is not rising in time.
 Result parse_result(const std::string& text, const std::string& where);
 Result result_from_json(const nlohmann::ordered_json& json, const std::string& where);
 

@@ -18,9 +18,9 @@ namespace fs = std::filesystem;
 using session::Renderer;
 
 constexpr double k_progress_every_s = 0.2;
-constexpr double k_most_waiting = 64;  ///< times the seconds that another program is given
+constexpr double k_most_waiting = 64;  ///< maximum run time of another program over its budget
 
-/// A setting's values above the scene's above those for all.
+/// Values of a setting override those of the scene, which override those for all.
 SettingValues merged(const Matrix& matrix, const SceneEntry& scene, const SettingValues& own) {
   SettingValues values = own;
   values.insert(scene.set.begin(), scene.set.end());
@@ -28,7 +28,7 @@ SettingValues merged(const Matrix& matrix, const SceneEntry& scene, const Settin
   return values;
 }
 
-/// A renderer of its own with the scene loaded and the settings applied. A scene warns once in a bench.
+/// A new renderer with the scene loaded and the settings applied. Warnings of a scene appear once per bench.
 std::unique_ptr<Renderer> make_renderer(const SceneEntry& scene, const SettingValues& values,
                                         const RunOptions& options) {
   auto r = std::make_unique<Renderer>(session::RendererOptions{
@@ -43,7 +43,7 @@ std::unique_ptr<Renderer> make_renderer(const SceneEntry& scene, const SettingVa
   return r;
 }
 
-/// How much of a render is done, 0..1, by whichever of its ends is nearer.
+/// Done part of a render, 0..1, by the nearer of its ends.
 double fraction_done(const Renderer& r, const Budget& budget, double seconds) {
   if (budget.kind == BudgetKind::seconds) return std::min(1.0, seconds / budget.value);
   if (const schedule::AdaptiveSchedule* s = r.adaptive())
@@ -60,7 +60,7 @@ std::vector<vec3> sum_of(const film::Image& image) {
   return sum;
 }
 
-/// How far the picture as it is lies from the truth, by the measures that need both halves of it.
+/// Difference of the present picture from the truth, by the measures that need both of its halves.
 struct Distances {
   film::RelativeMse relative;
   film::SeenMse seen;
@@ -71,7 +71,7 @@ Distances distances(const Renderer& r, const film::ReferencePair& halves) {
   return {film::relative_mse(sum, halves), film::seen_mse(sum, halves)};
 }
 
-/// What is told of the sum; of the components, the paths' noise.
+/// Estimated error of the sum, and of the components the noise of paths.
 Layers estimated_errors(const stats::Entry& e) {
   Layers all = e.of_mean.error;
   all[0] = e.of_mean.sum();
@@ -90,12 +90,12 @@ CurvePoint make_point(const stats::Entry& e, const Distances& distances) {
           .seen = std::max(0.0, distances.seen.trimmed)};
 }
 
-/// What could be foretold at a tenth of the time; nothing when the ledger had no line by then.
+/// Forecast at a tenth of the time; none if the ledger had no line by then.
 std::optional<ForecastResult> make_forecast(const stats::Ledger& ledger, bool adaptive) {
   const auto& entries = ledger.entries();
   stats::Ledger early;
   for (stats::Entry e : entries) {
-    // The bench's clock is that of tracing alone: it holds the picture against a reference in between.
+    // The clock counts only tracing, not comparisons with a reference.
     e.wall_s = e.render_s, e.prepared_s = std::min(e.prepared_s, e.render_s);
     if (e.render_s <= 0.1 * entries.back().render_s) early.add(e);
   }
@@ -111,7 +111,7 @@ std::optional<ForecastResult> make_forecast(const stats::Ledger& ledger, bool ad
     f.rays = *at.total_rays;
     f.seconds = scaled(f.rays, 1 / rays_per_s);
   } else {
-    // Its own records' part, as it will be told in the end: the paths' is what is foretold.
+    // The records' part is the final one: only the noise of paths is predicted.
     const auto seconds = stats::seconds_to(early, entries.back().sum());
     if (!seconds) return std::nullopt;
     f.seconds = *seconds;
@@ -132,18 +132,18 @@ class Run {
  private:
   ReferenceInfo make_reference(const SceneEntry& scene, const std::string& key);
   Result render(const Cell& cell, const ReferenceInfo& reference, const std::string& scene_hash);
-  /// The same by the setting's own program.
+  /// Likewise, by the setting's own program.
   Result render_outside(const Cell& cell, const ReferenceInfo& reference, const std::string& scene_hash);
   bool leaves_pictures(const Cell& cell) const {
     return cell.repeat == 0 && cell.budget + 1 == matrix_.budgets(cell.scene, cell.setting).size();
   }
   void save_error_pictures(const std::vector<vec3>& sum, const Cell& cell, const film::FilmImage& truth,
                            const std::string& where);
-  /// What is long in preparing, and has run all its kernels, is prepared for the clock.
+  /// Prepares solvers with long preparation, after all kernels have run, before the clock starts.
   bool warm(const Renderer& r, double seconds) const {
     return (r.preparing() && r.prepares_warm() && seconds > 20) || r.samples() >= matrix_.warmup;
   }
-  /// Steps on; throws Interrupted when the person wants to stop.
+  /// Advances; throws Interrupted if the user wants to stop.
   bool step(Renderer& r) {
     if (hooks_.interrupted() || !r.step(hooks_.interrupted)) {
       if (hooks_.interrupted()) throw Interrupted{};
@@ -180,7 +180,7 @@ class Run {
 ReferenceInfo Run::make_reference(const SceneEntry& scene, const std::string& key) {
   const Timer timer;
   SettingValues values = merged(matrix_, scene, {});
-  // Plain path tracing, whatever the scene's own settings say; a component that is off stays off.
+  // Plain path tracing, overriding the scene's settings; components that are off stay off.
   for (const OptionInfo& option : plan::options())
     if (option.key.starts_with("components.") && !values.contains(option.key))
       values[option.key] = option.fallback;
@@ -210,7 +210,7 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   const uint32_t seed = matrix_.seed + uint32_t(cell.repeat);
   values["seed"] = std::to_string(seed);
   values["samples"] = std::to_string(budget.kind == BudgetKind::samples ? uint64_t(budget.value) : 1u << 20);
-  // Where time ends it, the samples of no setting do.
+  // With a time budget, samples are unlimited.
   if (budget.kind == BudgetKind::seconds) values.emplace("sampling.max_samples", std::to_string(1u << 20));
   if (budget.kind == BudgetKind::errors) values["sampling.target_error"] = fmt::format("{}", budget.value);
 
@@ -219,7 +219,7 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   const film::ReferencePair halves = read_halves(truth, reference.file.string());
   const auto r = make_renderer(scene, values, options_);
   r->set_reference(reference.file);
-  // The device compiles its kernels when they first run, and the machine's clocks and caches warm up.
+  // Warms up: the device compiles kernels on their first run, and clocks and caches settle.
   while (!warm(*r, setup.seconds()) && !r->done() && step(*r)) report_progress(0);
   r->image_error();
   Result result{.scene = scene.name,
@@ -237,12 +237,11 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
     return budget.kind == BudgetKind::seconds && r->render_seconds() >= budget.value;
   };
   const auto& entries = r->ledger().entries();
-  // A picture that is not there in time, for something was still being prepared, is waited for: its time
-  // tells.
+  // Waits for a picture delayed by preparation; its time is recorded.
   while (!r->done() && (!out_of_time() || entries.empty())) {
     const size_t lines = entries.size();
     if (!step(*r)) break;
-    // Before every pixel has a sample it is not the same picture.
+    // Without a sample in every pixel it is not comparable.
     if (entries.size() > lines && entries.back().has_error)
       result.curve.push_back(make_point(entries.back(), distances(*r, halves)));
     report_progress(fraction_done(*r, budget, r->render_seconds()));
@@ -261,7 +260,7 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   result.component_s = last.component_s;
   const double rms = result.truth[0] * r->reference()->mean_luminance;
   result.mse = rms * rms;
-  // The reference's noise is itself known to a tenth or two; what is left of less than that is nothing.
+  // The reference's noise is uncertain by a tenth or two; remainders below that are not significant.
   result.in_reference_noise = result.truth[0] < 0.7 * reference.noise[0];
   result.relmse = std::max(0.0, relative.trimmed), result.relmse_all = std::max(0.0, relative.all);
   result.seen = std::max(0.0, seen.trimmed), result.seen_all = std::max(0.0, seen.all);
@@ -291,14 +290,14 @@ Result Run::render_outside(const Cell& cell, const ReferenceInfo& reference, con
     fs::remove(files.picture, ignored), fs::remove(files.stats, ignored);
   };
   forget();
-  // A picture that is not there in time is waited for, as above.
+  // Waits for a late picture, as above.
   ProgramResult run;
   for (double times = 1; times <= k_most_waiting; times *= 2) {
     run = run_program(setting.program,
                       outside_arguments(matrix_, cell, merged(matrix_, scene, setting.set), options_.device,
                                         options_.scenes, files, times),
                       {.interrupted = hooks_.interrupted, .waiting = [&](double seconds) {
-                         // Of samples it is not known how far it is.
+                         // its progress in samples is unknown
                          const bool timed = budget.kind == BudgetKind::seconds;
                          report_progress(timed ? std::min(1.0, seconds / (times * budget.value)) : 0);
                        }});
@@ -392,7 +391,7 @@ RunSummary Run::run() {
     summary.complete = true;
   } catch (const Interrupted&) {
   } catch (const Error&) {
-    // Loading and compiling end with an Error when they are cancelled.
+    // Loading and compiling end with an Error if cancelled.
     if (!hooks_.interrupted()) throw;
   }
   for (size_t s = 0; s < references.size(); ++s)

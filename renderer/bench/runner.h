@@ -1,5 +1,5 @@
 #pragma once
-// Runs a matrix: references first, then every cell that the report folder does not hold yet.
+// Runs a matrix: references first, then every cell missing in the report folder.
 #include <functional>
 #include <optional>
 #include <string>
@@ -13,41 +13,41 @@
 namespace lucerna::bench {
 
 struct Status {
-  size_t step = 0, steps = 0;    ///< of the renders still to do when the bench began, references among them
+  size_t step = 0, steps = 0;    ///< renders to do at the start of the bench, including references
   std::string what;              ///< "glass, adaptive, error 5 %, repeat 2 of 3"
-  double fraction = 0;           ///< of this render
-  std::optional<double> left_s;  ///< of the whole bench; nothing before anything is known
+  double fraction = 0;           ///< done part of this render
+  std::optional<double> left_s;  ///< remaining time of the bench; nullopt until there is an estimate
 };
 
 struct Hooks {
-  std::function<bool()> interrupted;            ///< asked between work items
+  std::function<bool()> interrupted;            ///< called between work items
   std::function<void(const Status&)> progress;  ///< several times a second
-  Message message;                              ///< one line worth keeping
+  Message message;                              ///< receives lines to keep
 };
 
 struct RunOptions {
-  std::string device;  ///< as gpu::DeviceOptions
+  std::string device;  ///< as in gpu::DeviceOptions
   std::filesystem::path references;
-  scene::LoadOptions scenes = {};  ///< what scenes may read and take
+  scene::LoadOptions scenes = {};  ///< limits for scenes
 };
 
 struct RunSummary {
-  bool complete = false;                  ///< false: interrupted; what was finished is kept
+  bool complete = false;                  ///< false: interrupted; finished results are kept
   size_t measured = 0;                    ///< cells rendered now
-  size_t kept = 0;                        ///< cells that were there
-  std::vector<ReferenceInfo> references;  ///< by scene, as far as known
+  size_t kept = 0;                        ///< cells already present
+  std::vector<ReferenceInfo> references;  ///< by scene, where known
   std::map<std::string, Result> results;  ///< by Matrix::id()
 };
 
-/// Every cell runs in a renderer of its own: load, render the warm-up, start afresh, and then the clock. A
-/// setting with a program of its own is rendered by that (outside.h). A render that is interrupted is thrown
-/// away; the others are saved as they end. The truth comes from the scene's reference. At the largest budget
-/// of every setting the first repeat also leaves pictures. Throws Error as loading, rendering and writing do.
+/// Every cell runs in a new renderer: load, render the warm-up, restart, then measure. A setting with a
+/// separate program is rendered by it (outside.h). An interrupted render is discarded; the others are saved
+/// as they end. The true error comes from the scene's reference. At the largest budget of every setting, the
+/// first repeat also saves pictures. Throws Error like loading, rendering and writing.
 RunSummary run_matrix(const Matrix& matrix, const Folder& folder, const RunOptions& options,
                       const Hooks& hooks);
 
-/// pictures/SCENE.SETTING.png, and how far off it is: .exr with the layer "error", |difference in luminance|
-/// over the reference's mean luminance; and .seen.exr, where each pixel's is over what is around it
+/// pictures/SCENE.SETTING.png, and its errors: .exr with the layer "error", |difference in luminance| over
+/// the reference's mean luminance; and .seen.exr, each pixel's error relative to its surroundings
 /// (film::seen_difference()).
 std::filesystem::path picture_file(const Folder& folder, const std::string& scene,
                                    const std::string& setting);

@@ -39,7 +39,7 @@ std::optional<double> TimeLeft::expected(const Unit& unit, const Known& extra) c
 }
 
 std::optional<double> TimeLeft::seconds(const Unit& current, double fraction, double elapsed) const {
-  // What the running render shows of the pace counts when nothing else is known.
+  // The pace of the current render is used if there is no other data.
   Known extra;
   if (fraction > 0.02) extra = {elapsed, fraction * paths(current), 1};
   double sum = 0;

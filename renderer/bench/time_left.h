@@ -1,5 +1,5 @@
 #pragma once
-// How long the rest of a bench will take, from what is done.
+// Remaining time of a bench, from finished units.
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -22,9 +22,9 @@ class TimeLeft {
   void add(const Unit& unit) { ++todo_[unit], ++units_; }
   size_t units() const { return units_; }
   void finished(const Unit& unit, double seconds);
-  /// The rest of `current`, of which `fraction` is done after `elapsed` seconds, and of all others. A unit
-  /// that ran before takes what it took; others by their number of paths (an adaptive render as the scene's
-  /// largest uniform one), at the pace of their scene, or of all. Nothing before there is a pace.
+  /// Remaining seconds of `current`, of which `fraction` is done after `elapsed` seconds, and of all others.
+  /// A repeated unit takes as long as before; others by their number of paths (an adaptive render as the
+  /// scene's largest uniform one), at the pace of their scene, or of all. nullopt until there is a pace.
   std::optional<double> seconds(const Unit& current, double fraction, double elapsed) const;
 
  private:

@@ -12,9 +12,9 @@
 
 namespace lucerna::bvh {
 
-/// World-space triangles, in primitive-id order. `non_opaque[i]` != 0: the triangle can let light pass
-/// straight through (alpha, smooth thin wall) and shadow rays must look at it. An empty `non_opaque` means
-/// that all are opaque. Vertices must be finite; triangles of no area are allowed and are never hit.
+/// World-space triangles, in primitive-id order. `non_opaque[i]` != 0: the triangle can transmit light
+/// undeflected (alpha, smooth thin wall) and shadow rays must shade it. An empty `non_opaque`: all are
+/// opaque. Vertices must be finite; degenerate triangles are allowed and never hit.
 struct Triangles {
   std::span<const vec3> vertices;       ///< 3 a triangle, unindexed
   std::span<const uint8_t> non_opaque;  ///< one a triangle, or empty
@@ -22,7 +22,7 @@ struct Triangles {
   bool opaque(size_t prim) const { return non_opaque.empty() || non_opaque[prim] == 0; }
 };
 
-/// What a query looks for. The numbers are the LUCERNA_QUERY of shaders/trace.comp.
+/// Kind of query. The numbers are the LUCERNA_QUERY of shaders/trace.comp.
 enum class Query {
   closest = 0,     ///< nearest hit over all triangles; at equal distance the lower primitive id
   any_opaque = 1,  ///< is there an opaque triangle within (0, tmax)? hit.prim is k_no_hit when there is none;

@@ -75,7 +75,7 @@ class Checker {
     most_held_ = std::max(most_held_, held);
     for (uint32_t c = 0; c < k_width; ++c) {
       const Link link = decode(texel[3][static_cast<int>(c)]);
-      // What the traversal lets through: each box on the way is rounded on a grid of its own.
+      // Bounds of the traversal: each box on the way is rounded on its own grid.
       Box box = grid.box(c);
       if (there[c]) box = {glm::max(box.lo, parent.lo), glm::min(box.hi, parent.hi)};
       if (!there[c]) {

@@ -246,7 +246,7 @@ BvhData read(std::istream& in, const std::string& where) {
   data.sah_cost = h.sah_cost;
   for (int i = 0; i < 3; ++i) data.bounds.lo[i] = h.bounds[i], data.bounds.hi[i] = h.bounds[3 + i];
   const auto fill = [&](auto& texels, size_t count) {
-    // Grown by blocks, so that a wrong count in a short file does not ask for gigabytes first.
+    // Grown by blocks, so that a wrong count in a short file does not allocate gigabytes first.
     for (size_t done = 0; done < count;) {
       const size_t block = std::min<size_t>(count - done, 1 << 20);
       texels.resize(done + block);

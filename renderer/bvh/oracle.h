@@ -21,8 +21,8 @@ struct Crossing {
 
 Crossing cross(const shared::Ray& ray, const vec3& p0, const vec3& p1, const vec3& p2);
 
-/// The hit that the query's definition asks for (bvh.h): 0 < t < tmax, edges and vertices belong to the
-/// triangle, at equal distance (in double precision) the lower id.
+/// The hit by definition of the query (bvh.h): 0 < t < tmax, edges and vertices belong to the triangle, at
+/// equal distance (in double precision) the lower id.
 shared::Hit oracle(const Triangles& triangles, Query query, const shared::Ray& ray);
 
 }  // namespace lucerna::bvh

@@ -108,7 +108,7 @@ void Workspace::add_camera_commands() {
                 .parameters = {real("speed", "", "m/s", 1e-3, 1e4)},
                 .run = [this](const Arguments& a) { speed = a.number("speed"); }});
   registry.add({.name = "camera.select",
-                .help = "Takes a camera of the scene.",
+                .help = "Switches to a camera of the scene.",
                 .parameters = {{.name = "camera",
                                 .help = "its name, or its number from 1",
                                 .names =
@@ -202,7 +202,7 @@ void Workspace::add_lens_commands() {
 void Workspace::add_selection_commands() {
   registry.add(
       {.name = "select",
-       .help = "Selects a thing of the scene.",
+       .help = "Selects an object, material or light of the scene.",
        .parameters = {{.name = "kind", .type = Type::choice, .choices = {"object", "material", "light"}},
                       {.name = "item",
                        .help = "its name, or its number from 1",
@@ -217,9 +217,9 @@ void Workspace::add_selection_commands() {
        .run = [this](const Arguments& a) { selection = selection_of(a.text("kind"), a.text("item")); }});
   registry.add(
       {.name = "pick",
-       .help =
-           "Selects what is under a point of the picture: the object, or the material of an object that is "
-           "selected already; nothing where there is nothing.",
+       .help = "Selects the object at a point of the picture, or its material if the object is selected "
+               "already; clears "
+               "the selection if there is none.",
        .parameters = {{.name = "right", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture widths"},
                       {.name = "down", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture heights"}},
        .run =
@@ -236,10 +236,10 @@ void Workspace::add_selection_commands() {
                        : line("select object", hit->instance + 1));
            },
        .recorded = false});
-  registry.add(
-      {.name = "select.none", .help = "Selects nothing.", .parameters = {}, .run = [this](const Arguments&) {
-         selection = {};
-       }});
+  registry.add({.name = "select.none",
+                .help = "Clears the selection.",
+                .parameters = {},
+                .run = [this](const Arguments&) { selection = {}; }});
 }
 
 }  // namespace lucerna::commands

@@ -18,9 +18,9 @@ vec3 up_of(const scene::Camera& camera);
 vec3 forward_of(const scene::Camera& camera);
 vec3 pivot_of(const Viewpoint& view);
 
-/// Takes a scene camera; the pivot lies ahead at the depth of the centre of `core`
-/// (scene::core_bounds(); held to between 1/20 and 2 radii), so that orbiting turns about what is being
-/// looked at. An empty box counts as one metre.
+/// From a scene camera; the pivot is ahead at the depth of the centre of `core` (scene::core_bounds()),
+/// limited to between 1/20 and 2 radii, so that orbiting turns about the visible object. An empty box counts
+/// as one metre.
 Viewpoint make_viewpoint(const scene::Camera& camera, const Box& core);
 
 /// Turns the eye about the pivot: x about world Y (positive: counter-clockwise seen from above), y raises the
@@ -31,8 +31,9 @@ void look(Viewpoint& view, const vec2& angles);
 /// Moves sideways so that the pivot follows a drag by `pixels` (y down) in a picture `picture_height` pixels
 /// high.
 void pan(Viewpoint& view, const vec2& pixels, float picture_height);
-/// Comes closer by 10 % of the distance a step (negative: away). When the pivot is nearly reached it is
-/// pushed ahead, so that one can go on through a doorway. Orthographic cameras change their size instead.
+/// Moves closer by 10 % of the distance per step (negative: away). When the pivot is nearly reached it is
+/// pushed ahead, so that the camera can move on through a doorway. Orthographic cameras change their size
+/// instead.
 void dolly(Viewpoint& view, float steps);
 /// Puts the eye at a place, looking at `target`, which becomes the pivot. False, and nothing changes, when
 /// that gives no direction.
@@ -58,7 +59,7 @@ vec3 advance(Flight& flight, const vec3& wish, float speed, float seconds);
 float focal_length_mm(float yfov, float aspect);
 float yfov_from_focal_length(float millimetres, float aspect);
 
-/// Whether two cameras make the same picture.
+/// True if two cameras make the same picture.
 bool same_view(const scene::Camera& a, const scene::Camera& b);
 
 }  // namespace lucerna::commands

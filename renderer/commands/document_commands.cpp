@@ -1,4 +1,4 @@
-// Commands that change the document: settings, lights, environment, what is shown. All can be undone.
+// Undoable commands that change the document: settings, lights, environment, display.
 #include <algorithm>
 #include <cmath>
 
@@ -56,7 +56,8 @@ void exclude(const Arguments& a, const char* one, const char* other) {
     throw Error("", fmt::format("{} and {} exclude each other: give one", one, other));
 }
 
-/// The colour asked for, its strongest channel 1, by the parameter of that name or in kelvin; else `before`.
+/// The requested colour, its strongest channel 1, from the parameter of that name or in kelvin; else
+/// `before`.
 vec3 requested_tint(const Arguments& a, const char* color, const vec3& before) {
   if (a.has("kelvin")) return blackbody_color(a.number("kelvin"));
   if (!a.has(color)) return before;
@@ -86,7 +87,7 @@ void check_kind(const Arguments& a, const scene::Light& light) {
     for (const char* name : {"cone", "inner_cone"}) refuse(name, "has no cone");
 }
 
-/// Place, direction and cones as asked for.
+/// Applies the requested place, direction and cones.
 void aim(const Arguments& a, scene::Light& light) {
   constexpr float degree = k_pi / 180;
   if (a.has("position")) light.position = a.vector("position");
@@ -129,11 +130,11 @@ std::vector<Parameter> light_parameters() {
        .lo = 0,
        .hi = 1e9,
        .optional = true},
-      {.name = "on", .type = Type::boolean, .help = "whether it shines", .optional = true},
+      {.name = "on", .type = Type::boolean, .help = "turns it on or off", .optional = true},
       kelvin(),
       {.name = "power",
        .type = Type::real,
-       .help = "all that a lamp gives off, in its strongest channel; instead of intensity",
+       .help = "total emitted power of a lamp, strongest channel; replaces intensity",
        .lo = 0,
        .hi = 1e9,
        .unit = "W",
@@ -147,7 +148,7 @@ std::vector<Parameter> light_parameters() {
        .optional = true},
       {.name = "direction",
        .type = Type::vector,
-       .help = "in which a sun or a spot shines; any length above 0",
+       .help = "direction of a sun or spot; any length above 0",
        .lo = -1e6,
        .hi = 1e6,
        .optional = true},
@@ -157,7 +158,7 @@ std::vector<Parameter> light_parameters() {
       angle("inner_cone", "of a spot, from its axis to where its light begins to fade", 0, 90)};
 }
 
-/// Strength, colour and switch as asked for.
+/// Applies the requested strength, colour and switch.
 void shine(const Arguments& a, scene::Light& light) {
   float strength = strength_of(light.intensity);
   const vec3 tint = requested_tint(a, "color", tint_of(light.intensity));
@@ -213,12 +214,12 @@ void Workspace::add_document_commands() {
   add_material_commands();
   add_shown_commands();
   registry.add({.name = "undo",
-                .help = "Takes back the last change of a setting, a light, the environment or what is shown.",
+                .help = "Undoes the last change of a setting, a light, the environment or the display.",
                 .parameters = {},
                 .run = [this](const Arguments&) { undo(); },
                 .needs_outcome = true});
   registry.add({.name = "redo",
-                .help = "Does again what was undone last.",
+                .help = "Redoes the last undone change.",
                 .parameters = {},
                 .run = [this](const Arguments&) { redo(); },
                 .needs_outcome = true});
@@ -251,7 +252,7 @@ void Workspace::add_setting_commands() {
        .undoable = true});
   registry.add(
       {.name = "reset",
-       .help = "Gives a setting its default value.",
+       .help = "Resets a setting to its default.",
        .parameters = {{.name = "key",
                        .help = "the setting",
                        .which = true,
@@ -277,7 +278,7 @@ void Workspace::add_light_commands() {
       parameters.begin(),
       {.name = "light", .help = "its name, or its number from 1", .which = true, .names = light_names});
   registry.add({.name = "light.set",
-                .help = "Changes a light of the scene. What is not given stays as it is.",
+                .help = "Changes a light of the scene. Omitted values stay unchanged.",
                 .parameters = std::move(parameters),
                 .check =
                     [](const Arguments& a) {
@@ -300,7 +301,7 @@ void Workspace::add_light_commands() {
 
 void Workspace::add_environment_commands() {
   registry.add({.name = "environment.set",
-                .help = "Changes the light from infinitely far. What is not given stays as it is.",
+                .help = "Changes the environment. Omitted values stay unchanged.",
                 .parameters = {{.name = "scale",
                                 .type = Type::real,
                                 .help = "multiplies its radiance",
@@ -334,41 +335,41 @@ void Workspace::add_material_commands() {
   registry.add(
       {.name = "material.set",
        .help =
-           "Changes a material of the scene; textures go on multiplying it. What is not given stays as it "
-           "is.",
-       .parameters = {{.name = "material",
-                       .help = "its name, or its number from 1",
-                       .which = true,
-                       .names = material_names},
-                      {.name = "color",
-                       .type = Type::vector,
-                       .help = "linear; share of the light that is reflected",
-                       .lo = 0,
-                       .hi = 1,
-                       .optional = true},
-                      {.name = "roughness", .type = Type::real, .lo = 0, .hi = 1, .optional = true},
-                      {.name = "metallic", .type = Type::real, .lo = 0, .hi = 1, .optional = true},
-                      {.name = "emission",
-                       .type = Type::vector,
-                       .help = "linear; emitted radiance",
-                       .lo = 0,
-                       .hi = 1e9,
-                       .optional = true},
-                      {.name = "emission_color",
-                       .type = Type::vector,
-                       .help = "linear; its strongest channel is scaled to 1",
-                       .lo = 0,
-                       .hi = 1e9,
-                       .optional = true},
-                      kelvin(),
-                      {.name = "strength",
-                       .type = Type::real,
-                       .help = "emitted radiance of the strongest channel",
-                       .lo = 0,
-                       .hi = 1e9,
-                       .unit = "W/(m2 sr)",
-                       .optional = true},
-                      {.name = "on", .type = Type::boolean, .help = "whether it emits", .optional = true}},
+           "Changes a material of the scene; its textures still multiply it. Omitted values stay unchanged.",
+       .parameters =
+           {{.name = "material",
+             .help = "its name, or its number from 1",
+             .which = true,
+             .names = material_names},
+            {.name = "color",
+             .type = Type::vector,
+             .help = "linear; reflectance",
+             .lo = 0,
+             .hi = 1,
+             .optional = true},
+            {.name = "roughness", .type = Type::real, .lo = 0, .hi = 1, .optional = true},
+            {.name = "metallic", .type = Type::real, .lo = 0, .hi = 1, .optional = true},
+            {.name = "emission",
+             .type = Type::vector,
+             .help = "linear; emitted radiance",
+             .lo = 0,
+             .hi = 1e9,
+             .optional = true},
+            {.name = "emission_color",
+             .type = Type::vector,
+             .help = "linear; its strongest channel is scaled to 1",
+             .lo = 0,
+             .hi = 1e9,
+             .optional = true},
+            kelvin(),
+            {.name = "strength",
+             .type = Type::real,
+             .help = "emitted radiance of the strongest channel",
+             .lo = 0,
+             .hi = 1e9,
+             .unit = "W/(m2 sr)",
+             .optional = true},
+            {.name = "on", .type = Type::boolean, .help = "turns emission on or off", .optional = true}},
        .check =
            [](const Arguments& a) {
              for (const char* part : {"emission_color", "kelvin", "strength"}) exclude(a, "emission", part);
@@ -396,7 +397,7 @@ void Workspace::add_shown_commands() {
   const auto show_key = [](size_t c) { return std::string("show.") + session::k_component_names[c]; };
   registry.add(
       {.name = "view.show",
-       .help = "Shows a component in the sum, or leaves it out. Nothing is computed anew.",
+       .help = "Includes a component in the shown sum or leaves it out. Computes nothing.",
        .parameters = {{.name = "component", .type = Type::choice, .choices = components, .which = true},
                       {.name = "on", .type = Type::boolean}},
        .run =
@@ -409,7 +410,7 @@ void Workspace::add_shown_commands() {
        .undoable = true});
   components.push_back("none");
   registry.add({.name = "view.solo",
-                .help = "Shows one component alone; none: those that were shown before.",
+                .help = "Shows one component alone; none: restores the former ones.",
                 .parameters = {{.name = "component", .type = Type::choice, .choices = components}},
                 .run =
                     [this, components, show_key](const Arguments& a) {

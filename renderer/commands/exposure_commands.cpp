@@ -19,8 +19,9 @@ void Workspace::add_exposure_commands() {
     return !measuring_;
   };
   registry.add({.name = "exposure.find",
-                .help = "Sets film.ev so that the picture as a whole is seen well: its log-average is middle "
-                        "grey, its bright parts are not far above white.",
+                .help =
+                    "Sets film.ev for the whole picture: its log-average becomes middle grey, and its bright "
+                    "parts are not far above white.",
                 .parameters = {},
                 .run =
                     [this](const Arguments&) {
@@ -30,7 +31,7 @@ void Workspace::add_exposure_commands() {
                 .done = done,
                 .recorded = false});
   registry.add({.name = "exposure.at",
-                .help = "Sets film.ev so that what is at a point of the picture is shown as middle grey.",
+                .help = "Sets film.ev so that a point of the picture is shown as middle grey.",
                 .parameters = {share("right", "picture widths"), share("down", "picture heights")},
                 .run =
                     [this](const Arguments& a) {
@@ -41,9 +42,8 @@ void Workspace::add_exposure_commands() {
                 .recorded = false});
   registry.add(
       {.name = "environment.load",
-       .help =
-           "Lights the scene by a latitude-longitude image in place of its own environment, as bright and "
-           "as turned as the file has it.",
+       .help = "Replaces the scene's environment by a latitude-longitude image, with its own brightness and "
+               "rotation.",
        .parameters = {file_named({".exr", ".hdr"})},
        .run =
            [this](const Arguments& a) {
@@ -57,19 +57,18 @@ void Workspace::add_exposure_commands() {
              d.environment_scale = 1, d.environment_rotation = 0;
            },
        .undoable = true});
-  registry.add(
-      {.name = "environment.own",
-       .help = "Lights the scene by its own environment again, as bright and as turned as its file has it.",
-       .parameters = {},
-       .run =
-           [this](const Arguments&) {
-             needs_scene();
-             Document& d = edit();
-             d.environment_file.clear();
-             d.environment_scale = own_environment_.first;
-             d.environment_rotation = own_environment_.second;
-           },
-       .undoable = true});
+  registry.add({.name = "environment.own",
+                .help = "Restores the scene's environment, with the brightness and rotation of its file.",
+                .parameters = {},
+                .run =
+                    [this](const Arguments&) {
+                      needs_scene();
+                      Document& d = edit();
+                      d.environment_file.clear();
+                      d.environment_scale = own_environment_.first;
+                      d.environment_rotation = own_environment_.second;
+                    },
+                .undoable = true});
 }
 
 void Workspace::measure(std::optional<vec2> at, bool of_load) {
@@ -94,7 +93,7 @@ void Workspace::take_measure() {
     if (!found.ev)
       throw Error("", requested.at_point ? "it is black there: no exposure makes it grey"
                                          : "the picture is black: no exposure shows it");
-    // Where somebody has set it meanwhile it is theirs.
+    // A value that the user has set meanwhile stays.
     if (requested.of_load && setting("film.ev") != plan::find_option("film.ev")->fallback) return;
     const float ev = std::round(*found.ev * 100) / 100;
     if (number_text(ev) == setting("film.ev")) return;

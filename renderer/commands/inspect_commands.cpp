@@ -1,4 +1,4 @@
-// Commands that ask what solvers hold at a place of the picture.
+// Commands that inspect solver data at a place of the picture.
 #include <algorithm>
 
 #include "base/error.h"
@@ -10,9 +10,10 @@ void Workspace::add_inspect_commands() {
   const auto place = [](const Arguments& a) { return vec2(a.number("right"), a.number("down")); };
   registry.add(
       {.name = "inspect.at",
-       .help = "Shows what the solvers that are looked up hold at a point of the picture: what of it serves "
-               "there, and how much each counts; with overlay.lights the lights that are chosen there. A "
-               "script goes on when it is shown.",
+       .help = "Inspects the solvers' data at a point of the picture: the records or photons used there and "
+               "their "
+               "weights; with overlay.lights the lights that are selected there. A script continues when it "
+               "is shown.",
        .parameters = {{.name = "right", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture widths"},
                       {.name = "down", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture heights"}},
        .run =
@@ -29,7 +30,7 @@ void Workspace::add_inspect_commands() {
            },
        .recorded = false});
   registry.add({.name = "inspect.none",
-                .help = "Ends inspect.at.",
+                .help = "Ends the inspection.",
                 .parameters = {},
                 .run = [this](const Arguments&) { session.inspect(std::nullopt); },
                 .recorded = false});

@@ -112,7 +112,7 @@ bool walk(Viewpoint& view, const Look& look, const vec2& metres, float height, b
   bool blocked = false;
   const float clear = clearance(view.extent);
   eye = through ? eye + step : step_among(look, eye, vec3(step.x, 0, step.z), clear, &blocked);
-  // Tables and chairs are walked through below the eye: only what is low enough to step on is a floor.
+  // Tables and chairs below the eye are no obstacles, and no floor: only low surfaces can be stepped on.
   const float least = std::max(height - k_stair, 0.1f * height);
   if (const auto floor = floor_below(look, eye, least, view.extent); floor && *floor >= least) {
     const vec3 rise(0, height - *floor, 0);

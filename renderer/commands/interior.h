@@ -1,6 +1,6 @@
 #pragma once
-// Moving about in rooms: what a view may do among surfaces. Pure functions; what is in the way they ask of a
-// function, so that they need no scene. Metres and radians, Y up.
+// Movement in rooms, with collisions. Pure functions: obstacles come from a callback, so no scene is needed.
+// Metres and radians, Y up.
 #include <functional>
 #include <optional>
 
@@ -22,7 +22,7 @@ float clearance(float extent);
 /// Goes from `eye` by `step`, along surfaces that stand in the way, never nearer than `clear` to the one
 /// ahead. `blocked`, where given, is set when one stood in the way.
 vec3 step_among(const Look& look, const vec3& eye, const vec3& step, float clear, bool* blocked = nullptr);
-/// The same straight on: stops instead of sliding.
+/// The same along a straight line: stops instead of sliding.
 vec3 step_straight(const Look& look, const vec3& eye, const vec3& step, float clear, bool* blocked = nullptr);
 
 /// Turns about any point: the eye and the view turn with one another, so that the point stays where it is in
@@ -32,23 +32,23 @@ void orbit_about(Viewpoint& view, const vec3& point, const vec2& angles);
 void dolly_towards(Viewpoint& view, const vec3& point, float steps);
 
 inline constexpr float k_eye_height = 1.65f;  ///< metres above the floor
-inline constexpr float k_stair = 0.4f;        ///< metres that are stepped up; what is higher is no floor
+inline constexpr float k_stair = 0.4f;        ///< maximum height of a step [m]; higher surfaces are no floor
 
 /// The floor below the eye: the highest surface that faces up and is at least `least` metres below it, or
 /// else the lowest there is. Its distance; nothing when there is none.
 std::optional<float> floor_below(const Look& look, const vec3& eye, float least, float extent);
-/// Walks by metres to the right and forwards, level whatever the view's slope, `height` above the floor, up
-/// and down stairs; without a floor it stays level. With `through` nothing stands in the way. Whether
-/// something did.
+/// Walks by metres to the right and forwards, horizontal whatever the view's slope, `height` above the floor,
+/// up and down stairs; without a floor it stays at its height. `through`: without collisions. True if
+/// something was in the way.
 bool walk(Viewpoint& view, const Look& look, const vec2& metres, float height, bool through);
 
-/// Whether walls are all around: of 14 directions at least 11 meet something within four radii of the scene.
+/// True if walls are all around: at least 11 of 14 directions hit something within four radii of the scene.
 bool enclosed(const Look& look, const vec3& eye, float extent);
 
 /// As frame(), but the eye ends neither behind nor inside what stands between. `look` must pass through what
 /// is framed. Where there is no room in the view's own direction others are tried, the nearest first.
 void frame_clear(Viewpoint& view, const Box& box, float aspect, const Look& look);
-/// As frame() of the whole scene for an eye inside it: goes back as far as there is room.
+/// As frame() of the whole scene for a camera inside it: moves back within the available room.
 void frame_inside(Viewpoint& view, const Box& box, float aspect, const Look& look);
 
 }  // namespace lucerna::commands

@@ -10,14 +10,14 @@ namespace lucerna::commands {
 void Workspace::add_interior_commands() {
   const Parameter through{.name = "through",
                           .type = Type::boolean,
-                          .help = "whether walls do not stand in the way; false when not given",
+                          .help = "true: passes through walls; default false",
                           .optional = true};
   const auto metres = [](const char* name) {
     return Parameter{.name = name, .type = Type::real, .lo = -1e4, .hi = 1e4, .unit = "m"};
   };
   registry.add({.name = "camera.walk",
-                .help = "Walks along the floor, up and down stairs, with the eye at camera.eye_height above "
-                        "it, and along walls that stand in the way.",
+                .help = "Walks along the floor, up and down stairs, with the eye camera.eye_height above it; "
+                        "slides along walls.",
                 .parameters = {metres("right"), metres("forward"), through},
                 .run =
                     [this](const Arguments& a) {
@@ -36,33 +36,33 @@ void Workspace::add_interior_commands() {
                       take_view(walked);
                     },
                 .moves = true});
-  registry.add({.name = "camera.walking",
-                .help = "Whether W A S D walk along the floor instead of flying. Begins with the eye at "
-                        "camera.eye_height above the floor.",
-                .parameters = {{.name = "on", .type = Type::boolean}},
-                .run =
-                    [this](const Arguments& a) {
-                      needs_view();
-                      if (!a.boolean("on")) {
-                        walking = false;
-                        return;
-                      }
-                      if (view->camera.orthographic) throw Error("", "an orthographic camera cannot walk");
-                      probe(true);
-                      const auto floor =
-                          floor_below(look(), eye_of(view->camera), 0.5f * eye_height, view->extent);
-                      if (!floor) throw Error("", "there is no floor below the camera to walk on");
-                      Viewpoint standing = *view;
-                      const vec3 rise(0, eye_height - *floor, 0);
-                      const vec3 eye = eye_of(standing.camera);
-                      standing.camera.to_world[3] =
-                          vec4(step_straight(look(), eye, rise, clearance(standing.extent)), 1);
-                      take_view(standing);
-                      walking = true;
-                    },
-                .moves = true});
+  registry.add(
+      {.name = "camera.walking",
+       .help = "W A S D walk along the floor instead of flying. Starts with the eye camera.eye_height "
+               "above the floor.",
+       .parameters = {{.name = "on", .type = Type::boolean}},
+       .run =
+           [this](const Arguments& a) {
+             needs_view();
+             if (!a.boolean("on")) {
+               walking = false;
+               return;
+             }
+             if (view->camera.orthographic) throw Error("", "an orthographic camera cannot walk");
+             probe(true);
+             const auto floor = floor_below(look(), eye_of(view->camera), 0.5f * eye_height, view->extent);
+             if (!floor) throw Error("", "there is no floor below the camera to walk on");
+             Viewpoint standing = *view;
+             const vec3 rise(0, eye_height - *floor, 0);
+             const vec3 eye = eye_of(standing.camera);
+             standing.camera.to_world[3] =
+                 vec4(step_straight(look(), eye, rise, clearance(standing.extent)), 1);
+             take_view(standing);
+             walking = true;
+           },
+       .moves = true});
   registry.add({.name = "camera.eye_height",
-                .help = "How high above the floor the eye is when walking.",
+                .help = "Height of the eye above the floor when walking.",
                 .parameters = {{.name = "height", .type = Type::real, .lo = 0.01, .hi = 100, .unit = "m"}},
                 .run =
                     [this](const Arguments& a) {
@@ -111,8 +111,8 @@ void Workspace::add_bookmark_commands() {
   };
   registry.add(
       {.name = "camera.bookmark",
-       .help = "Keeps this view under a name, for this scene; without one as 'View 1' and so on. One of that "
-               "name is replaced.",
+       .help = "Saves this view as a bookmark of the scene; without a name as 'View 1' and so on. Replaces a "
+               "bookmark of that name.",
        .parameters = {{.name = "name", .help = "of the view", .optional = true, .names = names}},
        .run = [this](const Arguments& a) {
          needs_scene(), needs_view();
@@ -131,7 +131,7 @@ void Workspace::add_bookmark_commands() {
          here[name] = text;
        }});
   registry.add({.name = "camera.go",
-                .help = "Takes the view of a bookmark.",
+                .help = "Goes to the view of a bookmark.",
                 .parameters = {{.name = "name", .help = "of a bookmark", .names = names}},
                 .run =
                     [this, known](const Arguments& a) {
@@ -140,7 +140,7 @@ void Workspace::add_bookmark_commands() {
                     },
                 .recorded = false});
   registry.add({.name = "camera.forget",
-                .help = "Takes a bookmark away.",
+                .help = "Deletes a bookmark.",
                 .parameters = {{.name = "name", .help = "of a bookmark", .names = names}},
                 .run = [this, known](const Arguments& a) {
                   known(a.text("name"));

@@ -1,5 +1,5 @@
-// Commands of the light mix: how strong and of which tint groups of lights are. All can be undone; none
-// traces a ray where light is kept apart by groups.
+// Undoable commands of the light mix: strength and tint of light groups. They trace no rays if groups are
+// separate.
 #include <algorithm>
 #include <cmath>
 
@@ -20,7 +20,7 @@ Parameter one_of(const char* name, const char* help, std::function<std::vector<s
           .names = [names = std::move(names)](const std::vector<std::string>&) { return names(); }};
 }
 
-/// What a person gives, or what is there already.
+/// Applies the given values; others stay.
 void take(const Arguments& a, scene::GroupMix& group) {
   if (a.has("ev") && a.has("factor")) throw Error("", "ev and factor exclude each other: give one");
   if (a.has("color") && a.has("kelvin")) throw Error("", "color and kelvin exclude each other: give one");
@@ -37,7 +37,7 @@ void take(const Arguments& a, scene::GroupMix& group) {
   if (a.has("solo")) group.solo = a.boolean("solo");
 }
 
-/// Whether a weight can be written into the lights of a group; else what cannot take it.
+/// Why a weight cannot be written into the lights of a group; "": it can.
 std::string refusal(const scene::Scene& scene, const scene::LightGroups& groups, size_t g,
                     const std::vector<vec3>& weights) {
   const vec3& w = weights[g];
@@ -183,8 +183,9 @@ void Workspace::add_mix_commands() {
   constexpr double most = scene::k_most_ev;
   registry.add(
       {.name = "mix.set",
-       .help = "Mixes a group of lights: strength, colour, on and off. Where light is kept apart by groups "
-               "(relight.enabled) no ray is traced for it. What is not given stays as it is.",
+       .help = "Mixes a light group: strength, colour, on and off. With separate groups (relight.enabled) it "
+               "traces "
+               "no rays. Omitted values stay unchanged.",
        .parameters =
            {one_of("group", "name of the group", group_names),
             {.name = "ev",
@@ -213,7 +214,7 @@ void Workspace::add_mix_commands() {
              .hi = k_hottest_kelvin,
              .unit = "K",
              .optional = true},
-            {.name = "mute", .type = Type::boolean, .help = "takes its light out", .optional = true},
+            {.name = "mute", .type = Type::boolean, .help = "removes its light", .optional = true},
             {.name = "solo", .type = Type::boolean, .help = "shows it without the others", .optional = true}},
        .run =
            [this](const Arguments& a) {
@@ -224,14 +225,13 @@ void Workspace::add_mix_commands() {
            },
        .undoable = true});
   registry.add({.name = "mix.reset",
-                .help = "Takes all groups of lights as the scene has them again.",
+                .help = "Resets the mix of all light groups.",
                 .parameters = {},
                 .run = [this](const Arguments&) { edit().settings["relight.mix"].clear(); },
                 .undoable = true});
   registry.add({.name = "mix.group",
-                .help =
-                    "Puts lights into a group: lamps, materials or nodes of that name, or sky or sun. The "
-                    "picture starts again.",
+                .help = "Moves lights into a group: lamps, materials or nodes of that name, or sky or sun. "
+                        "Restarts the picture.",
                 .parameters = {{.name = "light", .help = "a name, or a pattern with * and ?", .which = true},
                                one_of("group", "name of the group, which may be new", group_names)},
                 .check =
@@ -249,7 +249,7 @@ void Workspace::add_mix_commands() {
                     },
                 .undoable = true});
   registry.add({.name = "mix.preset.save",
-                .help = "Keeps the light mix under a name, in place of one that had it.",
+                .help = "Saves the light mix as a preset; replaces one of that name.",
                 .parameters = {one_of("name", "of the preset", preset_names)},
                 .check =
                     [](const Arguments& a) {
@@ -264,7 +264,7 @@ void Workspace::add_mix_commands() {
                     },
                 .undoable = true});
   registry.add({.name = "mix.preset.load",
-                .help = "Takes up a light mix that was kept.",
+                .help = "Applies a preset of the light mix.",
                 .parameters = {one_of("name", "of the preset", preset_names)},
                 .run =
                     [this](const Arguments& a) {
@@ -276,7 +276,7 @@ void Workspace::add_mix_commands() {
                     },
                 .undoable = true});
   registry.add({.name = "mix.preset.delete",
-                .help = "Forgets a light mix that was kept.",
+                .help = "Deletes a preset of the light mix.",
                 .parameters = {one_of("name", "of the preset", preset_names)},
                 .run =
                     [this](const Arguments& a) {
@@ -288,7 +288,7 @@ void Workspace::add_mix_commands() {
                 .undoable = true});
   registry.add(
       {.name = "mix.preset.blend",
-       .help = "Takes up a mix between two that were kept, linearly in light.",
+       .help = "Applies a mix between two presets, interpolated linearly in light.",
        .parameters = {one_of("from", "preset", preset_names),
                       one_of("to", "preset", preset_names),
                       {.name = "amount", .type = Type::real, .help = "0 is from, 1 is to", .lo = 0, .hi = 1}},
@@ -305,8 +305,9 @@ void Workspace::add_mix_commands() {
   registry.add(
       {.name = "mix.apply",
        .help = "Writes the light mix into the scene's lamps, surfaces and environment, and resets it. The "
-               "light is the same: where it is kept by groups, the picture keeps its samples. A group whose "
-               "lights cannot take the mix keeps it, with a warning.",
+               "total light is unchanged: with separate groups, the picture keeps its samples. A group whose "
+               "lights "
+               "cannot represent the mix keeps it, with a warning.",
        .parameters = {},
        .run = [this](const Arguments&) { apply_mix(); },
        .undoable = true});

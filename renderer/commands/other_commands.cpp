@@ -1,4 +1,4 @@
-// Commands on the scene's file, on rendering and on scripts themselves; and those that wait.
+// Commands for the scene file, rendering and scripts, and commands that wait.
 #include <algorithm>
 #include <utility>
 
@@ -30,16 +30,17 @@ void Workspace::add_plain(const char* name, const char* help, std::function<void
 }
 
 void Workspace::add_scene_commands() {
-  registry.add({.name = "scene.open",
-                .help = "Opens a glTF scene. The one shown stays until the new one is ready, or if it fails.",
-                .parameters = {file_named({".gltf", ".glb"})},
-                .run = [this](const Arguments& a) {
-                  open_failed_ = exposure_given_ = false;
-                  session.load(a.text("file"));
-                  opened_by_ = session.commands();
-                }});
+  registry.add(
+      {.name = "scene.open",
+       .help = "Opens a glTF scene. The shown scene stays until the new one is ready, or if loading fails.",
+       .parameters = {file_named({".gltf", ".glb"})},
+       .run = [this](const Arguments& a) {
+         open_failed_ = exposure_given_ = false;
+         session.load(a.text("file"));
+         opened_by_ = session.commands();
+       }});
   registry.add({.name = "scene.cancel",
-                .help = "Gives up the load in progress; the scene shown stays.",
+                .help = "Cancels the load in progress; the shown scene stays.",
                 .parameters = {},
                 .run = [this](const Arguments&) { session.cancel(); },
                 .done = [this](const Arguments&) { return !loading(); },
@@ -47,26 +48,26 @@ void Workspace::add_scene_commands() {
 }
 
 void Workspace::add_render_commands() {
-  add_plain("render.pause", "Stops taking samples.", [this] {
+  add_plain("render.pause", "Pauses sampling.", [this] {
     record_wait();
     session.set_paused(true);
   });
-  add_plain("render.resume", "Goes on taking samples.", [this] { session.set_paused(false); });
-  add_plain("render.restart", "Throws the samples away and starts the picture anew.",
+  add_plain("render.resume", "Resumes sampling.", [this] { session.set_paused(false); });
+  add_plain("render.restart", "Discards all samples and restarts the picture.",
             [this] { session.restart(); });
-  add_plain("shaders.reload", "Compiles the shaders again; when that fails the old ones stay.",
+  add_plain("shaders.reload", "Compiles the shaders again; on errors the old ones stay.",
             [this] { session.reload_shaders(); });
   registry.add(
       {.name = "image.save",
        .help = "Writes the picture, once every pixel has a sample: all layers as EXR, untouched, or "
-               "through exposure and tone curve as PNG. A script waits for that, and fails when it "
-               "cannot be.",
+               "through exposure and tone curve as PNG. A script waits for it, and fails if it "
+               "fails.",
        .parameters = {file_to_write({".exr", ".png"}),
                       time_limit(),
                       {.name = "as",
                        .type = Type::choice,
-                       .help = "of a PNG; shown: with the filter of the first samples, as the window "
-                               "shows it; unfiltered (when not given): the samples as they are",
+                       .help = "of a PNG; shown: with the preview's filter, as in the window; unfiltered "
+                               "(default): the samples",
                        .choices = {"unfiltered", "shown"},
                        .optional = true}},
        .run =
@@ -81,34 +82,35 @@ void Workspace::add_render_commands() {
            },
        .done = [this](const Arguments&) { return saved(); }});
   registry.add({.name = "reference.load",
-                .help = "Takes a picture for the truth, to hold this one against: an EXR with all layers, of "
-                        "the same scene, view and size.",
+                .help =
+                    "Compares this picture with a reference: an EXR with all layers, of the same scene, view "
+                    "and size.",
                 .parameters = {file_named({".exr"})},
                 .run = [this](const Arguments& a) {
                   needs_scene();
                   session.set_reference(a.text("file"), scene_id_);
                 }});
-  add_plain("reference.clear", "Forgets the picture taken for the truth.",
-            [this] { session.clear_reference(); });
+  add_plain("reference.clear", "Removes the reference.", [this] { session.clear_reference(); });
 }
 
 void Workspace::add_script_commands() {
-  registry.add({.name = "script.save",
-                .help =
-                    "Writes what was done in this session, as a script that does it again: where a picture "
-                    "was saved or rendering paused it waits for as many samples as there were. A file that "
-                    "is there already is replaced only if it is a saved session.",
-                .parameters = {file_to_write({".lucerna"})},
-                .run =
-                    [this](const Arguments& a) {
-                      save_script(a.text("file"));
-                      log::info("session saved as {}", a.text("file"));
-                    },
-                .recorded = false,
-                .needs_outcome = true});
+  registry.add(
+      {.name = "script.save",
+       .help =
+           "Saves this session as a script that repeats it; it waits for the same number of samples where "
+           "a picture was saved or rendering was paused. An existing file is replaced only if it is a "
+           "saved session.",
+       .parameters = {file_to_write({".lucerna"})},
+       .run =
+           [this](const Arguments& a) {
+             save_script(a.text("file"));
+             log::info("session saved as {}", a.text("file"));
+           },
+       .recorded = false,
+       .needs_outcome = true});
   registry.add(
       {.name = "help",
-       .help = "Lists the commands, or explains one.",
+       .help = "Lists the commands, or describes one.",
        .parameters = {{.name = "command",
                        .help = "a command, a setting, or 'settings'",
                        .optional = true,
@@ -132,7 +134,7 @@ void Workspace::add_wait_commands() {
                 .done = [this](const Arguments& a) { return now - waited_since_ >= a.real("time"); },
                 .recorded = false});
   registry.add({.name = "wait_scene",
-                .help = "In a script: waits until the scene is there; fails when it could not be loaded.",
+                .help = "In a script: waits until the scene is loaded; fails if loading fails.",
                 .parameters = {limit},
                 .run = [](const Arguments&) {},
                 .done =
@@ -143,13 +145,13 @@ void Workspace::add_wait_commands() {
                     },
                 .recorded = false});
   registry.add({.name = "wait_load",
-                .help = "In a script: waits until no scene is being loaded, whether one could be or not.",
+                .help = "In a script: waits until no scene is being loaded, even after a failure.",
                 .parameters = {limit},
                 .run = [](const Arguments&) {},
                 .done = [this](const Arguments&) { return !loading(); }});
   registry.add(
       {.name = "wait_samples",
-       .help = "In a script: waits until the picture holds that many samples a pixel, or is finished.",
+       .help = "In a script: waits until the picture has that many samples per pixel, or is finished.",
        .parameters = {{.name = "samples", .type = Type::integer, .lo = 0, .hi = 1 << 20}, limit},
        .run =
            [this](const Arguments&) {

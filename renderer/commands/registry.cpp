@@ -10,7 +10,7 @@ namespace lucerna::commands {
 namespace {
 
 std::string range_text(const Parameter& p) {
-  // Limits that only keep numbers sane are not worth the words.
+  // Limits that only keep numbers sane are not mentioned.
   const bool low = p.lo > -1e9, high = p.hi < 1e9;
   const std::string unit = p.unit.empty() ? "" : " " + p.unit;
   if (low && high) return fmt::format(" from {} to {}{}", p.lo, p.hi, unit);
@@ -114,7 +114,7 @@ size_t name_end(const Word& word) {
 Parameter time_limit() {
   return {.name = "limit",
           .type = Type::real,
-          .help = "how long at most; 300 when not given",
+          .help = "maximum time; default 300",
           .lo = 1,
           .hi = 86400,
           .unit = "seconds",
@@ -203,7 +203,7 @@ Arguments Registry::bind(const Command& c, std::vector<Word> words, const std::s
 Line Registry::parse(const std::string& line, const std::string& where) const {
   std::vector<Word> words = split(line, where);
   if (words.empty()) return {};
-  // KEY=VALUE stands for KEY VALUE where KEY is a prefix, or follows the command that prefixes stand for.
+  // KEY=VALUE means KEY VALUE if KEY is a prefix, or follows the command of a prefix.
   const auto part = [&](size_t i) {
     if (i >= words.size()) return;
     const size_t at = words[i].text.find('=');
@@ -328,7 +328,7 @@ std::vector<std::string> Registry::complete(const std::string& line) const {
     if (const Parameter* p = find_parameter(*c, name)) values(*p, typed.substr(end + 1), name + "=", {});
     return list;
   }
-  // The place of the last word among those that have no name.
+  // Position of the last word among the unnamed ones.
   std::vector<std::string> before;
   for (size_t i = 1; i + 1 < words.size(); ++i)
     if (name_end(words[i]) == std::string::npos) before.push_back(words[i].text);

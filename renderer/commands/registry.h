@@ -1,12 +1,12 @@
 #pragma once
-// The one list of what can be done: commands with a dotted name, typed parameters and help. Window, command
-// line, scripts and tests all act by lines of text that this list understands:
+// Registry of commands, with dotted names, typed parameters and help. Window, command line, scripts and tests
+// all use lines of text that it parses:
 //
 //   camera.orbit 0.3 -0.1
 //   light.set "Brass lamp" intensity=12 color=1,0.8,0.5
 //
-// Words are cut at blanks (text.h says how). Parameters are named by their place, those that must be given
-// first, or as name=value. Every line that parses is printed so that it parses to the same again.
+// Words are separated by blanks (text.h). Parameters are given by position, required ones first, or as
+// name=value. Every parsed line is printed so that it parses to the same again.
 #include <functional>
 #include <limits>
 #include <map>
@@ -38,15 +38,16 @@ struct Parameter {
   double hi = std::numeric_limits<double>::infinity();
   std::string unit;                  ///< "m", "EV", "degrees"; "" for none
   std::vector<std::string> choices;  ///< of a choice; of a file: its endings (".png")
-  bool optional = false;             ///< may be left out
+  bool optional = false;             ///< optional
   bool writes = false;               ///< a file that is written: its name must have one of its endings
-  /// Says what is acted upon, not how: two commands that differ elsewhere are steps of one drag.
+  /// Identifies the object of the command: two commands that differ only in other parameters are steps of one
+  /// drag.
   bool which = false;
   /// Words to offer for a text; given the values of the parameters before it.
   std::function<std::vector<std::string>(const std::vector<std::string>&)> names = {};
 };
 
-/// How long a script waits for a command to be done: "limit", which may be left out.
+/// Optional time limit of a waiting script command: "limit".
 Parameter time_limit();
 /// A "file" to read, whose name most likely has one of these endings.
 Parameter file_named(std::vector<std::string> endings);
@@ -79,8 +80,7 @@ struct Command {
   std::function<void(const Arguments&)> check = {};
   /// Does it; throws Error when it cannot be done.
   std::function<void(const Arguments&)> run;
-  /// For commands that take their time: asked again after run() until true (by scripts; a console does not
-  /// wait).
+  /// For commands that take time: scripts call it after run() until it returns true; a console does not wait.
   std::function<bool(const Arguments&)> done = {};
   bool undoable = false;  ///< changes the document (workspace.h)
   bool moves = false;     ///< moves the camera, which can be undone too
@@ -99,15 +99,15 @@ class Registry {
  public:
   /// Adds a command; the name must be new (assertion). References to commands stay valid.
   void add(Command command);
-  /// A word that stands for the beginning of a line when no command has that name: "film.ev" -> "set
+  /// Adds a word that expands to the beginning of a line unless a command has that name: "film.ev" -> "set
   /// film.ev".
   void add_prefix(const std::string& word, const std::string& line_head);
 
   const std::map<std::string, Command>& all() const { return commands_; }
   const Command* find(const std::string& name) const;
 
-  /// Understands a line. Empty lines and comments give a Line without a command. Throws Error, located at
-  /// `where`, naming what is wrong and, for a mistyped name, what may have been meant.
+  /// Parses a line. Empty lines and comments give a Line without a command. Throws Error, located at `where`,
+  /// with the mistake and, for a mistyped name, a suggestion.
   Line parse(const std::string& line, const std::string& where = "") const;
   /// The line in its one form.
   std::string print(const Line& line) const;

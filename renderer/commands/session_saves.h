@@ -5,7 +5,7 @@
 
 namespace lucerna::commands {
 
-/// Whether a file that was to be written will never be.
+/// True if the file has failed and will not be written.
 inline bool failed(const session::Saved& saved) {
   if (!saved.valid() || saved.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
   try {

@@ -65,8 +65,8 @@ void Workspace::add_solver_commands() {
 void Workspace::add_file_commands(const SolverInfo& solver) {
   const solvers::FileInfo& file = *solver.file;
   registry.add({.name = solver.name + ".save",
-                .help = fmt::format("Writes {} for {}.load, as soon as they are complete; a script waits for "
-                                    "that, and fails when it cannot be.",
+                .help = fmt::format("Saves {} for {}.load, as soon as they are complete; a script waits for "
+                                    "it, and fails if it fails.",
                                     file.content, solver.name),
                 .parameters = {file_to_write({file.extension}), time_limit()},
                 .run =
@@ -76,7 +76,7 @@ void Workspace::add_file_commands(const SolverInfo& solver) {
                     },
                 .done = [this](const Arguments&) { return saved(); }});
   registry.add({.name = solver.name + ".load",
-                .help = fmt::format("Takes {} from a file {}.", file.content, file.fits),
+                .help = fmt::format("Loads {} from a file {}.", file.content, file.fits),
                 .parameters = {file_named({file.extension})},
                 .run = [this, &solver](const Arguments& a) {
                   needs_scene();
@@ -102,7 +102,7 @@ void Workspace::add_leading_commands(const SolverInfo& solver) {
     registry.add(std::move(c));
   }
   registry.add({.name = "wait_" + solver.name,
-                .help = fmt::format("In a script: waits until preparation of {} waits for a command or is "
+                .help = fmt::format("In a script: waits until preparation of {} is paused or "
                                     "complete.",
                                     solver.title),
                 .parameters = {time_limit()},

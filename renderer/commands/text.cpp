@@ -119,7 +119,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& known
     const size_t dot = candidate.rfind('.');
     const std::string tail = dot == std::string::npos ? candidate : candidate.substr(dot + 1);
     size_t far = std::min(distance(wanted, candidate), distance(wanted, tail));
-    // One who typed the beginning or the group knows where to go.
+    // The typed text is the beginning of the name or of its part behind the dot: a near match.
     if (far > 0 && wanted.size() >= 3 && (candidate.starts_with(wanted) || tail.starts_with(wanted))) far = 1;
     if (far < least) least = far, best = name;
   }

@@ -17,8 +17,8 @@ struct Word {
   size_t plain = 0;
 };
 
-/// Cuts a line at blanks. "..." holds blanks together, and inside it \" and \\ stand for " and \; # starts a
-/// comment. Throws Error at `where` when a quotation mark is not closed.
+/// Splits a line at blanks. "..." keeps blanks, and inside it \" and \\ mean " and \; # starts a comment.
+/// Throws Error at `where` if a quotation mark is not closed.
 std::vector<Word> split(std::string_view line, const std::string& where = "");
 /// Where the last word of an unfinished line begins; its length when the next word has not been begun.
 size_t last_word(std::string_view line);

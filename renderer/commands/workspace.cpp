@@ -114,7 +114,7 @@ void Workspace::drop_refused() {
 }
 
 void Workspace::drop_taken() {
-  // The scene and the settings were taken after the snapshot: they hold what it counts.
+  // Scene and settings were read after the snapshot: they include what it counts.
   const auto over = [&](uint64_t sent) { return snapshot && snapshot->commands >= sent; };
   std::erase_if(pending_, [&](const auto& entry) { return over(entry.second.sent); });
   std::erase_if(pending_lights_, [&](const auto& entry) {
@@ -143,7 +143,7 @@ void Workspace::follow_scene() {
   undo_.clear(), redo_.clear();
   dark_.clear(), environment_file_.clear(), environment_in_force_.clear(), environments_sent_.clear();
   walking = false;
-  // Beside the window: it is a second's work in a large scene. One that is still at work is not waited for.
+  // In another thread: it takes a second for a large scene. A running one is not waited for.
   probe_.reset();
   std::erase_if(retired_,
                 [](auto& f) { return f.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
@@ -291,7 +291,7 @@ void Workspace::send(const Document& before, const Document& after) {
     return;
   for (const auto& [key, value] : after.settings) {
     const auto old = before.settings.find(key);
-    // Settings that are given by name act on the scene that comes, whatever it brings.
+    // Settings given on the command line apply to the next scene, whatever it sets.
     const bool named = std::find(touched_.begin(), touched_.end(), key) != touched_.end();
     if (!(named && loading()) && old != before.settings.end() && old->second == value) continue;
     session.set(key, value, named ? session::k_any_scene : scene_id_);

@@ -1,15 +1,14 @@
 #pragma once
-// What a person works on: a session, the edits on their way to it, the camera, the selection – and the one
-// way to change any of it: run(line). It keeps what can be undone and the script of what was done. One
-// thread.
+// State of the user's work: the session, edits on their way to it, camera and selection. run(line) is the
+// only way to change it. Keeps the undo history and the script of what was done. Not thread-safe.
 //
-// An edit is seen here at once and handed to the session, in the order of the lines, so that each line acts
-// on what the lines before have left. Until the session has carried it out the edit stands above what the
-// session says. If the session refuses it, it is taken out of what can be undone and of the script.
+// An edit is visible here at once and sent to the session, in the order of the lines, so each line acts on
+// the result of the lines before. Until the session has carried it out, the edit overrides the session's
+// state. If the session refuses it, it is removed from the undo history and the script.
 //
-// Edits belong to the scene shown. While another one is being loaded, lines that name things of a scene are
-// refused; moves of the camera, undo and what is derived from the scene's own settings are left out by the
-// session when the other scene comes. Settings given by name act on the scene that comes.
+// Edits belong to the shown scene. While another one is being loaded, lines that name objects of a scene are
+// refused; camera moves, undo and values derived from the scene's settings are skipped by the session when
+// the other scene arrives. Settings by name apply to the new scene.
 #include <array>
 #include <deque>
 #include <future>
@@ -26,7 +25,7 @@
 
 namespace lucerna::commands {
 
-/// What can be undone. Plain values; a command that edits changes them, and the session is told what differs.
+/// The undoable state, as plain values. Commands change it; differences are sent to the session.
 struct Document {
   struct Light {
     vec3 intensity{0};  ///< all as scene::Light
@@ -79,12 +78,12 @@ class Workspace {
   void refresh(double time);
   std::shared_ptr<const session::Snapshot> snapshot;
   uint64_t inspections = 0;  ///< inspect.at commands so far
-  /// Whether the newest picture knows what all commands so far have brought.
+  /// True if the newest picture includes all commands so far.
   bool up_to_date() const { return snapshot && snapshot->commands >= session.commands(); }
   std::shared_ptr<const scene::Scene> scene;  ///< with the edits that the session has taken
   /// A scene is being loaded, or loaded without a picture yet.
   bool loading() const { return opened_by_ != 0; }
-  /// Errors seen so far, counted by whoever listens to the log.
+  /// Number of logged errors so far, counted by a log listener.
   uint64_t error_count = 0;
 
   /// The line, of a control, a script or the console, that gave the session its command of that number
@@ -106,9 +105,9 @@ class Workspace {
   /// What a material emits, or would if it were not switched off.
   vec3 emission(uint32_t index) const;
   bool emits(uint32_t index) const { return !dark_.contains(index); }
-  /// Whether the settings have some component computed by that solver.
+  /// True if the settings use that solver for some component.
   bool uses(const solvers::SolverInfo& solver) const;
-  /// What it told with the newest picture; null where it is not looked up.
+  /// Its report with the newest picture; null if it is not in use.
   const solvers::Report* report(const solvers::SolverInfo& solver) const;
   /// That of a solver whose preparation waits for a command, or null.
   const solvers::Report* waiting() const;
@@ -134,7 +133,7 @@ class Workspace {
   /// What 'help TOPIC' says; "" for the list of commands. Throws Error when there is no such topic.
   std::string manual(const std::string& topic) const;
 
-  /// What was done, one line each, so that a script of them does it again. What failed is left out.
+  /// The executed lines, without failed ones, so that they can be run again as a script.
   std::vector<std::string> script() const;
   /// Writes it, whole or not at all. Throws Error: cannot be written, or something else than a saved session
   /// is there.
@@ -155,8 +154,8 @@ class Workspace {
   static std::string place_line(const Viewpoint& view);
   bool walking = false;             ///< keys lead along the floor
   float eye_height = k_eye_height;  ///< above it, metres
-  /// Rays against the scene shown: null until they can be asked for, which takes a moment after a scene has
-  /// come. `wait`: waits for them.
+  /// Ray queries against the shown scene: null for a moment after a scene has arrived, until they are ready.
+  /// `wait`: waits for them.
   const session::Probe* probe(bool wait = false);
   /// What stands in the way, by them; nothing does while there are none.
   Look look();
@@ -178,7 +177,7 @@ class Workspace {
   virtual void scene_changed() {}
   /// Called when what was measured has set the exposure; `text` says to what.
   virtual void measured(const std::string& text) { (void)text; }
-  /// Called when the session has refused the size that was asked for last; the picture keeps this one.
+  /// Called when the session has refused the latest requested size; the picture keeps this one.
   virtual void size_refused(uint32_t width, uint32_t height) { (void)width, (void)height; }
   /// Called when a picture has been written; `name`: its file and how it was written.
   virtual void written(const std::string& name) { (void)name; }
@@ -188,7 +187,7 @@ class Workspace {
     (void)key, (void)value;
     return {};
   }
-  /// Whether the exposure is to be found when a scene comes that brings none.
+  /// True if exposure is measured for a new scene that sets none.
   virtual bool exposes_at_load() const { return false; }
 
  private:
@@ -220,8 +219,8 @@ class Workspace {
     session::Saved saved = {};  ///< that it was to write a file, and how that has ended
     Sent sent = {};
   };
-  // Edits that the session has been told and that its snapshots do not hold yet: what is asked for is shown.
-  // `sent` is the number of the command (Session::commands); it is over when a snapshot counts it.
+  // Edits sent to the session but not in its snapshots yet; the requested values are shown. `sent`: number of
+  // the command (Session::commands); done when a snapshot counts it.
   struct Pending {
     std::string value;
     uint64_t sent;
@@ -262,7 +261,7 @@ class Workspace {
   void add_wait_commands();
   /// A command without parameters.
   void add_plain(const char* name, const char* help, std::function<void()> run);
-  /// Whether the picture holds so many samples a pixel, or is finished. Throws Error when it will not.
+  /// True if the picture has that many samples a pixel, or is finished. Throws Error if it never will.
   bool has_samples(int64_t samples);
   void add_inspect_commands();
   void add_solver_commands();
@@ -282,7 +281,7 @@ class Workspace {
   void record(const Line& line, uint64_t gesture, const Sent& sent);
   /// Has the script wait for as many samples as the picture has now.
   void record_wait();
-  /// Whether the file of the last command that writes one is there. Throws Error when it will not be.
+  /// True if the file of the latest saving command is written. Throws Error if it never will be.
   bool saved() const;
   void follow_scene();
   /// Takes up the camera and the size that the session has, where it has refused, or chosen, another.
@@ -311,11 +310,11 @@ class Workspace {
   void note_move(const Line& line, uint64_t gesture, const Viewpoint& before, int camera_before,
                  const Sent& sent);
   std::vector<std::string> bookmark_names() const;
-  /// At what is `wanted`, of which nothing is all.
+  /// At surfaces for which `wanted` is true; empty: all.
   Look look_at(std::function<bool(const session::Picked&)> wanted);
-  /// Looks through what is selected.
+  /// Ignores selected objects.
   Look look_past_selection();
-  /// Asks for the brightness of the picture, or at a point; `of_load`: nobody has asked for it.
+  /// Measures the brightness of the picture, or at a point; `of_load`: automatic, for a new scene.
   void measure(std::optional<vec2> at, bool of_load);
   void take_measure();
   /// Calls written() for what has been.
@@ -339,9 +338,9 @@ class Workspace {
     uint64_t scene;
   };
   std::optional<Measuring> measuring_;
-  std::string measure_failure_;                    ///< of the last that was asked for
-  uint64_t exposure_due_ = 0;                      ///< scene that waits for its exposure to be found; 0: none
-  bool exposure_given_ = false;                    ///< film.ev was set since a scene was asked for
+  std::string measure_failure_;                    ///< of the latest request
+  uint64_t exposure_due_ = 0;                      ///< scene whose exposure is still to be measured; 0: none
+  bool exposure_given_ = false;                    ///< film.ev was set after a scene was requested
   std::shared_ptr<const scene::Scene> groups_of_;  ///< that groups_ are of, by these rules
   std::string groups_by_;
   scene::LightGroups groups_;
@@ -357,7 +356,7 @@ class Workspace {
   std::deque<GivenBy> given_by_;
   std::vector<Step> undo_, redo_;
   std::vector<Recorded> recorded_;
-  /// Pictures on their way to files, as they are to be named.
+  /// Pictures being written, with their names.
   struct Writing {
     std::string name;
     session::Saved saved;
@@ -369,8 +368,8 @@ class Workspace {
   session::SceneId scene_id_ = 0;               ///< of `scene`
   size_t refused_seen_ = 0;                     ///< of the session's refused commands
   uint64_t moves_ = 0;                          ///< cameras given to the session
-  std::pair<uint32_t, uint32_t> size_{0, 0};    ///< asked for last
-  double waited_since_ = -1;                    ///< when the running wait began, or saw a new picture
+  std::pair<uint32_t, uint32_t> size_{0, 0};    ///< latest requested size
+  double waited_since_ = -1;                    ///< when the current wait began, or last saw a new picture
   uint64_t waited_errors_ = 0, waited_id_ = 0;  ///< errors when it began; picture seen last
 };
 

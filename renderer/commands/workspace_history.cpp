@@ -1,4 +1,4 @@
-// Lines that are carried out: what they send, how they are undone, and the script of them.
+// Execution of lines: what they send, how they are undone, and their script.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -208,7 +208,7 @@ void Workspace::record_wait() {
         std::next(pause)->target == "wait_samples")
       *std::next(pause) = wait;
   }
-  // Who saves the same picture twice has waited once.
+  // Saving the same picture twice waits only once.
   const auto before = std::find_if(recorded_.rbegin(), recorded_.rend(), [](const Recorded& entry) {
     return !entry.line.starts_with("image.save ");
   });

@@ -1,6 +1,5 @@
 #pragma once
-// Develops a film: its picture of 8-bit sRGB, tone-mapped or as a heat map, with the state of the tiles over
-// it.
+// Develops a film: its 8-bit sRGB picture, tone-mapped or as a heat map, with the state of the tiles over it.
 #include <map>
 
 #include "film/film.h"
@@ -12,17 +11,16 @@ class Developer {
   /// Compiles its kernels; throws Error, located.
   Developer(gpu::Device& device, gpu::ShaderCompiler& compiler);
 
-  /// Film -> its picture. `coarse` fills pixels without samples, if given (it is tone-mapped first). Runs the
-  /// stream; what it takes is nobody's stage.
+  /// Tone-maps the film. `coarse`: fills pixels without samples, if given (it is tone-mapped first). Runs the
+  /// stream; its time belongs to no stage.
   void tone_map(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse = nullptr);
-  /// The film's picture of all components as its groups of lights are mixed (Film::set_mix), of what it
-  /// keeps to show that at once (Film::quick). Compiles its kernel, unless prepare_mix() has. Runs the
-  /// stream.
+  /// Picture of all components with the mix of light groups (Film::set_mix), from the data for immediate
+  /// display (Film::quick). Compiles its kernel unless prepare_mix() has. Runs the stream.
   void mix(gpu::Stream& stream, const Film& film, const View& view);
-  /// So that the first mix does not wait for a compiler. Does nothing where it has been done, and where the
-  /// film is not Film::quick(). Runs the stream. Throws Error, located.
+  /// Compiles the kernel of mix(), so that the first mix does not wait. Does nothing if already done or if
+  /// the film is not Film::quick(). Runs the stream. Throws Error, located.
   void prepare_mix(gpu::Stream& stream, const Film& film, const View& view);
-  /// Draws over the film's picture the state of its tiles, where the view has any. Runs the stream.
+  /// Draws the state of the tiles over the film's picture, if the view shows it. Runs the stream.
   void draw_tiles(gpu::Stream& stream, const Film& film, const View& view);
 
  private:

@@ -49,7 +49,7 @@ RecordsError records_error(std::span<const shared::BlockRecords> blocks) {
     for (size_t k = 0; k < noise.size(); ++k) noise[k] += b.noise[k], left[k] += b.interpolation_noise[k];
   }
   if (pixels == 0) return {};
-  // Products of the two paths' sums: in the mean squares of what they are about, without the paths' noise.
+  // Products of the two paths' sums: their mean is the square, without the paths' noise.
   double variance = 0, square = interpolation[0] * interpolation[1];
   for (size_t k = 0; k < k_record_lanes; ++k) {
     variance += noise[k] * noise[k_record_lanes + k] / k_record_lanes;
@@ -188,8 +188,8 @@ void count_shared_noise(std::span<TileError> tiles, uint32_t across) {
       if (!(tile.variance > 0) || !(sum > 0)) continue;
       const double factor = std::max(1.0, sum / count);
       tile.standard_error *= std::sqrt(factor);
-      // So many pixels share what they read that there are fewer to tell the noise by; and the factor has
-      // noise itself, of squares with one degree of freedom each.
+      // Pixels that share their data provide fewer independent samples of the noise; and the factor itself is
+      // noisy, from squares with one degree of freedom each.
       tile.degrees = std::max(1.0, 1 / (factor / tile.degrees + squares / (3 * sum * sum)));
     }
 }

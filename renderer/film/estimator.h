@@ -1,20 +1,20 @@
 #pragma once
-// What the halves of a film say of the noise in its blocks (shaders/film/error.comp), into film.errors().
+// Estimates the noise in the blocks of a film from its halves (shaders/film/error.comp), into film.errors().
 #include "film/error.h"
 
 namespace lucerna::film {
 
-/// Records on streams of others and leaves it to them to run these, and to account for the stages "ledger"
-/// and "stopping": once before it is called again.
+/// Records on the caller's streams. The caller runs them before the next call and accounts for the stages
+/// "ledger" and "stopping".
 class ErrorEstimator {
  public:
-  /// `lookup_errors`: light may be looked up, so that pixels may know what that is wrong by
-  /// (Film::complete_record_errors, lookup_bias_known). Compiles its kernels; throws Error, located.
+  /// `lookup_errors`: the film may have errors of lookups (Film::complete_record_errors, lookup_bias_known).
+  /// Compiles its kernels; throws Error, located.
   ErrorEstimator(gpu::Device& device, gpu::ShaderCompiler& compiler, bool lookup_errors);
 
-  /// Of all blocks. `seen`: what of them is seen.
+  /// Estimates all blocks. `seen`: visible range of luminance.
   void estimate(gpu::Stream& stream, const Film& film, const SeenRange& seen);
-  /// Of these blocks alone, and only what relative_error() reads; the rest of film.errors() stays.
+  /// Estimates only these blocks, and only the fields that relative_error() reads; the rest stays.
   void estimate_stopping(gpu::Stream& stream, std::span<const shared::WorkBlock> blocks, const Film& film,
                          const SeenRange& seen);
 

@@ -9,7 +9,7 @@ namespace {
 
 float rounded(double ev) { return static_cast<float>(std::round(10 * std::clamp(ev, -20.0, 20.0)) / 10); }
 
-/// Mean of a rectangle, of what is finite in it.
+/// Mean of the finite pixels of a rectangle.
 vec3 mean(std::span<const vec3> radiance, uint32_t width, uint32_t x0, uint32_t y0, uint32_t x1,
           uint32_t y1) {
   glm::dvec3 sum(0);
@@ -38,7 +38,7 @@ Brightness measure_picture(std::span<const vec3> radiance, uint32_t width, uint3
   std::sort(blocks.begin(), blocks.end());
   const float bright = blocks[blocks.size() - 1 - blocks.size() / 20];
   const float brightest = blocks.back();
-  // Of a small light in the dark the light itself.
+  // For a small light in the dark, the light itself is used.
   const float reference = bright > 1e-6f * brightest ? bright : brightest;
   if (!(reference > 0)) return found;
   double sum = 0, count = 0;

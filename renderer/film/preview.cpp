@@ -11,14 +11,14 @@ using namespace shared;
 namespace {
 
 constexpr uint32_t k_filter_passes = 4;
-constexpr float k_most_light = 60000;  // as a half holds it
-// Of a filtered picture: mean size of the deviation of 3x3 pixels' means over a pixel's standard error.
+constexpr float k_most_light = 60000;  // range of half floats
+// Filtered picture: mean absolute deviation of 3x3 pixels' means over a pixel's standard error.
 constexpr float k_filter_deviation = 0.65f;
 constexpr uint64_t k_light_bytes = 16 * k_preview_texels;
 
 uint32_t groups(uint64_t items) { return gpu::groups_for(items, 64); }
 
-/// Along a side of so many cells.
+/// Number of blocks along a side of that many cells.
 uint32_t change_blocks(uint32_t cells) { return gpu::groups_for(cells, k_preview_change_step); }
 
 uint32_t tile_count(uint32_t pixels) { return gpu::groups_for(pixels, k_preview_tile); }
@@ -80,7 +80,7 @@ void Preview::keep(const vec3& scale, bool repainted, bool same_light) {
 }
 
 void Preview::better() {
-  // What was shown is mostly what was there before, where that holds still, and else of poorer light.
+  // The shown picture is mostly the one before, if it is steady, and otherwise has noisier light.
   const bool same_light = history_.known && history_.same_light;
   keep();
   history_.same_light = same_light;
@@ -170,8 +170,8 @@ void Preview::move(gpu::Stream& stream, PreviewReprojectPush push) {
   stream.dispatch(gather_, resources_, push, groups(pixels()));
 }
 
-/// What was shown before, as it is seen now. It is always taken from the picture that was shown then, and not
-/// from what the last camera saw of that, so that nothing is lost on the way.
+/// The previous picture from the present camera. It is always reprojected from the picture as it was shown,
+/// not from a reprojection, so that nothing is lost on the way.
 const Preview::Pixels& Preview::history(gpu::Stream& stream, const PreviewCamera& now) {
   if (!history_.known || history_.camera == now) return history_.pixels;
   if (moved_camera_ == now) return moved_;
@@ -204,8 +204,8 @@ void Preview::warm(gpu::Stream& stream, const Film& film) {
   resources_.set("before_texels", before_[0]);
   resources_.set("Sums", changes_);
   resources_.set("Ratios", ratios_);
-  stream.dispatch(change_, resources_, PreviewChangePush{.all = 1}, 1);  // of no blocks
-  move(stream, {});                                                      // no pixels
+  stream.dispatch(change_, resources_, PreviewChangePush{.all = 1}, 1);  // without blocks
+  move(stream, {});                                                      // without pixels
   show(stream, film, moved_, {});
 }
 
@@ -287,7 +287,7 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
                             : history_.known ? k_preview_surface_before
                                              : k_preview_surface_unknown;
   const bool repainted = repainted_ && !seen, moved = history_.known && history_.camera != camera;
-  // Wide cells lose nothing while each has no more than one pixel of a draft.
+  // Wide cells lose nothing while each has at most one preview sample.
   const bool wide = sampled == Sampled::none && draft && draft->width() <= width_ / k_preview_first_step;
   const uint32_t step = wide ? k_preview_first_step : k_preview_step;
   const uint32_t across = (width_ + step - 1) / step, down = (height_ + step - 1) / step,
@@ -326,7 +326,7 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
       .surfaces = surfaces,
       .moved = moved};
   stream.dispatch(halve_, resources_, halve, groups(cells));
-  // Other light on the same places: how much other?
+  // Changed light on the same surfaces: measures the change.
   const bool changed = history_.known && !history_.same_light;
   const uvec2 blocks = changed ? uvec2(change_blocks(across), change_blocks(down)) : uvec2(0);
   resources_.set("change_texels", ratios_);
@@ -343,7 +343,7 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
   const gpu::Buffer *from = &grid_, *to = &filtered_, *before = &before_[0], *before_to = &before_[1],
                     *lost = &lost_[0], *lost_to = &lost_[1], *texture = &texture_[0],
                     *texture_to = &texture_[1];
-  // Cells that show one pixel of a draft tell nothing of its noise.
+  // Cells that show one pixel of a preview sample have no information about its noise.
   const uint32_t base = draft && 3 * draft->width() < 2 * across ? 2 : 1;
   for (uint32_t pass = 0; pass < k_filter_passes; ++pass) {
     resources_.set("grid_texels", *from);
@@ -356,7 +356,7 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
     resources_.set("FilteredTexture", *texture_to);
     const PreviewFilterPush push{.across = across,
                                  .down = down,
-                                 // Even and odd cells meet at last.
+                                 // The last pass mixes even and odd cells.
                                  .step = pass + 1 == k_filter_passes && base == 2 ? 1 : base << pass,
                                  .orthographic = camera.orthographic,
                                  .history = history_.known,

@@ -3,7 +3,7 @@
 
 namespace lucerna::film {
 
-/// From this many times the target on, a tile is as far from it as the ramp can tell.
+/// Multiple of the target at which the ramp ends.
 inline constexpr float k_tiles_far = 8;
 
 /// Where a tile of that error lies on the ramp of tiles: 0 far from the target .. 1 at it or below, even in

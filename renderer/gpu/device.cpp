@@ -11,7 +11,7 @@ namespace lucerna::gpu {
 
 namespace {
 
-/// The chain of feature structs that is both asked for and, trimmed to what is used, enabled.
+/// Chain of feature structs: queried, then trimmed to the used ones and enabled.
 struct Features {
   VkPhysicalDeviceFeatures2 core{};
   VkPhysicalDeviceVulkan11Features v11{};

@@ -71,7 +71,7 @@ class Device {
   Device& operator=(const Device&) = delete;
 
   const DeviceInfo& info() const;
-  /// For tests of memory shortage: so many more allocations succeed; nothing: no limit.
+  /// For tests of memory shortage: that many more allocations succeed; nullopt: no limit.
   void limit_allocations(std::optional<uint64_t> count);
   uint64_t allocated_bytes() const;      ///< of buffers and images, now
   uint64_t peak_bytes() const;           ///< ... at most so far

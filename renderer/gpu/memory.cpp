@@ -12,7 +12,7 @@ namespace {
 
 constexpr VkDeviceSize k_block_bytes = 8ull << 20;
 constexpr VkDeviceSize k_check_host_above = 64ull
-                                            << 20;  ///< from here on, the host is asked what it has left
+                                            << 20;  ///< for larger sizes, the host's free memory is checked
 constexpr VkDeviceSize k_small_bytes = 1ull << 20;  ///< below this, a buffer shares a block
 
 VkDeviceSize align_up(VkDeviceSize value, VkDeviceSize alignment) {

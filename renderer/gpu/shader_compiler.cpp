@@ -110,8 +110,8 @@ ShaderSource source_for(const ShaderSource& source, const Defines& defines) {
   return source.with(std::move(texts));
 }
 
-/// Desktop GLSL takes a macro that is not defined for 0, and what hangs on it is left out in silence. GLSL ES
-/// forbids it, so the source goes through the preprocessor as if it were that.
+/// Desktop GLSL treats undefined macros as 0 and silently drops what depends on them. GLSL ES forbids it, so
+/// the source is preprocessed as GLSL ES.
 void check_macros(const ShaderSource& source, const ShaderFile& file, const Defines& defines) {
   const std::string prologue =
       "#version 320 es\n"

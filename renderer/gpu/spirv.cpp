@@ -115,7 +115,7 @@ struct Parsed {
 
   uint32_t pointee(uint32_t pointer_type) const { return types.at(pointer_type).operands[1]; }
 
-  /// Whether the variable is a buffer, in words or in texels.
+  /// True if the variable is a buffer, of words or of texels.
   bool is_buffer(const Variable& v) const {
     const Type* type = &types.at(pointee(v.pointer_type));
     if (type->op == spv::OpTypeSampledImage) type = &types.at(type->operands[0]);

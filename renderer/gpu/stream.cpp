@@ -28,8 +28,8 @@ struct Stream::Impl {
 
   std::vector<VkDescriptorPool> set_pools;
   size_t sets_made = 0;
-  /// (kernel id, resource ids by binding) -> set. Ids are never reused, so that a set can only be found for
-  /// what it holds.
+  /// (kernel id, resource ids by binding) -> set. Ids are never reused, so a set cannot be found for other
+  /// resources.
   std::map<std::vector<uint64_t>, VkDescriptorSet> sets;
   std::vector<uint64_t> key;  ///< scratch
 
@@ -57,7 +57,7 @@ namespace {
 
 constexpr uint32_t k_no_query = ~0u;
 
-/// The Vulkan resource that a kernel's slot is to be bound to, checked.
+/// The Vulkan resource to bind to a kernel's slot, checked.
 const Resources::Entry& resource_for(const Kernel::Impl& kernel, const Kernel::Impl::Slot& slot,
                                      const Resources& resources) {
   const Resources::Entry* entry = resources.find(slot.name);
@@ -173,7 +173,7 @@ VkDescriptorSet Stream::Impl::set_for(const Kernel::Impl& kernel, const Resource
     switch (kernel.slots[i].kind) {
       case Kernel::Impl::Kind::storage_buffer: {
         const Buffer::Impl& buffer = *std::get<const Buffer*>(entry)->impl();
-        // The range is what was asked for, so that length() of an array is exact.
+        // The range has the requested size, so that length() of an array is exact.
         buffers[i] = {buffer.buffer, 0, buffer.desc.bytes ? buffer.desc.bytes : buffer.allocated};
         write.descriptorType = VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
         write.pBufferInfo = &buffers[i];

@@ -7,14 +7,13 @@
 
 namespace lucerna::overlay {
 
-/// The wavefront's frame must be the picture's; its stream is run. Where the film has no samples the coarse
-/// film tells what is seen (shared::k_coarse_step).
+/// The wavefront must have the picture's frame; its stream has been submitted. Where the film has no samples,
+/// the coarse film provides the visible surfaces (shared::k_coarse_step).
 struct Canvas {
   transport::Wavefront& wavefront;
   const film::Film& film;
   const film::Film& coarse;
-  /// Asked by what takes long: true when the picture is out of date already. What is drawn may then be left
-  /// out.
+  /// Called by long operations; true: the picture is out of date already, and drawing may stop.
   std::function<bool()> cancel = {};
 
   uint32_t width() const { return film.width(); }
@@ -23,7 +22,7 @@ struct Canvas {
   gpu::Stream& stream() const { return wavefront.stream(); }
   /// What shaders/overlay/seen.glsl reads, and the picture, in place of what was in the table.
   void bind(gpu::Resources& resources) const;
-  /// Runs what is recorded: it is no part of the picture's cost.
+  /// Runs the recorded commands; not part of the picture's cost.
   void finish() const;
 };
 

@@ -11,9 +11,10 @@ using namespace shared;
 
 namespace {
 
-constexpr float k_head = 0.12f, k_head_width = 0.35f;  // of an arrow's length, of its head's
+/// Length of an arrow's head over the arrow's, and its width over its length.
+constexpr float k_head = 0.12f, k_head_width = 0.35f;
 
-/// A line and two short ones at its end, which lie across the view.
+/// A line with two short lines at its end, perpendicular to the view.
 void add_arrow(std::vector<OverlaySegment>& to, const vec3& from, const vec3& at, float share,
                const vec3& forward) {
   OverlaySegment line{.from = from,
@@ -30,7 +31,7 @@ void add_arrow(std::vector<OverlaySegment>& to, const vec3& from, const vec3& at
   const float length = glm::length(along);
   if (!(length > 0)) return;
   vec3 side = glm::cross(along / length, forward);
-  if (glm::length(side) < 1e-3f) return;  // seen from its end
+  if (glm::length(side) < 1e-3f) return;  // parallel to the view
   side = k_head_width * k_head * length * glm::normalize(side);
   for (const float turn : {-1.f, 1.f}) {
     line.from = at - k_head * along + turn * side, line.to = at;
@@ -77,7 +78,7 @@ std::optional<ServedPoint> LearnedLightsPainter::draw_arrows(const Canvas& canva
   std::stable_sort(served.clusters.begin(), served.clusters.end(),
                    [](const ServingCluster& a, const ServingCluster& b) { return a.share > b.share; });
   std::vector<OverlaySegment> segments;
-  // The greatest last, over the others.
+  // The largest share last, over the others.
   const size_t most = std::min(k_most_arrows, served.clusters.size());
   for (size_t i = most; i-- > 0;) {
     const ServingCluster& c = served.clusters[i];

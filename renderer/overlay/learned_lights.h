@@ -1,6 +1,6 @@
 #pragma once
-// What lights are chosen by, over the picture (transport/light_learning.h): arrows from a point to the
-// clusters of lights that serve it, and the share of shadow rays that arrive as a heat map.
+// Display of learned light selection (transport/light_learning.h): arrows from a point to the clusters of
+// lights that light samples choose there, and a heat map of the share of unblocked shadow rays.
 #include <optional>
 #include <vector>
 
@@ -10,30 +10,30 @@
 
 namespace lucerna::overlay {
 
-/// A cluster that lights are chosen from at a point.
+/// A cluster that light samples choose at a point.
 struct ServingCluster {
   uint32_t cluster = 0;
-  float share = 0;  ///< of the light samples there
-  float plain = 0;  ///< without learning
+  float share = 0;  ///< share of the light samples there
+  float plain = 0;  ///< their share without learning
 };
 struct ServedPoint {
   vec3 position{0}, normal{0};
-  float arrived = -1;                    ///< share of the shadow rays that arrive there; < 0: not known
-  std::vector<ServingCluster> clusters;  ///< all of them, greatest share first
+  float arrived = -1;                    ///< share of unblocked shadow rays there; < 0: unknown
+  std::vector<ServingCluster> clusters;  ///< all, largest share first
 };
 
-/// Arrows are drawn to so many clusters at most, and of shares from this on.
+/// Maximum number of arrows, and minimum share of an arrow's cluster.
 inline constexpr size_t k_most_arrows = 24;
 inline constexpr float k_least_share = 0.005f;
-/// Encoded, of a share of the light samples: the ink of its arrow.
+/// Encoded colour of the arrow for a share of the light samples.
 vec3 share_ink(float share);
 
 class LearnedLightsPainter {
  public:
-  /// Kernels are compiled when they are first called for. Both must outlive it.
+  /// Kernels are compiled on first use. Device and compiler must outlive it.
   LearnedLightsPainter(gpu::Device& device, gpu::ShaderCompiler& compiler);
-  /// Arrows from what that pixel shows. Nothing where it shows no surface. `far_away`: length of an arrow to
-  /// what is infinitely far [m].
+  /// Draws arrows from the surface that the pixel shows; nothing if it shows none. `far_away`: length of an
+  /// arrow to an infinitely distant cluster [m].
   std::optional<ServedPoint> draw_arrows(const Canvas& canvas, const transport::LightLearning& learning,
                                          uint32_t x, uint32_t y, const shared::Frame& frame, float far_away);
   void draw_arrival(const Canvas& canvas, const transport::LightLearning& learning);

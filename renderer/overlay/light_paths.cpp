@@ -11,18 +11,18 @@ using namespace shared;
 
 namespace {
 
-constexpr uint32_t k_paths = 512, k_paths_for_one = 8192;  // where one lamp's are sought among all
-constexpr uint32_t k_round = 0xfffffffeu;                  // of no sample, and not the pilot's
-constexpr float k_least_share = 1e-3f;                     // of the ramp's scale
+constexpr uint32_t k_paths = 512, k_paths_for_one = 8192;  // the latter to find one lamp's paths among all
+constexpr uint32_t k_round = 0xfffffffeu;                  // differs from rounds of samples and of the pilot
+constexpr float k_least_share = 1e-3f;                     // lower end of the ramp
 constexpr size_t k_most_lines = 256;
 
-/// A lamp as the window calls it.
+/// The lamp's name in the window.
 std::string lamp_name(const upload::FlatScene& flat, uint32_t lamp) {
   const bool named = lamp < flat.lamp_names.size() && !flat.lamp_names[lamp].empty();
   return named ? flat.lamp_names[lamp] : fmt::format("Light {}", lamp + 1);
 }
 
-/// Where an entry of the light table is, or whence it shines.
+/// Position of an entry of the light table, or the direction of its light.
 void place(const upload::FlatScene& flat, uint32_t entry, AimedPair& pair) {
   const vec4* texels = flat.lights.data() + size_t{k_light_texels} * entry;
   switch (flat.entries[entry].kind) {
@@ -101,7 +101,7 @@ uint32_t LightPathsPainter::draw(const Canvas& canvas, const upload::FlatScene& 
     const bool is_lamp = e.kind == k_light_point || e.kind == k_light_spot || e.kind == k_light_directional;
     if (is_lamp && e.index == lamp - 1) view.light = i;
   }
-  if (lamp > 0 && view.light == k_all_lights) return 0;  // one that is off, or is not there
+  if (lamp > 0 && view.light == k_all_lights) return 0;  // switched off or missing
   if (!emitter_) {
     emitter_.emplace(device_, compiler_, scene_defines_, automaton_);
     vertex_ = gpu::Kernel(device_, compiler_, "overlay/light_paths.comp", scene_defines_);
@@ -150,7 +150,7 @@ void LightPathsPainter::draw_aim(const Canvas& canvas, const upload::FlatScene& 
   };
   for (size_t c = 0; c < boxes.size(); ++c)
     for (uint32_t edge = 0; edge < 12; ++edge) {
-      // Along one axis, at one of four corners of the other two.
+      // Parallel to one axis, at one of four corners in the other two.
       const int axis = int(edge / 4), u = (axis + 1) % 3, v = (axis + 2) % 3;
       vec3 from = boxes[c].lo, to = from;
       from[u] = to[u] = (edge & 1u) != 0 ? boxes[c].hi[u] : boxes[c].lo[u];

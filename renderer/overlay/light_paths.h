@@ -1,6 +1,6 @@
 #pragma once
-// Paths from lights as they are traced and aimed: segments from vertex to vertex, and what they are aimed at.
-// For solvers that send some.
+// Display of traced light paths, for solvers that trace them: segments from vertex to vertex, and the boxes
+// that they are aimed at.
 #include <optional>
 
 #include "overlay/painter.h"
@@ -8,31 +8,31 @@
 
 namespace lucerna::overlay {
 
-/// A group of lights and a box that is aimed at, and which share of the paths is sent from one to the other.
+/// A group of lights, a target box, and the share of the paths from one to the other.
 struct AimedPair {
-  std::string light;  ///< by name, or in words: "Chandelier", "Light 3", "12 lights", "sky"
+  std::string light;  ///< name or description: "Chandelier", "Light 3", "12 lights", "sky"
   uint32_t box = 0;
   double share = 0;
-  std::optional<vec3> from;   ///< where the light is, if it is anywhere
-  std::optional<vec3> along;  ///< unit, from a light that is far away
+  std::optional<vec3> from;   ///< position of the light, if it has one
+  std::optional<vec3> along;  ///< unit, direction of a distant light
 };
-/// Greatest first; empty where nothing is aimed.
+/// Largest share first; empty if no light is aimed.
 std::vector<AimedPair> aimed_pairs(const upload::FlatScene& flat, const transport::LightSource& lights);
 
-/// Encoded, of a share of the paths: what draw_aim() draws it in.
+/// Encoded colour of draw_aim() for a share of the paths.
 vec3 aim_ink(double share);
 
 class LightPathsPainter {
  public:
-  /// Kernels are compiled when they are first called for. All must outlive it.
+  /// Kernels are compiled on first use. All arguments must outlive it.
   LightPathsPainter(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& scene_defines,
                     const paths::Automaton& automaton);
-  /// `round`: which parts of light are followed; its number and paths are the view's own, so that it stands
-  /// still. `lamp`: of which alone paths are drawn, from 1 on in the scene's order of lamps; 0: of all
-  /// lights. Returns how many paths were sent.
+  /// `round`: selects the traced parts of light; its number and count of paths are replaced by constants, so
+  /// that the picture is steady. `lamp`: only its paths are drawn, from 1 in the scene's order of lamps; 0:
+  /// all lights. Returns the number of traced paths.
   uint32_t draw(const Canvas& canvas, const upload::FlatScene& flat, const transport::LightSource& lights,
                 transport::LightRound round, uint32_t lamp, const shared::Frame& picture, uint32_t enabled);
-  /// The boxes, by the share of paths that is aimed at each, and lines from lights.
+  /// Draws the boxes, coloured by the share of paths aimed at each, and lines from the lights.
   void draw_aim(const Canvas& canvas, const upload::FlatScene& flat, const transport::LightSource& lights,
                 std::span<const Box> boxes);
 

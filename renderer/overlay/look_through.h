@@ -1,8 +1,7 @@
 #pragma once
-// What the picture's pixels show through glass and in mirrors: the first surface behind them that scatters
-// light diffusely, where light that is stored on surfaces can lie. Each ray goes the way that most of the
-// light goes (shaders/overlay/look.comp); what is seen in rough metal or through frosted glass is no surface.
-// Shaders read it by shaders/overlay/lookup_place.glsl.
+// Surfaces that the picture's pixels show through glass and in mirrors: the first diffuse surface, on which
+// light can be stored. Each ray follows the strongest lobe (shaders/overlay/look.comp); rough metal and
+// frosted glass show no surface. Shaders read it with shaders/overlay/lookup_place.glsl.
 #include "overlay/canvas.h"
 #include "overlay/sight.h"
 
@@ -16,11 +15,11 @@ class LookThrough {
 
   /// Surfaces are others.
   void forget() { known_ = false; }
-  /// Looks, unless that view is known. The wavefront's frame is `frame`, the picture's. False when the canvas
-  /// cancels it: then nothing is known. Throws Error when there is no memory.
+  /// Traces that view unless done. The wavefront must have `frame`, the picture's. False if the canvas
+  /// cancels it: then there is no data. Throws Error: memory.
   bool look(const Canvas& canvas, const shared::Frame& frame);
   shared::SightGrid grid() const { return known_ ? sight_.grid() : k_no_sight; }
-  /// Sets what asking.glsl reads, whether anything is known or not.
+  /// Binds what lookup_place.glsl reads, with or without data.
   void bind(gpu::Resources& resources) const;
 
  private:

@@ -7,7 +7,7 @@ namespace lucerna::overlay {
 using namespace shared;
 
 namespace {
-/// Pixels along a segment that one invocation goes over; lavapipe ends long loops.
+/// Maximum pixels along a segment per invocation; lavapipe ends long loops.
 constexpr uint32_t k_piece = 1024;
 }  // namespace
 

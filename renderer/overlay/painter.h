@@ -1,6 +1,6 @@
 #pragma once
-// Draws points, segments and the rims of discs over a picture, hidden by what is in front of them: millions
-// of them, in any order, with the same outcome. What they look like: shaders/shared/overlay.h.
+// Draws points, segments and the rims of discs over a picture, hidden by surfaces in front of them: millions,
+// with a result independent of their order. Definitions: shaders/shared/overlay.h.
 #include <array>
 #include <span>
 
@@ -11,11 +11,11 @@ namespace lucerna::overlay {
 
 /// The first `count` of an array in device memory.
 struct Strokes {
-  const gpu::Buffer* of = nullptr;  ///< not read where count is 0
+  const gpu::Buffer* of = nullptr;  ///< not read if count is 0
   uint32_t count = 0;
 };
 
-/// What is drawn at once; no more than shared::k_most_strokes in all.
+/// The strokes of one call; at most shared::k_most_strokes in all.
 struct Drawing {
   Strokes points;    ///< shared::OverlayPoint
   Strokes segments;  ///< shared::OverlaySegment
@@ -23,20 +23,20 @@ struct Drawing {
 };
 
 struct Style {
-  bool dimmed = false;       ///< the picture under the strokes, so that they stand out on any ground
-  float edge_alpha = 0.55f;  ///< of the dark edges
+  bool dimmed = false;       ///< dims the picture, so that strokes are visible on any background
+  float edge_alpha = 0.55f;  ///< alpha of the dark edges
 };
 
-/// Kernels are compiled when they are first called for.
+/// Kernels are compiled on first use.
 class Painter {
  public:
-  /// Both must outlive it.
+  /// Device and compiler must outlive it.
   Painter(gpu::Device& device, gpu::ShaderCompiler& compiler);
 
-  /// Over the film's picture. Runs the stream, and with it what was recorded before, such as what fills these
-  /// arrays. Throws Error: a kernel does not compile, there are too many.
+  /// Draws over the film's picture. Runs the stream with everything recorded before, such as commands that
+  /// fill these arrays. Throws Error: a kernel does not compile, too many strokes.
   void draw(const Canvas& canvas, const Drawing& drawing, const Style& style = {});
-  /// The same of arrays on the host.
+  /// Likewise, from arrays on the host.
   void draw(const Canvas& canvas, std::span<const shared::OverlayPoint> points,
             std::span<const shared::OverlaySegment> segments, std::span<const shared::OverlayDisc> discs,
             const Style& style = {});
@@ -48,7 +48,7 @@ class Painter {
   gpu::ShaderCompiler& compiler_;
   gpu::Kernel points_, segments_, discs_, lay_;
   gpu::Buffer marks_, inks_;
-  std::array<gpu::Buffer, 3> given_;  ///< arrays of the host's
+  std::array<gpu::Buffer, 3> given_;  ///< copies of the host's arrays
   gpu::Resources resources_;
 };
 

@@ -21,8 +21,7 @@ const std::array<const char*, k_component_count> k_component_expressions{
 
 namespace {
 
-/// The two halves of the last component: what the camera sees straight, and what it sees by mirrors and
-/// glass.
+/// The two halves of the last component: directly visible caustics, and those seen by mirrors and glass.
 constexpr std::array<const char*, 2> k_caustic_halves{"ED[SG]+L", "E[SG]+D[SG]+L"};
 
 constexpr std::string_view k_letters = "EDGSL";
@@ -156,7 +155,7 @@ Subset step(const Nfa& nfa, const Subset& from, char letter) {
   return to;
 }
 
-/// Merges states that no continuation tells apart (Moore's partition refinement), keeping state 0 first.
+/// Merges states that no continuation distinguishes (Moore's partition refinement), keeping state 0 first.
 Automaton minimize(const Automaton& in) {
   std::vector<int> group(in.states.size());
   for (size_t i = 0; i < in.states.size(); ++i) group[i] = in.states[i].accept;
@@ -349,7 +348,7 @@ bool matches(const std::string& expression, std::string_view word) { return Matc
 
 namespace {
 
-/// For each state the components (bits) that lookups bring, there or further on.
+/// For each state the components (bits) that lookups provide, there or further on.
 std::vector<uint32_t> looked_up_components(const Automaton& automaton, const LookupRoutes& routes) {
   std::vector<uint32_t> here(automaton.states.size(), 0);
   if (routes.component.empty()) return here;
@@ -361,7 +360,7 @@ std::vector<uint32_t> looked_up_components(const Automaton& automaton, const Loo
     changed = false;
     for (size_t s = 0; s < all.size(); ++s)
       for (const Event e : {Event::diffuse, Event::glossy, Event::specular}) {
-        // What a lookup brings is looked up no more behind it.
+        // Components of a lookup are not looked up again behind it.
         const uint32_t further = all[automaton.after(static_cast<uint8_t>(s), e)];
         const uint32_t more = all[s] | (e == Event::diffuse ? further & ~here[s] : further);
         changed |= more != all[s];
@@ -385,7 +384,7 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const L
       for (Event e : {Event::glossy, Event::specular})
         changed |= mirrors.insert(automaton.after(s, e)).second;
   }
-  // What light brings that is met in a state, or in one that it leads to.
+  // Components of light met in a state, or in states that it leads to.
   std::vector<uint32_t> here(automaton.states.size(), 0);
   for (size_t i = 0; i < here.size(); ++i) {
     const uint8_t accept = automaton.states[i].accept;
@@ -421,7 +420,7 @@ LookupRoutes routes_of(const Automaton& automaton, uint32_t enabled, uint32_t ca
                        bool onward) {
   constexpr uint32_t k_secondary = 1u << 1, k_tertiary = 1u << 2;
   cached &= enabled;
-  // Words of the secondary component go on into those of the tertiary one, and nothing traces behind a
+  // Words of the secondary component continue as words of the tertiary one, and nothing is traced behind a
   // lookup.
   if (cached & k_secondary) cached |= enabled & k_tertiary;
   LookupRoutes routes;

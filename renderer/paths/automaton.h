@@ -1,12 +1,11 @@
 #pragma once
-// Light-path words, path expressions and the automaton that sorts paths into components while they are
-// traced.
+// Light-path words, path expressions, and the automaton that assigns paths to components during tracing.
 //
-// A word begins at the eye and holds one letter an event, the sampled lobe's: D diffuse, G glossy, S specular
-// (delta), and L where it meets light. An expression is a regular expression over E D G S L: letters,
-// [classes], . (any of D G S),
-// * + ? | and parentheses. The four component expressions (the partition) are compiled into one
-// deterministic automaton whose table is uploaded; no shader knows a component by a rule of its own.
+// A word begins at the eye and has one letter per event, that of the sampled lobe: D diffuse, G glossy, S
+// specular (delta), and L where it meets light. An expression is a regular expression over E D G S L:
+// letters, [classes], . (any of D G S), * + ? | and parentheses. The four component expressions (the
+// partition) are compiled into one deterministic automaton whose table is uploaded; shaders have no other
+// rules for components.
 #include <array>
 #include <cstdint>
 #include <string>
@@ -46,54 +45,50 @@ struct Automaton {
 Automaton compile(const std::vector<std::string>& expressions);
 
 /// The automaton of the four components. Also checks that every word E[DGS]*L belongs to one of them; throws
-/// Error naming a word that is lost. Caustics on what the camera sees straight and those that it sees in
-/// mirrors or through glass are told apart by state, for light tracing brings the first alone.
+/// Error naming a word that does not. Directly visible caustics and those seen in mirrors or through glass
+/// have separate states, because light tracing computes only the former.
 Automaton compile_components();
 
 /// True when the word belongs to the expression: a direct backtracking matcher that shares no code with
 /// compile(), kept as its oracle and for one-off queries.
 bool matches(const std::string& expression, std::string_view word);
 
-/// Light arriving at a diffuse vertex, by what it has done before: straight from a light, over one diffuse
-/// event
-/// ([SG]*DL), over more, or over mirrors and glass alone ([SG]+L). Their numbers are those of the components
-/// that they belong to after ED.
+/// Light arriving at a diffuse vertex, by its path: direct, over one diffuse event ([SG]*DL), over more, or
+/// over mirrors and glass alone ([SG]+L). Numbered as the components they belong to after ED.
 inline constexpr int k_part_count = 4;
 inline constexpr uint32_t k_caustic_part = 3;  ///< over mirrors and glass alone
 
 /// Where a lookup of such parts (of a record, of photons) takes the place of tracing on from a diffuse lobe.
 struct LookupRoutes {
-  /// By state in which the vertex is met, for each part: the component that it brings light to,
-  /// k_no_component: it is left to the path. Nothing at all: no lookup in that state.
+  /// By automaton state at the vertex, for each part: the component it contributes to; k_no_component: left
+  /// to the path. Empty: no lookups.
   std::vector<std::array<uint8_t, k_part_count>> component;
   uint32_t parts = 0;   ///< bit p: some state reads part p
-  uint32_t traced = 0;  ///< components that paths still bring, beside the lookups (bit i)
-  /// By state, where not empty: nonzero where what paths from the eye would bring in it comes another way, by
-  /// paths from the lights that end at the camera.
+  uint32_t traced = 0;  ///< components that paths still compute besides lookups (bit i)
+  /// By state, if not empty: nonzero where light paths connected to the camera replace the light that an eye
+  /// path meets.
   std::vector<uint8_t> replaced;
 };
 
-/// The automaton as it is uploaded: packed[state] bits 0-7 next on D, 8-15 next on G, 16-23 next on S, 24-26
-/// component (k_component_count: none, or switched off), bit 27: something can still be brought, by an
-/// enabled component or by a lookup, bit 28: no D so far (E[SG]*), bits 29-30: component its rays are
-/// accounted to, the lowest of those. `enabled` bit i: component i is on.
-/// `met`: there are lights that a ray can meet; where all are points or directions, a path of which nothing
-/// but its meeting light is wanted brings nothing.
+/// The uploaded automaton: packed[state] bits 0-7 next on D, 8-15 next on G, 16-23 next on S, 24-26 component
+/// (k_component_count: none, or off), bit 27: further light is possible, of an enabled component or by a
+/// lookup, bit 28: no D so far (E[SG]*), bits 29-30: component to which rays are accounted, the lowest of
+/// those. `enabled` bit i: component i is on. `met`: some lights can be hit by rays; if all are points or
+/// directions, a path that could only hit a light contributes nothing.
 std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const LookupRoutes& routes = {},
                            bool met = true);
 
-/// For `cached` components, of the enabled ones. A lookup stands at the first diffuse vertex behind which
-/// nothing but cached components has a further diffuse event: with secondary and tertiary cached at the
-/// first, with tertiary alone at the second. Tertiary light behind a cached secondary one comes from the same
-/// lookup, whatever its own solver. `direct`: what is looked up holds light straight from the environment
-/// too; wherever a lookup stands it then brings that as well, to its component, as far as that is enabled.
+/// For `cached` components among the enabled ones. A lookup is at the first diffuse vertex behind which only
+/// cached components have a further diffuse event: at the first with secondary and tertiary cached, at the
+/// second with tertiary alone. Tertiary light behind a cached secondary component comes from the same lookup,
+/// whatever its solver. `direct`: stored light includes direct environment light; every lookup then
+/// contributes it too, if its component is enabled.
 LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached,
                            bool direct = false);
 
-/// For the rays of a cache's records, which begin in the state after ED and bring the parts that the
-/// picture's lookups read. `recursive`: their tertiary light is looked up in turn, at the first vertex behind
-/// which there is nothing else, whose parts are then gathered too (of caustics, where there is anything to
-/// make some).
+/// For the rays of a cache's records, which start in the state after ED and compute the parts that the
+/// picture's lookups read. `recursive`: their tertiary light is looked up, at the first vertex behind which
+/// there is nothing else, whose parts are then gathered too (caustics only if they exist).
 LookupRoutes record_routes(const Automaton& automaton, uint32_t parts, bool recursive, bool caustics);
 
 /// For paths that have passed lookups on purpose, of the picture, or of records with `enabled` their parts:

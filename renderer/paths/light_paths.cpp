@@ -78,8 +78,8 @@ LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_
         automaton.states[d].accept, automaton.states[dd].accept,
         automaton.states[automaton.after(dd, Event::diffuse)].accept,
         automaton.states[automaton.after(d, Event::specular)].accept};
-    // What a further diffuse event leads to is somebody else's: that one's paths go on, and with them what
-    // would be looked up here.
+    // A further diffuse event leads to a component of another solver: its paths continue, and carry this
+    // lookup's light.
     const bool passed_on = component[1] != component[2] && within(component[1], enabled & ~own);
     uint32_t looked_up = before;
     for (uint32_t p = 1; p < k_part_count; ++p) {

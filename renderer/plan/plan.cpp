@@ -50,8 +50,8 @@ Plan make_plan(const Settings& settings) {
 
 namespace {
 
-/// Whether some of a material's lobes are so smooth that they count as deltas. A texture is taken at its
-/// factors: it can only make a surface smoother, and seldom makes all of it polished.
+/// True if some lobes of a material are so smooth that they count as deltas. Textures count by their factors:
+/// they can only make a surface smoother, and seldom polish all of it.
 bool polished(const scene::Material& m) {
   const bool reflects = m.metallic > 0 || m.transmission > 0 || (m.specular > 0 && m.ior != 1);
   return !m.unlit && reflects && m.roughness * m.roughness < shared::k_delta_alpha;

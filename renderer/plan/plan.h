@@ -1,6 +1,5 @@
 #pragma once
-// Settings and scene -> what is to be done: which solver computes which component, and what cannot be
-// reached.
+// From settings and scene to the plan: the solver of each component, and light that no solver can find.
 #include <array>
 #include <optional>
 #include <string>
@@ -15,8 +14,8 @@ namespace lucerna::plan {
 
 struct Plan {
   std::array<const solvers::SolverInfo*, paths::k_component_count> solver{};  ///< null: off
-  /// Where that brings only what the camera sees straight (SolverInfo::directly_visible_only): who looks the
-  /// rest up; null: paths from the eye bring it.
+  /// If `solver` computes only directly visible light (SolverInfo::directly_visible_only): the solver that
+  /// looks up the rest; null: eye paths compute it.
   std::array<const solvers::SolverInfo*, paths::k_component_count> rest{};
   /// Components that are computed (bit i).
   uint32_t enabled() const;
@@ -26,20 +25,19 @@ struct Plan {
   uint32_t rests_of(const solvers::SolverInfo& info) const;
   /// Those that compute something, in the registry's order.
   std::vector<const solvers::SolverInfo*> at_work() const;
-  /// What a component's mean is off by, relative to its luminance: the part of the error that the two halves
-  /// of the film cannot see. 0 where the solver is unbiased; nothing where it cannot tell, or where the
-  /// component is off.
+  /// Relative bias of a component's mean: the part of the error that the two halves of the film cannot show.
+  /// 0 for unbiased solvers; nullopt if unknown or the component is off.
   std::optional<double> bias(size_t component) const;
 };
 
 /// From the settings `components.*`: a solver's name, two joined by '+' (choices_of), or off. Every component
-/// has one solver, or two that share its words, or is off, so no path is counted twice, and what is lost was
-/// declared.
+/// has one solver, two that share its words, or none, so no path is counted twice, and missing light was
+/// chosen.
 Plan make_plan(const Settings& settings);
 
-/// Light that the scene has and the plan's solvers cannot find, one line each, with what to do about it:
-/// caustic and tertiary light that point, spot and directional lights send by way of polished surfaces
-/// (mirrors, glass, varnish), which paths from the eye cannot hit. Components that are off are left out.
+/// Light in the scene that the plan's solvers cannot find, one line each, with advice: caustic and tertiary
+/// light of point, spot and directional lights by way of polished surfaces (mirrors, glass, varnish), which
+/// eye paths cannot hit. Components that are off are left out.
 std::vector<std::string> unreachable_light(const Plan& plan, const scene::Scene& scene);
 
 }  // namespace lucerna::plan

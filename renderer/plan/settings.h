@@ -1,7 +1,6 @@
 #pragma once
-// Every option of the renderer, in one table: those that belong to nobody alone, which stand in settings.cpp,
-// and those of the solvers (solvers/registry.h). The same table feeds window, command line, settings.json and
-// the documentation.
+// Every option of the renderer, in one table: common ones (settings.cpp) and those of the solvers
+// (solvers/registry.h). Window, command line, settings.json and documentation use the same table.
 #include <string>
 #include <vector>
 

@@ -1,5 +1,5 @@
 #pragma once
-// The rays that are measured: what a path tracer asks for, in the order in which its wavefront asks.
+// The measured rays: those of a path tracer, in the order of its wavefront.
 #include <functional>
 #include <span>
 #include <string>

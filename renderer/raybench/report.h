@@ -21,7 +21,7 @@ struct Report {
   std::vector<Frame> frames;
 };
 
-/// A table for people; ratios are to the tracer named `yardstick`, if it is there.
+/// A text table; ratios are relative to the tracer named `yardstick`, if present.
 std::string to_text(const Report& report, const std::string& yardstick);
 std::string to_json(const Report& report);
 

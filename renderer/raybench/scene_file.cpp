@@ -11,7 +11,7 @@
 namespace lucerna::raybench {
 namespace {
 
-// A file is only read by the version that wrote it: whoever changes a structure below changes the number.
+// A file is only read by the version that wrote it: change the number if a structure below changes.
 constexpr char k_magic[16] = "lucerna flat 5\n";
 
 /// One description of the format serves both directions.
@@ -54,7 +54,7 @@ class Reader {
     uint64_t count = 0;
     plain(count);
     if constexpr (std::is_trivially_copyable_v<T>) {
-      // Grown by blocks, so that a wrong count in a short file does not ask for gigabytes first.
+      // Grown by blocks, so that a wrong count in a short file does not allocate gigabytes first.
       for (uint64_t done = 0; done < count;) {
         const uint64_t block = std::min<uint64_t>(count - done, 1 << 20);
         values.resize(done + block);

@@ -4,7 +4,7 @@
 
 #include "base/hash.h"
 
-// Structures are taken apart by structured bindings: a field more does not compile until it is heeded here.
+// Structures are decomposed by structured bindings: a new field does not compile until it is handled here.
 namespace lucerna::scene {
 namespace {
 

@@ -33,11 +33,11 @@ std::optional<vec3> quotient(const vec3& after, const vec3& before) {
   return factor;
 }
 
-/// The factors that lights tell of so far.
+/// Factors of the groups, from the lights processed so far.
 class GroupFactors {
  public:
   explicit GroupFactors(size_t groups) : factors_(groups) {}
-  /// False where it contradicts what others of the group have told.
+  /// False if it contradicts another light of the group.
   bool add(size_t group, const std::optional<vec3>& factor) {
     if (!factor || group >= factors_.size() || (factors_[group] && *factors_[group] != *factor)) return false;
     factors_[group] = factor;

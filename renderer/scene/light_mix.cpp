@@ -99,7 +99,7 @@ vec3 mix_weight(const LightMix& mix, const std::string& group) {
 
 std::vector<vec3> mix_weights(const LightMix& mix, const LightGroups& groups) {
   std::vector<vec3> weights;
-  LightMix here;  // a group that is gone silences nobody
+  LightMix here;  // a missing group mutes no other group
   for (const LightGroup& group : groups.groups)
     if (const auto found = mix.find(group.name); found != mix.end()) here.insert(*found);
   for (const LightGroup& group : groups.groups) weights.push_back(mix_weight(here, group.name));

@@ -1,7 +1,7 @@
 #pragma once
-// Valid ranges of a scene's numbers: the only place that decides whether a camera, lamp, material or
-// environment can be rendered. Files, commands, bookmarks and the renderer call it. Each function throws
-// Error, located at the object's name, that says which value is wrong and what is allowed.
+// Valid ranges of a scene's numbers: decides whether a camera, lamp, material or environment can be rendered.
+// Called for files, commands, bookmarks and by the renderer. Each function throws Error, located at the
+// object's name, with the invalid value and the valid range.
 #include "scene/scene.h"
 
 namespace lucerna::scene {

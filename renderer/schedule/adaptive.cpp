@@ -7,13 +7,13 @@
 namespace lucerna::schedule {
 
 namespace {
-constexpr uint32_t k_first_mark = 4;  // samples a pixel from which an error says how it goes on
+constexpr uint32_t k_first_mark = 4;  // samples a pixel from which an error predicts the next ones
 constexpr uint32_t k_few = 8;         // samples a pixel when all of the device's path state is in use
 /// A tile stays while a neighbour is over this many times the target.
 constexpr float k_neighbours = 2;
 /// What a tile's error is taken for where there is none; no error is more (film::TileError).
 constexpr float k_unknown_error = 1.26f;
-/// Of what samples do not take away: paths' errors under that are not worth the samples.
+/// Share of the errors that samples cannot reduce; path errors below it are not reduced further.
 constexpr float k_small_share = 1.0f / 3;
 }  // namespace
 
@@ -49,7 +49,7 @@ AdaptiveSchedule::AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down,
     tile.samples = (most + 1) / 2 * 2;  // both halves of the film agree
     for (const uint32_t b : blocks_of(t))
       if (have[b] < tile.samples) behind_.push_back({b, have[b], tile.samples - have[b]});
-    // One sample tells nothing of the error.
+    // One sample gives no error estimate.
     tile.error = least >= 2 ? errors[t].paths : k_unknown_error;
     tile.records = errors[t].records, tile.interpolation = errors[t].interpolation;
     tile.state = tile.samples < options_.min_samples ? TileState::waiting : TileState::active;
@@ -121,7 +121,7 @@ WorkItem AdaptiveSchedule::next() {
   item_behind_ = 0;
   if (done()) return {};
   if (!behind_.empty()) {
-    // Those that lack as many as the last, as far as there is room.
+    // Tiles that lack as many as the last, while there is room.
     const bool one = options_.one_sample;
     WorkItem item{{}, one ? 1 : std::min(behind_.back().lacks, std::max(1u, options_.slots / 64))};
     const size_t most = std::max(1u, options_.slots / (64 * item.sample_count));
@@ -141,7 +141,7 @@ WorkItem AdaptiveSchedule::next() {
   size_t end = std::min(round_.size(), at_ + at_once);
   if (options_.one_sample)
     while (tiles_[round_[end - 1]].samples != tiles_[round_[at_]].samples) --end;
-  // Nobody gets more than the cap. Those near it share an item with others, who then get less this time.
+  // No tile exceeds the cap. Those near it share an item with others, which then get less this time.
   WorkItem item{{}, pass_};
   for (size_t i = at_; i < end; ++i)
     item.sample_count = std::min(item.sample_count, options_.max_samples - tiles_[round_[i]].samples);
@@ -197,7 +197,7 @@ void AdaptiveSchedule::update_states() {
     TileState state = tile.state;
     if (state == TileState::waiting && tile.samples >= options_.min_samples) state = TileState::active;
     if (state == TileState::active) {
-      bool calm = true;  // its neighbours, but for those that are given up
+      bool calm = true;  // its neighbours, except those beyond reach
       const int x = static_cast<int>(t % across_), y = static_cast<int>(t / across_);
       for (int v = std::max(0, y - 1); v <= std::min(static_cast<int>(down_) - 1, y + 1); ++v)
         for (int u = std::max(0, x - 1); u <= std::min(static_cast<int>(across_) - 1, x + 1); ++u)

@@ -1,14 +1,14 @@
 #pragma once
-// Adaptive tiles: samples go to the tiles whose error is not yet under the target.
+// Adaptive tiles: samples go to the tiles whose error exceeds the target.
 //
 // All pixels first get the minimum. Then the active tiles take turns, as many at once as the device's path
-// state holds at a few samples a pixel each; when fewer are left, the samples a pixel double, so that the
-// device stays full and ends up on the hardest tiles. A tile leaves the list when its error and, more
-// loosely, those of its neighbours are under the target: light that few samples have met (a caustic's rim) is
-// then looked for where something next to it is still noisy. Where samples read records, a part of the error
-// is not theirs and does not fall: sampling then goes on until the sum is under the target, and where records
-// alone keep it over, until samples add little to that. Pure functions of counts and errors: the same errors
-// give the same schedule, whatever the machine's speed.
+// state holds at a few samples a pixel each; when fewer remain, the samples a pixel double, so that the
+// device stays full on the hardest tiles. A tile becomes inactive when its error and, with a wider bound,
+// those of its neighbours are under the target: light that few samples have met (a caustic's rim) is then
+// searched where an adjacent tile is still noisy. If samples read records, a part of the error does not fall:
+// sampling continues until the sum is under the target, and where records alone exceed it, until samples
+// hardly reduce the sum. Pure functions of counts and errors: equal errors give equal schedules, whatever the
+// machine's speed.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -51,7 +51,7 @@ struct Tile {
   TileMark last, earlier;  ///< the newest after which samples have doubled, and the one before
   float goal(float target) const { return paths_goal(target, records, interpolation); }
   float sum() const { return error_sum(error, records, interpolation); }
-  /// Whether the sum is under the target, but for rounding where goal() comes of it.
+  /// True if the sum is under the target, except for rounding where goal() derives from it.
   bool reached(float target) const {
     return sum() <= (records > 0 || interpolation > 0 ? 1.0001f * target : target);
   }
@@ -72,14 +72,13 @@ class AdaptiveSchedule {
  public:
   AdaptiveSchedule() = default;
   AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down, const AdaptiveOptions& options);
-  /// Goes on with a picture whose blocks, in raster order, have `have` samples a pixel and whose tiles have
-  /// `errors`: blocks that are behind others of their tile are given what they lack first, and no sample is
-  /// thrown away.
+  /// Continues a picture whose blocks, in raster order, have `have` samples a pixel and whose tiles have
+  /// `errors`: blocks behind others of their tile catch up first, and no sample is discarded.
   AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down, const AdaptiveOptions& options,
                    std::span<const uint32_t> have, std::span<const TileErrors> errors);
 
   bool done() const { return open_ == 0 && behind_.empty(); }
-  /// The next work; empty when done. The item's tiles are those that report() then wants to hear of.
+  /// The next work item; empty when done. report() then needs the errors of the item's tiles.
   WorkItem next();
   /// Tiles of the item that next() gave last, in order; none while blocks are behind.
   const std::vector<uint32_t>& to_report() const { return item_tiles_; }
@@ -103,7 +102,7 @@ class AdaptiveSchedule {
   uint32_t least_samples() const;
   uint32_t most_samples() const;
   uint32_t count(TileState state) const;
-  /// Rounds that are complete: in each, all tiles at work get the same samples.
+  /// Complete rounds: in each, all active tiles get the same samples.
   uint32_t rounds() const { return rounds_; }
   const AdaptiveOptions& options() const { return options_; }
 

@@ -20,8 +20,8 @@ class UniformSchedule {
       : blocks_(blocks), samples_(samples), slots_(slots_at_once), one_sample_(one_sample) {
     start_pass();
   }
-  /// Goes on with a picture whose blocks have these samples a pixel, in raster order: those that have fewest
-  /// are given theirs first, until all have as many. No sample is given twice, none is left out.
+  /// Continues a picture whose blocks have these samples a pixel, in raster order: those with the fewest
+  /// catch up first. No sample is repeated or left out.
   UniformSchedule(std::vector<uint32_t> have, uint32_t samples, uint32_t slots_at_once,
                   bool one_sample = false)
       : blocks_(static_cast<uint32_t>(have.size())),

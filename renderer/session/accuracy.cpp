@@ -9,10 +9,10 @@ namespace lucerna::session {
 namespace {
 
 constexpr size_t k_passes = 64;
-/// Samples a pixel from which on heavy tails can be told from a bad start.
+/// Samples a pixel from which heavy tails can be distinguished from a bad start.
 constexpr uint32_t k_tail_samples = 32;
 
-/// Seconds that a ray takes: over the last half of the work, so that the first, short passes do not count.
+/// Seconds per ray over the last half of the work, so that the first, short passes do not count.
 double seconds_a_ray(const stats::Ledger& ledger) {
   const auto& lines = ledger.entries();
   if (lines.empty() || lines.back().rays == 0) return 0;
@@ -45,7 +45,7 @@ std::optional<stats::Band> seconds_to(const Accuracy& a, double target) {
   tiles.reserve(a.tiles.size());
   double paths = 0;
   for (const TileStatus& t : a.tiles) {
-    // A tile that is done under one target may be open under another.
+    // A tile that is done for one target may be open for another.
     const double goal = schedule::paths_goal(float(target), t.records, t.interpolation);
     const bool open = t.samples < a.max_samples && (t.samples < a.min_samples || t.error > goal ||
                                                     (target >= a.target && t.state <= shared::k_tile_active));

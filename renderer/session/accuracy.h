@@ -1,6 +1,6 @@
 #pragma once
-// What the window shows of accuracy: the ledger of the image in progress, its tiles, its passes. Kept on the
-// session's thread, published as a whole.
+// Accuracy data for the window: ledger, tiles and passes of the current image. Maintained on the session's
+// thread, published as a whole.
 #include <array>
 #include <cstdint>
 #include <deque>
@@ -21,79 +21,78 @@ namespace lucerna::session {
 class Renderer;
 
 struct TileStatus {
-  float error = -1;                      ///< relative, of the paths; negative: not known
-  float records = 0, interpolation = 0;  ///< ... and of what they look up
+  float error = -1;                      ///< relative error of the paths; negative: unknown
+  float records = 0, interpolation = 0;  ///< ... and of lookups
   float sum() const { return error < 0 ? error : error_sum(error, records, interpolation); }
   uint32_t samples = 0;
   uint32_t pixels = 0;
-  /// The same with a half to a quarter of the samples, in adaptive sampling; 0: not known.
+  /// The same with a quarter to half of the samples, in adaptive sampling; 0: unknown.
   float earlier_error = 0;
   uint32_t earlier_samples = 0;
   uint32_t state = shared::k_tile_waiting;  ///< shared::k_tile_*
   bool heavy_tailed = false;
 };
 
-/// One pass over the picture, or over the tiles at work.
+/// One pass over the picture, or over the active tiles.
 struct PassStatus {
-  std::vector<float> stage_ms;  ///< of Accuracy::stages, in their order; later stages may be missing
+  std::vector<float> stage_ms;  ///< by Accuracy::stages; later stages may be missing
   uint64_t paths = 0;
-  uint32_t samples = 0;  ///< a pixel of those that took part; the most
+  uint32_t samples = 0;  ///< a pixel, maximum over the active ones
 };
 
 struct Accuracy {
-  uint64_t run = 0;  ///< grows with every image that is begun
+  uint64_t run = 0;  ///< increases with every image
   uint64_t scene_id = 0;
-  std::map<std::string, std::string> settings;  ///< all, as they are
+  std::map<std::string, std::string> settings;  ///< all current settings
   bool adaptive = false, finished = false;
   double target = 0.05;                     ///< sampling.target_error
   double min_samples = 0, max_samples = 0;  ///< a pixel
   uint32_t tile = 16, across = 0;           ///< side of a tile in pixels, tiles in a row
-  double paths = 0, rays = 0, pixels = 1;   ///< so far; of the picture
+  double paths = 0, rays = 0, pixels = 1;   ///< so far; size of the picture
   stats::Ledger ledger;
-  /// For each line of the ledger the error of the hardest tile that was not given up; 0: not known.
+  /// For each entry of the ledger, the error of the worst tile that is still within reach; 0: unknown.
   std::vector<double> hardest;
-  /// Raster order; none in uniform sampling while they are not shown. Flags only while they are.
+  /// Raster order; empty in uniform sampling unless shown. Flags only if shown.
   std::vector<TileStatus> tiles;
   /// seconds_to(target), in adaptive sampling.
   std::optional<stats::Band> forecast;
   std::vector<std::string> stages;
-  std::deque<PassStatus> passes;  ///< the newest last
-  std::string reference;          ///< file name of the picture taken for the truth; "" for none
+  std::deque<PassStatus> passes;  ///< newest last
+  std::string reference;          ///< file name of the reference picture; "": none
   bool reference_applies = false;
-  /// Relative, of each component's mean; none: the solver cannot tell, or the component is off. The ledger's
-  /// errors are of the noise alone.
+  /// Relative to each component's mean; nullopt: not estimated by the solver, or the component is off. The
+  /// ledger's errors contain only noise.
   std::array<std::optional<double>, stats::k_layers - 1> bias;
 
-  /// The sum's and the components' errors by the last line; all 0 before the first.
+  /// Errors of the sum and of the components by the last entry; all 0 before the first.
   std::array<double, stats::k_layers> error() const;
-  /// Tiles in that state.
+  /// Number of tiles in that state.
   uint32_t count(uint32_t state) const;
 };
 
-/// Seconds of rendering, from the image's start, until it has that error: in uniform sampling the sum's
-/// (stats::seconds_to); in adaptive sampling every tile's, as the rays that the tiles still need times what
-/// a ray has taken lately. Nothing before there is enough to tell by.
+/// Seconds of rendering, from the image's start, until it has that error. Uniform sampling: of the sum
+/// (stats::seconds_to). Adaptive sampling: of every tile, from the remaining rays of the tiles and the recent
+/// time per ray. nullopt if there is too little data.
 std::optional<stats::Band> seconds_to(const Accuracy& accuracy, double target);
 
-/// Tiles that in adaptive sampling are not expected to come under the target with the most samples that a
-/// pixel is given (Accuracy::max_samples).
+/// Number of tiles that are not expected to reach the target within the maximum samples of adaptive sampling
+/// (Accuracy::max_samples).
 uint32_t tiles_out_of_reach(const Accuracy& accuracy, double target);
 
-/// Seconds of rendering, from the image's start, at which uniform sampling has all its samples (`samples`).
-/// Nothing in adaptive sampling, nor before the first line of the ledger.
+/// Seconds of rendering, from the image's start, until uniform sampling has all its samples (`samples`).
+/// nullopt in adaptive sampling and before the first entry of the ledger.
 std::optional<double> seconds_to_end(const Accuracy& accuracy);
 
-/// The tiles of the image in progress; errors are those of the last estimate. `flags`: heavy tails are
-/// marked, which takes a look at the whole film.
+/// Tiles of the current image with the latest error estimates. `flags`: mark heavy tails, which takes a pass
+/// over the film.
 std::vector<TileStatus> tile_status(const Renderer& renderer, bool flags);
 
-/// Follows a renderer; one thread.
+/// Follows a renderer; not thread-safe.
 class AccuracyKeeper {
  public:
-  /// Call after every step and command: notes passes and lines of the ledger. Cheap when there is nothing
-  /// new.
+  /// Call after every step and command: records passes and entries of the ledger. Cheap without news.
   void follow(const Renderer& renderer, uint64_t scene_id);
-  /// What there is, anew where something has changed since (`tiles`: tiles and settings too).
+  /// The current state, updated if anything has changed (`tiles`: including tiles and settings).
   std::shared_ptr<const Accuracy> publish(const Renderer& renderer, bool tiles);
 
  private:
@@ -104,7 +103,7 @@ class AccuracyKeeper {
   bool changed_ = true;
   uint64_t restarts_ = ~0ull;
   uint32_t passes_ = 0;
-  std::vector<double> pass_ms_;  ///< of the stages when the pass began
+  std::vector<double> pass_ms_;  ///< stage times at the start of the pass
   uint64_t pass_paths_ = 0;
 };
 

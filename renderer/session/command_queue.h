@@ -1,6 +1,5 @@
 #pragma once
-// Commands on their way to the renderer, carried out in the order in which they were given. No locks: the
-// session guards it.
+// Queue of commands to the renderer, carried out in order. No locks: the session guards it.
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -13,23 +12,23 @@ class Renderer;
 
 /// Number of a loaded scene, from 1 on; it grows with every load.
 using SceneId = uint64_t;
-/// For a command that acts on whatever scene is there when its turn comes.
+/// For a command that acts on any current scene.
 inline constexpr SceneId k_any_scene = 0;
 
 struct Command {
   std::function<void(Renderer&)> run;
-  std::string subject;  ///< what it changes or reads, for messages: "the camera"
-  /// The scene that it is for. With another one loaded by the time of its turn it is left out.
+  std::string subject;  ///< its target, for messages: "the camera"
+  /// The scene it is for. If another one is loaded by its turn, it is skipped.
   SceneId scene = k_any_scene;
-  bool saves = false;   ///< carried out before the session ends, too
-  bool camera = false;  ///< only the last of several in a row counts
-  uint64_t number = 0;  ///< from 1 on, in order; given by push()
+  bool saves = false;   ///< carried out even before the session ends
+  bool camera = false;  ///< of several consecutive ones only the last counts
+  uint64_t number = 0;  ///< from 1 on, in order; set by push()
 };
 
 class CommandQueue {
  public:
-  /// Adds it at the end. A camera takes the place, and the number, of a camera for the same scene that is
-  /// still last in the queue.
+  /// Appends it. A camera replaces, and gets the number of, a camera for the same scene that is last in the
+  /// queue.
   void push(Command command) {
     if (command.camera && !queue_.empty() && queue_.back().camera && queue_.back().scene == command.scene) {
       command.number = queue_.back().number;

@@ -10,7 +10,7 @@ namespace lucerna::session {
 
 namespace {
 
-/// Samples of every pixel from which on a draft, of wider pixels, tells nothing any more.
+/// Samples of every pixel from which a preview sample, with its larger pixels, adds nothing.
 constexpr uint32_t k_draft_until = 4;
 
 }  // namespace
@@ -35,7 +35,7 @@ bool Display::take(gpu::Stream& stream, const film::Film& film) {
       preview_.take(stream, film, plain_->shown, plain_->camera);
       taken = true;
     } catch (const Error&) {
-      preview_.forget();  // no memory: the next picture begins with nothing
+      preview_.forget();  // no memory: the next picture starts without history
     }
   plain_.reset();
   return taken;
@@ -94,7 +94,7 @@ bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view
   if (before == 0) film.clear(wavefront.stream());
   film.set_mix(view.mix);
   shared::Frame frame = engine.draft_frame(view, film.width(), film.height());
-  frame.most_branches = 1;  // the first samples say more than better ones
+  frame.most_branches = 1;  // the number of samples matters more than their quality
   wavefront.set_frame(frame, engine.plan().enabled());
   schedule::UniformSchedule schedule(film.blocks(), 1, wavefront.slots());
   bool complete = true;

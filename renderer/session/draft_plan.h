@@ -1,6 +1,6 @@
 #pragma once
-// When the window gets samples of drafts: pictures of fewer pixels that stand for the picture until it has
-// samples of its own. No device: pure state.
+// Schedule of preview samples: pictures of lower resolution shown until the picture has samples. Pure state;
+// no device.
 #include <bit>
 #include <cstdint>
 #include <optional>
@@ -12,20 +12,20 @@ class DraftPlan {
   static constexpr uint32_t k_coarse_samples = 4;
 
   enum class Next {
-    nothing,  ///< the picture's own work goes on
-    coarse,   ///< a sample of the draft of a quarter of the resolution
-    fine,     ///< ... of half of it
-    sight     ///< a piece of what surfaces the picture's pixels show
+    nothing,  ///< the picture's work continues
+    coarse,   ///< a preview sample at a quarter of the resolution
+    fine,     ///< ... at half of it
+    sight     ///< a part of the visible surfaces
   };
-  /// The picture begins anew.
+  /// A new picture begins.
   void restart() { *this = {}; }
-  /// Light that drafts have looked up has got better: they begin anew. Where there was a finer one, the
-  /// coarse would be worse than that.
+  /// Light read by preview samples has improved: accumulation restarts. If there was a fine sample, only with
+  /// fine ones: a coarse one would be worse.
   void light_changed() {
     fine_first_ = fine_first_ || fine_ > 0;
     coarse_ = fine_ = 0;
   }
-  /// That has been done, and took so long; `complete`: no more of it is to be done.
+  /// Call when that is done, with its duration; `complete`: nothing of its kind remains.
   void drawn(Next what, double seconds, bool complete = true) {
     if (what == Next::coarse) ++coarse_;
     if (what == Next::fine) ++fine_;
@@ -33,15 +33,15 @@ class DraftPlan {
     news_ = (what == Next::sight && complete) || (what == Next::coarse && coarse_ == k_coarse_samples) ||
             (what == Next::fine && shows_fine() && std::has_single_bit(fine_));
   }
-  /// ... the picture's own work, which took so long.
+  /// ... the same for the picture's work.
   void worked(double seconds) { work_s_ += seconds; }
 
-  /// `preparing`: the picture's samples wait for what they look up, maybe for long; `filled`: every pixel has
-  /// one. A first sample comes at once. Then a few more: the picture's first samples fill it from one side to
-  /// the other. While they wait the draft is all that there is to be seen, and gets finer: two fine
-  /// samples at once, then most of the time until `error`, which is told of what is shown, is such that a
-  /// room can be judged by it, for some seconds at most; then less and less as more helps less. `sight`: it
-  /// is not known yet what surfaces pixels show; the first draft does not wait for that.
+  /// `preparing`: the picture's samples wait for lookup data, maybe for long; `filled`: every pixel has one.
+  /// A first preview sample comes at once, then a few more, because the picture's first samples fill it from
+  /// one side to the other. While waiting, the preview is refined: two fine samples at once, then most of the
+  /// time until `error`, estimated for the shown picture, suffices to judge a room, for some seconds at most;
+  /// then less and less, as more samples help less. `sight`: the visible surfaces are not known yet; the
+  /// first preview sample does not wait for them.
   Next next(bool preparing, bool filled, bool sight = false, std::optional<double> error = {}) const {
     if (filled) return Next::nothing;
     const bool coarse = !fine_first_ || !preparing;
@@ -53,21 +53,22 @@ class DraftPlan {
     const double share = fine_ < 2 ? 1 : rough ? 0.75 : fine_ < 4 ? 0.5 : fine_ < 16 ? 0.25 : 0.1;
     return draft_s_ <= share * (draft_s_ + work_s_) ? Next::fine : Next::nothing;
   }
-  /// Whether there is a draft.
+  /// True if there is a preview sample.
   bool begun() const { return coarse_ + fine_ > 0; }
-  /// Whether what was drawn last makes so much of a difference that it is to be shown at once.
+  /// True if the latest one changes the display enough to show it at once.
   bool news() const { return news_; }
-  /// Whether the fine draft is better than the coarse one: of as many rays it knows less of its noise.
+  /// True if the fine film is better than the coarse one: with equally many rays its noise estimate is less
+  /// reliable.
   bool shows_fine() const { return fine_ > (coarse_ > 0 ? 1 : 0); }
   uint32_t coarse_samples() const { return coarse_; }
   uint32_t fine_samples() const { return fine_; }
 
  private:
   static constexpr uint32_t k_fine_samples = 64;
-  /// Relative error from which on drafts are no hurry, and seconds after which they are none in any case.
+  /// Relative error below which preview samples are not urgent, and seconds after which they never are.
   static constexpr double k_good_error = 0.06, k_patience_s = 6;
   uint32_t coarse_ = 0, fine_ = 0;
-  bool fine_first_ = false;  ///< drafts that begin anew are fine ones
+  bool fine_first_ = false;  ///< a restart begins with fine samples
   bool news_ = false;
   double draft_s_ = 0, work_s_ = 0;
 };

@@ -11,7 +11,7 @@
 namespace lucerna::session {
 namespace {
 
-/// Lookups of several solvers in one table: in a state each part is brought by one of them.
+/// Merges lookups of several solvers; in each state one solver provides each part.
 void merge(paths::LookupRoutes& into, const paths::LookupRoutes& more) {
   into.traced &= more.traced;
   into.replaced.resize(std::max(into.replaced.size(), more.replaced.size()), 0);
@@ -24,7 +24,7 @@ void merge(paths::LookupRoutes& into, const paths::LookupRoutes& more) {
         into.component[state][part] = more.component[state][part];
 }
 
-/// Components (bits) that lookups bring.
+/// Components (bits) that lookups provide.
 uint32_t looked_up_components(const paths::LookupRoutes& routes) {
   uint32_t bits = 0;
   for (const auto& by_part : routes.component)
@@ -33,7 +33,8 @@ uint32_t looked_up_components(const paths::LookupRoutes& routes) {
   return bits;
 }
 
-/// Notes who brings which components (bits). Throws Error, located at the component, where another one does.
+/// Registers the solver of these components (bits). Throws Error, located at the component, if another solver
+/// has it.
 void claim(std::array<const solvers::SolverInfo*, paths::k_component_count>& by,
            const solvers::SolverInfo& info, uint32_t bits) {
   for (size_t c = 0; c < by.size(); ++c) {
@@ -47,27 +48,26 @@ void claim(std::array<const solvers::SolverInfo*, paths::k_component_count>& by,
   }
 }
 
-/// #defines of kernels that choose lights as the settings say.
+/// #defines of kernels for the settings of light selection.
 gpu::Defines wanted_learned_defines(const plan::Settings& settings, const upload::FlatScene& flat) {
   return settings.text("lights.sampling") == "learned" ? upload::learned_defines(flat) : gpu::Defines{};
 }
 
-/// The lights and what hides them are the same after these changes.
+/// True if these changes affect neither lights nor occluders.
 bool same_lights(const scene::Changes& changes) {
   return std::all_of(changes.edits.begin(), changes.edits.end(), [](scene::Change edit) {
     return edit == scene::Change::camera || edit == scene::Change::size || edit == scene::Change::restart;
   });
 }
 
-/// Of one dispatch, of those that light samples are recorded of.
+/// Light samples recorded in one dispatch.
 constexpr uint32_t k_most_recorded_paths = 32768;
-/// Samples a pixel of the pilot picture in each generation, and its pixels for one of the picture. In all
-/// that is about as much as two samples of a small picture; of a large one less, for what is learned hangs on
-/// the scene.
+/// Samples a pixel of the pilot picture in each generation, and its pixels per pixel of the picture. In sum
+/// about two samples of a small picture, and less of a large one, because learning depends on the scene.
 constexpr uint32_t k_generations[] = {2, 4, 8};
 constexpr double k_pilot_share = 1.0 / 7, k_most_pilot_pixels = 256 * 144;
 
-/// These components (bits) are paths' from now on.
+/// Delegates these components (bits) to paths.
 void to_paths(plan::Plan& plan, uint32_t components) {
   for (size_t c = 0; c < plan.solver.size(); ++c)
     if ((components >> c & 1u) != 0 && plan.solver[c])
@@ -177,7 +177,7 @@ void Engine::adopt(const solvers::Solver& before, const scene::Changes& since) {
 
 void Engine::begin(const PictureView& picture, const scene::Changes& changes,
                    const std::optional<std::vector<vec3>>& light_factors) {
-  // What is switched off changes without new kernels.
+  // Components that are off change without new kernels.
   route(picture.settings, picture.world.flat.effects);
   for (const auto& solver : solvers_)
     with(*solver, picture, [&](solvers::Picture own) {
@@ -189,12 +189,12 @@ void Engine::begin(const PictureView& picture, const scene::Changes& changes,
       solver->begin(own, invalidated);
     });
   missed_.clear();
-  // At the beginning nothing is learned, of the world that the engine was made for.
+  // A new engine has learned nothing of its world.
   const bool learned = wavefront_->learning() && std::exchange(begun_, true);
   learned_elsewhere_ = learned && same_lights(changes);
   if (learned && !learned_elsewhere_)
     wavefront_->forget_learned(upload::make_light_clusters(picture.world.flat));
-  route(picture.settings, picture.world.flat.effects);  // with what they leave to paths now
+  route(picture.settings, picture.world.flat.effects);  // with the components delegated now
   wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
 }
 
@@ -205,7 +205,7 @@ solvers::Solver* Engine::find(std::string_view name) const {
 }
 
 solvers::Solver* Engine::unready() const {
-  // Those behind first: what they prepare may be read while those before them prepare (photons by records).
+  // Last to first: data of later ones may be read while earlier ones prepare (photons by records).
   for (auto solver = solvers_.rbegin(); solver != solvers_.rend(); ++solver)
     if (!(*solver)->ready()) return solver->get();
   return nullptr;
@@ -273,7 +273,7 @@ shared::Frame Engine::pilot_frame(const PictureView& picture, uint32_t width, ui
   for (size_t c = 0; c < all.solver.size(); ++c) all.solver[c] = solvers::find("path"), all.rest[c] = nullptr;
   const solvers::Routing traced = routing(all, picture.settings, picture.world.flat.effects);
   shared::Frame frame = frame_of({.here = traced, .delegated = traced}, picture, width, height);
-  frame.seed ^= 0x6c6c6c6cu;  // samples that no picture has
+  frame.seed ^= 0x6c6c6c6cu;  // samples that no picture uses
   frame.max_depth = std::min(frame.max_depth, shared::k_learned_vertices);
   return frame;
 }
@@ -314,11 +314,11 @@ Engine::Routes Engine::routes_of(const plan::Plan& here, const plan::Settings& s
 
 solvers::Routing Engine::routing(const plan::Plan& plan, const plan::Settings& settings,
                                  const upload::Effects& effects) const {
-  // Nothing is looked up yet, and everything is traced.
+  // Without lookups everything is traced.
   solvers::Routing all{
       .lookups = {.component = {}, .parts = 0, .traced = plan.enabled()}, .fallback = 0, .gather = {}};
   std::array<const solvers::SolverInfo*, paths::k_component_count> by{};
-  uint32_t always = 0;  // what those bring who never leave a path alone
+  uint32_t always = 0;  // components of solvers without a fallback
   for (const solvers::SolverInfo* info : plan.at_work()) {
     const auto routing_of = solvers::type_of(*info).routing;
     if (!routing_of) continue;
@@ -329,7 +329,7 @@ solvers::Routing Engine::routing(const plan::Plan& plan, const plan::Settings& s
     always |= looked_up_components(own.lookups) & ~own.fallback;
     if (!own.gather.component.empty()) merge(all.gather, own.gather);
   }
-  // Paths that one lookup has left alone still find another's.
+  // Paths without data in one lookup still find another's.
   all.fallback &= ~always;
   return all;
 }
@@ -369,7 +369,7 @@ shared::Frame Engine::frame_of(const Routes& routes, const PictureView& picture,
 }
 
 bool Engine::looked_up_besides(size_t component) const {
-  // The part of light that comes straight from a light.
+  // Direct light is part 0.
   return std::any_of(routes_.here.lookups.component.begin(), routes_.here.lookups.component.end(),
                      [&](const auto& by_part) { return by_part[0] == component; });
 }

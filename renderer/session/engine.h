@@ -1,5 +1,5 @@
 #pragma once
-// The wavefront's kernels with the solvers of a plan, made for one world.
+// The wavefront's kernels with the solvers of a plan, for one world.
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,43 +14,43 @@
 
 namespace lucerna::session {
 
-/// A picture of a world, to be handed to solvers; everything that it names must outlive it.
+/// A picture of a world, for solvers; everything it refers to must outlive it.
 struct PictureView {
   const paths::Automaton& automaton;
   const plan::Settings& settings;
   const World& world;
   const scene::Camera& camera;
   uint32_t width = 0, height = 0;
-  std::vector<vec3> mix = {};  ///< of groups of lights, where they are kept apart (film::Film::set_mix)
+  std::vector<vec3> mix = {};  ///< of light groups, if they are separate (film::Film::set_mix)
 };
 
-/// What a solver of the plan is to do. All but the numbers must outlive it.
+/// Task of one solver of the plan. Everything it refers to must outlive it.
 solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
                       const solvers::SolverInfo& solver, const plan::Settings& settings,
                       const upload::Effects& effects);
 
 class Engine {
  public:
-  /// `before`: one whose film kernels, which know neither scene nor plan, serve on; null: they are compiled.
-  /// Throws Error: kernels that do not compile (located), no memory, a component's light that two solvers
-  /// would bring.
+  /// `before`: an engine whose film kernels are reused, which depend on neither scene nor plan; null: they
+  /// are compiled. Throws Error: kernels that do not compile (located), memory, a component that two solvers
+  /// would compute.
   Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
          const World& world, const plan::Plan& plan, const plan::Settings& settings, gpu::Defines defines,
          const Engine* before);
 
-  /// Whether kernels and solvers do for another plan and these settings of the same world.
+  /// True if kernels and solvers can be reused for another plan and these settings of the same world.
   bool serves(const plan::Plan& plan, const plan::Settings& settings, const World& world) const;
-  /// For another plan that it serves.
+  /// Switches to a plan that it serves.
   void set_plan(const plan::Plan& plan) { plan_ = plan; }
   const plan::Plan& plan() const { return plan_; }
-  /// Takes over what the solvers of another engine have, where `changes` do not spoil all of it.
+  /// Takes over solver data from another engine where `changes` do not invalidate all of it.
   void adopt(const Engine& before, const scene::Changes& changes);
-  /// The same of one solver, that has made no picture since these changes.
+  /// The same for one solver, which has made no picture since these changes.
   void adopt(const solvers::Solver& before, const scene::Changes& since);
-  /// For an engine that is given up: its solvers with their work.
+  /// Releases the solvers with their data, for an engine that is no longer used.
   std::vector<std::unique_ptr<solvers::Solver>> release_solvers() { return std::exchange(solvers_, {}); }
-  /// The picture begins anew: sets the wavefront's frame, and tells the solvers.
-  /// `light_factors`: solvers::Picture::light_factors.
+  /// Starts a new picture: sets the wavefront's frame and informs the solvers. `light_factors`:
+  /// solvers::Picture::light_factors.
   void begin(const PictureView& picture, const scene::Changes& changes,
              const std::optional<std::vector<vec3>>& light_factors = {});
 
@@ -59,38 +59,37 @@ class Engine {
   transport::Wavefront& wavefront() { return *wavefront_; }
   const transport::Wavefront& wavefront() const { return *wavefront_; }
   const std::vector<std::unique_ptr<solvers::Solver>>& solvers() const { return solvers_; }
-  /// Null: that one is not at work.
+  /// Null if it is not active.
   solvers::Solver* find(std::string_view name) const;
-  /// The next that is not ready; null: all are.
+  /// The next solver that is not ready; null: all are.
   solvers::Solver* unready() const;
-  /// Some solver makes what paths read anew for each sample.
+  /// True if a solver works in rounds, one for each sample.
   bool in_rounds() const;
-  /// The first whose round for that sample is not ready; null: all are.
+  /// The first solver whose round for that sample is not ready; null: all are.
   solvers::Solver* unready_for(uint32_t sample) const;
-  /// The first that owes the film errors of lookups (Solver::owes_errors); null: all that is told of them is
-  /// known.
+  /// The first solver with pending lookup errors (Solver::owes_errors); null: all estimates are complete.
   solvers::Solver* owing_errors(const film::Film& film) const;
-  /// The one at work at refining what paths read (Solver::refine), or that can be; null: none.
+  /// The solver that is refining, or can refine, its data (Solver::refine); null: none.
   solvers::Solver* refining() const;
   solvers::Solver* refinable() const;
-  /// A piece of preparation of one that is not ready (Solver::prepare). False when it was cancelled.
+  /// One work item of preparation of a solver that is not ready (Solver::prepare). False if cancelled.
   bool prepare(solvers::Solver& solver, const PictureView& picture, const std::function<bool()>& cancel);
   bool waits() const;
-  /// Another generation of light samples is to be learned from before the picture, that has so many samples
-  /// a pixel, goes on. Its first sample does not wait for that; and whatever is computed how, it is learned
-  /// after the same samples, so that components that are computed as before stay as they were.
+  /// True if another generation of learned lights must be recorded before the picture, with that many samples
+  /// a pixel, continues. The first sample does not wait for it. Generations come after fixed sample counts,
+  /// whatever is computed how, so that components whose computation is unchanged stay bit-identical.
   bool learns(uint32_t samples) const;
-  /// What was learned from another view served until now, for drafts; the picture is to be the same whatever
-  /// was looked at before.
+  /// Discards what was learned from another view and used for preview samples; the picture must not depend on
+  /// former views.
   void begin_samples(const PictureView& picture);
-  /// That generation. False when it was cancelled.
+  /// Records that generation. False if cancelled.
   bool learn(const PictureView& picture, const std::function<bool()>& cancel);
 
-  /// Frame of the picture's paths, in a size of its own.
+  /// Frame of the picture's paths, in another size.
   shared::Frame frame(const PictureView& picture, uint32_t width, uint32_t height) const;
-  /// ... of a draft's: what solvers have not prepared yet (Solver::missing) is traced.
+  /// ... of a preview sample's: light that solvers have not prepared yet (Solver::missing) is traced.
   shared::Frame draft_frame(const PictureView& picture, uint32_t width, uint32_t height) const;
-  /// Calls f(picture) with the solver's own task.
+  /// Calls f(picture) with the solver's task.
   template <class F>
   decltype(auto) with(const solvers::Solver& solver, const PictureView& view, F&& f) const {
     const solvers::Task task =
@@ -102,41 +101,40 @@ class Engine {
                               .height = view.height,
                               .frame = frame(view, view.width, view.height)});
   }
-  /// Whether a component's light is looked up besides its solver's own.
+  /// True if another solver than the component's also looks up its light.
   bool looked_up_besides(size_t component) const;
   double compile_seconds() const { return compile_seconds_; }
-  /// That the wavefront's kernels were made with, for others that work on its paths.
+  /// #defines of the wavefront's kernels, for other kernels that work on its paths.
   const gpu::Defines& defines() const { return scene_defines_; }
 
  private:
-  /// Of all solvers together. Throws Error, located at the component, where two of them
-  /// bring the same light.
+  /// Merged routing of all solvers. Throws Error, located at the component, if two compute the same light.
   solvers::Routing routing(const plan::Plan& plan, const plan::Settings& settings,
                            const upload::Effects& effects) const;
   struct Routes {
     solvers::Routing here;
     std::optional<solvers::Routing>
-        delegated;  ///< ... where solvers leave light to paths (SolverType::delegable_components)
+        delegated;  ///< ... with delegable components traced (SolverType::delegable_components)
   };
   Routes routes_of(const plan::Plan& here, const plan::Settings& settings,
                    const upload::Effects& effects) const;
   shared::Frame frame_of(const Routes& routes, const PictureView& picture, uint32_t width,
                          uint32_t height) const;
-  /// Of paths that record light samples, of all components alike: what is learned does not hang on what is
-  /// computed how.
+  /// Frame of paths that record light samples, for all components alike: learning does not depend on how
+  /// components are computed.
   shared::Frame pilot_frame(const PictureView& picture, uint32_t width, uint32_t height) const;
-  /// For the present plan less what solvers leave to paths everywhere (Solver::left).
+  /// For the present plan without components delegated everywhere (Solver::delegated_components).
   void route(const plan::Settings& settings, const upload::Effects& effects);
 
   const paths::Automaton& automaton_;
   plan::Plan plan_;
-  gpu::Defines scene_defines_;  ///< that the kernels were made with
+  gpu::Defines scene_defines_;  ///< of the kernels
   gpu::Defines learned_defines_;
   bool begun_ = false;
   bool learned_elsewhere_ = false;  ///< from another view
-  Routes routes_;                   ///< of the picture begun last
+  Routes routes_;                   ///< of the current picture
   std::vector<std::unique_ptr<solvers::Solver>> solvers_;
-  /// What solvers that were adopted alone have missed before the next picture.
+  /// Changes that separately adopted solvers have missed before the next picture.
   std::map<const solvers::Solver*, scene::Changes> missed_;
   std::unique_ptr<transport::Wavefront> wavefront_;
   std::shared_ptr<film::Developer> developer_;
@@ -144,7 +142,7 @@ class Engine {
   double compile_seconds_ = 0;
 };
 
-/// upload::FlatScene::sun_threshold that the plan's solvers ask for.
+/// Largest upload::FlatScene::sun_threshold that the plan's solvers require.
 float wanted_sun_threshold(const paths::Automaton& automaton, const plan::Plan& plan,
                            const plan::Settings& settings);
 

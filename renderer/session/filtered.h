@@ -1,5 +1,6 @@
 #pragma once
-// A picture, filtered (film/filter/): a finished one at once, or the window's in pieces between its samples.
+// A filtered picture (film/filter/): of a finished picture at once, or of the window's in work items between
+// its samples.
 #include <functional>
 #include <memory>
 #include <optional>
@@ -15,39 +16,40 @@ namespace lucerna::session {
 struct Filtered {
   std::unique_ptr<film::Film> film;
   film::FilterError error;
-  double ms = 0;       ///< device time that it took
-  uint64_t paths = 0;  ///< of the picture that was filtered
+  double ms = 0;       ///< device time
+  uint64_t paths = 0;  ///< of the filtered picture
 };
 
-/// What is to be filtered, and how it is judged.
+/// Input of the filter, and how its error is estimated.
 struct FilterJob {
   const film::Film& film;
   uint32_t tile;          ///< side of a tile [pixels]
   float luminance_floor;  ///< as filter_error()
-  uint64_t paths;         ///< that the film holds
-  uint32_t looked_up;     ///< components (bits) that look records up
+  uint64_t paths;         ///< in the film
+  uint32_t looked_up;     ///< components (bits) with record lookups
 };
 
 class PictureFilter {
  public:
   PictureFilter(gpu::Device& device, gpu::ShaderCompiler& compiler) : device_(device), compiler_(compiler) {}
 
-  /// Begins to filter the picture. The film stays as it is while working().
+  /// Starts filtering. The film must not change while working().
   void begin(const FilterJob& job);
-  /// The next piece; working() is false after the last. Throws Error as film::Filter; the work is stopped
-  /// then. `sight` is asked what the pixels show, and looks where it is not known yet.
+  /// Runs the next work item; working() is false after the last. Throws Error like film::Filter; the work is
+  /// then cancelled. `sight` provides the visible surfaces, and traces them if needed.
   void step(Engine& engine, const PictureView& view, PixelSight& sight, const std::function<bool()>& cancel);
   bool working() const { return job_.has_value(); }
   void stop();
-  /// Of the picture begun last, once working() is false.
+  /// Result, once working() is false.
   Filtered take() { return std::move(result_); }
 
  private:
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
-  std::optional<film::Filter> filter_;  ///< its kernels are compiled when they are first called for
+  std::optional<film::Filter> filter_;  ///< kernels are compiled at the first use
   std::optional<FilterJob> job_;
-  bool begun_ = false, filtered_ = false;  ///< of the job: after its sight, and before its error is known
+  bool begun_ = false,
+       filtered_ = false;  ///< progress: visible surfaces known; filtered, error not estimated yet
   Filtered result_;
 };
 

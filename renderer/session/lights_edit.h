@@ -1,5 +1,5 @@
 #pragma once
-// Several edits of lights that are one.
+// Several edits of lights as one.
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace lucerna::session {
 
-/// Strengths of lights, and how their groups are mixed.
+/// Strengths of lights, and the mix of their groups.
 struct LightsEdit {
   std::vector<std::pair<uint32_t, scene::Light>> lights;        ///< by index
-  std::vector<std::pair<uint32_t, scene::Material>> materials;  ///< that emit otherwise, by index
-  std::optional<float> environment_scale;                       ///< none: as it is
+  std::vector<std::pair<uint32_t, scene::Material>> materials;  ///< with changed emission, by index
+  std::optional<float> environment_scale;                       ///< nullopt: unchanged
   std::string mix;                                              ///< the setting relight.mix
 };
 

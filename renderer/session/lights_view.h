@@ -1,6 +1,6 @@
 #pragma once
-// Views of lights that are learned (overlay.lights, overlay.light_arrival): drawn over the picture, with
-// their legends and a card for the point under the pointer.
+// Views of learned lights (overlay.lights, overlay.light_arrival): overlay, legends, and a card for the
+// inspected place.
 #include "overlay/learned_lights.h"
 #include "plan/settings.h"
 #include "scene/scene.h"
@@ -15,11 +15,11 @@ class LightsView {
   LightsView(gpu::Device& device, gpu::ShaderCompiler& compiler) : painter_(device, compiler) {}
 
   static bool shown(const plan::Settings& settings);
-  /// Where shown(). `learning`: null where nothing is learned.
+  /// Requires shown(). `learning`: null if nothing is learned.
   void draw(const overlay::Canvas& canvas, const transport::LightLearning* learning,
             const upload::FlatScene& flat, const shared::Frame& frame, const scene::Scene& scene,
             const plan::Settings& settings, std::optional<vec2> looked_at);
-  /// Of what draw() has shown last.
+  /// Of the latest draw().
   const std::optional<solvers::Report>& report() const { return report_; }
   void forget() { report_.reset(); }
 

@@ -35,7 +35,7 @@ float texture_alpha(const scene::Scene& s, const scene::TextureUse& use, const v
   return texel < image.floats.size() ? image.floats[texel] : 1;
 }
 
-/// Whether a ray is stopped at barycentric coordinates (a, b) of the second and third vertex.
+/// True if a ray is stopped at barycentric coordinates (a, b) of the second and third vertex.
 bool stops(const scene::Scene& s, const scene::Primitive& p, const uvec3& t, float a, float b) {
   const scene::Material& m = s.materials[p.material];
   if (m.alpha_mode == scene::AlphaMode::opaque) return true;
@@ -69,7 +69,7 @@ std::optional<Picked> pick(const scene::Scene& scene, const scene::Camera& camer
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Instance& instance = scene.instances[i];
     if (instance.mesh >= scene.meshes.size()) continue;
-    // In the object's space the ray keeps its parameter, so that distances compare.
+    // The ray keeps its parameter in object space, so distances are comparable.
     const mat4 to_object = glm::inverse(instance.to_world);
     const vec3 o(to_object * vec4(origin, 1)), d(to_object * vec4(direction, 0));
     for (const scene::Primitive& p : scene.meshes[instance.mesh].primitives)
@@ -102,7 +102,7 @@ bvh::InstancedTracer make_tracer(const scene::Scene& scene) {
   std::vector<bvh::InstancedTracer::Instance> instances;
   for (const scene::Instance& instance : scene.instances)
     instances.push_back({instance.mesh, instance.to_world});
-  // One thread: the others are at work on the picture.
+  // One thread: the others render.
   return {meshes, instances, 1};
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// What lies under a point of the picture, or in the way of the eye, found in the plain scene without asking
-// the renderer.
+// Finds the surface at a point of the picture, or in the way of the camera, in the scene itself, without the
+// renderer.
 #include <functional>
 #include <memory>
 #include <optional>
@@ -21,22 +21,21 @@ struct Picked {
 struct PickRay {
   vec3 origin, direction;  ///< unit
 };
-/// That through a point of the picture: `x` to the right and `y` down, 0..1; `aspect` its width / height.
+/// The ray through a point of the picture: `x` to the right and `y` down, 0..1; `aspect` its width / height.
 PickRay pick_ray(const scene::Camera& camera, float x, float y, float aspect);
 
-/// By one ray against all triangles: a few milliseconds for 300 000 triangles; meant for clicks.
-/// `x` to the right and `y` down, 0..1 across the picture; `aspect` its width / height. Surfaces are passed
-/// through where their alpha is below the cutoff (masked) or a half (blended); glass is a surface. Nothing
-/// when the ray leaves the scene.
+/// Tests one ray against all triangles: a few milliseconds for 300 000 triangles; for clicks. `x` to the
+/// right and `y` down, 0..1 across the picture; `aspect` its width / height. Passes through surfaces with
+/// alpha below the cutoff (masked) or 0.5 (blended); glass is a surface. nullopt if the ray leaves the scene.
 std::optional<Picked> pick(const scene::Scene& scene, const scene::Camera& camera, float x, float y,
                            float aspect);
 
-/// The same for many rays: a tree over the scene's meshes. It holds on to the scene it was made of.
+/// The same for many rays, with a tree over the scene's meshes. Shares ownership of the scene.
 class Probe {
  public:
-  /// Takes a while (some 0.3 s a million triangles). Throws Error: out of memory.
+  /// Takes about 0.3 s per million triangles. Throws Error: memory.
   explicit Probe(std::shared_ptr<const scene::Scene> scene);
-  /// What stops the ray nearer than `limit`, metres; surfaces that are not `wanted` are passed through.
+  /// The first hit nearer than `limit` [m]; passes through surfaces for which `wanted` is false.
   std::optional<Picked> nearest(const vec3& origin, const vec3& direction, float limit = k_infinity,
                                 const std::function<bool(const Picked&)>& wanted = {}) const;
   const scene::Scene& scene() const { return *scene_; }

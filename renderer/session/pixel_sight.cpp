@@ -4,7 +4,7 @@ namespace lucerna::session {
 
 namespace {
 
-/// Of mirrors and surfaces of glass, that a ray is followed by: two panes seen in a mirror are five.
+/// Maximum number of mirrors and glass surfaces along a ray: two panes seen in a mirror are five.
 constexpr uint32_t k_most_turns = 6;
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-// What surfaces the pixels of a picture show, in mirrors and through glass too (film/preview_look.comp): one
-// ray through the centre of each. For what filters light over surfaces.
+// Primary-visibility buffer: the surfaces that pixels show, also in mirrors and through glass
+// (film/preview_look.comp), by one ray through each pixel's centre. Used to filter light over surfaces.
 #include <functional>
 #include <optional>
 
@@ -16,26 +16,26 @@ class PixelSight {
  public:
   PixelSight(gpu::Device& device, gpu::ShaderCompiler& compiler) : device_(device), compiler_(compiler) {}
 
-  /// Surfaces have changed.
+  /// Call when surfaces have changed.
   void forget() {
     if (rays_) rays_->forget();
   }
-  /// A piece of it; all of it is done when surfaces() is not null. Its work is not counted as the picture's.
-  /// False when it was cancelled. The wavefront's frame is the picture's, before and afterwards.
+  /// Traces a part of it; complete when surfaces() is not null. Not counted as the picture's work. False if
+  /// cancelled. The wavefront has the picture's frame before and after.
   bool see(Engine& engine, const PictureView& view, const std::function<bool()>& cancel);
-  /// Of each pixel a texel, as shaders/shared/preview.h says; null while it is not known, or not for each.
+  /// One texel per pixel, as in shaders/shared/preview.h; null unless complete.
   const gpu::Buffer* surfaces(const Engine& engine, const PictureView& view) const;
-  /// Whether it is not known yet, and can be.
+  /// True if it is missing and can be traced.
   bool wanted(const Engine& engine, const PictureView& view) const;
 
  private:
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
   std::optional<overlay::Sight> rays_;
-  gpu::Defines defines_;  ///< that the rays were made with
+  gpu::Defines defines_;  ///< of the ray kernels
   gpu::Kernel look_, note_;
   gpu::Resources resources_;
-  film::PreviewCamera camera_;  ///< for which it was asked
+  film::PreviewCamera camera_;  ///< camera of the stored points
 };
 
 }  // namespace lucerna::session

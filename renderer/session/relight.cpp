@@ -8,10 +8,10 @@
 namespace lucerna::session {
 namespace {
 
-/// Of the device's memory, what sums by group may take where nobody has asked for them.
+/// Fraction of device memory that group sums may take unless explicitly enabled.
 constexpr uint64_t k_share = 8;
 
-/// Why light is not kept apart whatever it is; "" where it may be.
+/// Why groups are not separate, independent of solvers and memory; "": no reason.
 std::string obstacle(const plan::Settings& settings, bool interactive) {
   const std::string& enabled = settings.text("relight.enabled");
   if (enabled == "off") return "relight.enabled is off";
@@ -19,7 +19,7 @@ std::string obstacle(const plan::Settings& settings, bool interactive) {
   return "";
 }
 
-/// ... because of who computes it, where there are several groups.
+/// ... because of the component's solver, if there are several groups.
 std::string obstacle(const plan::Plan& plan, const plan::Settings& settings) {
   for (const solvers::SolverInfo* info : plan.at_work()) {
     if (!solvers::type_of(*info).make) continue;
@@ -32,7 +32,7 @@ std::string obstacle(const plan::Plan& plan, const plan::Settings& settings) {
   return "";
 }
 
-/// ... because of how many there are.
+/// ... because of their number.
 std::string obstacle(const plan::Settings& settings, const scene::LightGroups& groups, uint64_t pixels,
                      uint64_t memory) {
   const uint64_t bytes =
@@ -70,7 +70,7 @@ Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
   r.messages = r.groups->messages;
   for (const std::string& name : scene::unknown_groups(mix, *r.groups))
     r.messages.push_back(unknown_group(name, *r.groups));
-  // Light of one group is what it is times the group's strength.
+  // With one group, light is scaled by the group's strength.
   const bool one = r.groups->groups.size() == 1;
   if (r.why_not.empty() && !one) r.why_not = obstacle(plan, settings);
   if (r.why_not.empty() && !one) r.why_not = obstacle(settings, *r.groups, pixels, memory);

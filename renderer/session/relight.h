@@ -1,6 +1,6 @@
 #pragma once
-// What settings make of a scene's groups of lights: whether their light is kept apart, how they are mixed,
-// and where it is not kept apart the scene with its lights so.
+// Evaluates the settings of light groups: whether groups are separate, their mix, and, if they are not
+// separate, the scene with the mix applied to its lights.
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,33 +13,33 @@
 namespace lucerna::session {
 
 struct Relight {
-  std::shared_ptr<const scene::LightGroups> groups;       ///< null where nobody asks for them
-  std::shared_ptr<const scene::Scene> scene;              ///< that they are of
-  bool separate = false;                                  ///< a mix costs no ray
-  film::GroupStorage kept = film::GroupStorage::compact;  ///< how, where it is
-  std::string why_not;                                    ///< where it is not: the reason, for people
+  std::shared_ptr<const scene::LightGroups> groups;       ///< null if not needed
+  std::shared_ptr<const scene::Scene> scene;              ///< their scene
+  bool separate = false;                                  ///< groups are separate: a mix traces no rays
+  film::GroupStorage kept = film::GroupStorage::compact;  ///< storage, if separate
+  std::string why_not;                                    ///< if not: the reason, for messages
   std::vector<vec3> weights;                              ///< by group
-  std::shared_ptr<const scene::Scene> lit;                ///< what is to be traced
-  std::string baked;  ///< what of the settings `lit` was made with; "": it is the scene itself
-  /// By group, what the scene's lights are of those of `lit`, which a mix was written into; none: the same.
-  /// Part of the weights.
+  std::shared_ptr<const scene::Scene> lit;                ///< the traced scene
+  std::string baked;  ///< settings applied to `lit`; "": none, it is the scene itself
+  /// By group: strength of the scene's lights over those of `lit`, to which a mix was applied; empty: equal.
+  /// Included in the weights.
   std::vector<vec3> written;
-  std::vector<std::string> messages;  ///< lines for people: groups that are gone, lights that were joined
+  std::vector<std::string> messages;  ///< messages: missing groups, merged lights
 };
 
-/// For a picture of that size. `interactive`: in the window. `memory`: of the device [bytes]. `before`: of
-/// what was there until now. Throws Error, located at the setting.
+/// For a picture of that size. `interactive`: in the window. `memory`: of the device [bytes]. `before`: the
+/// former one. Throws Error, located at the setting.
 Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
                      std::shared_ptr<const scene::Scene> scene, bool interactive, uint64_t pixels,
                      uint64_t memory, const Relight& before);
-/// Takes up a scene with other strengths of lights, and another mix, that together give the same light as
-/// now: what is traced and how it is weighed stays. `lit`: what is traced. False, and nothing has changed:
-/// the light is another, or is not kept apart. Throws Error located at the setting.
+/// Applies new light strengths and a new mix that give the same total light as now: the traced scene and its
+/// weights stay. `lit`: the traced scene. False, and no change: the light differs, or groups are not
+/// separate. Throws Error located at the setting.
 bool write_mix(Relight& relight, std::shared_ptr<const scene::Scene> scene, const scene::Scene& lit,
                const plan::Settings& settings, const std::string& mix);
-/// Goes on tracing what `before` had traced, where both are of the same scene and groups.
+/// Continues tracing the scene of `before`, if scene and groups are the same.
 void keep_written(Relight& relight, const Relight& before);
-/// Takes up another mix, where light is kept apart. Throws Error; then nothing has changed.
+/// Applies another mix to separate groups. Throws Error; then nothing changes.
 void remix(Relight& relight, const std::string& text);
 
 }  // namespace lucerna::session

@@ -49,8 +49,7 @@ void Renderer::load(const std::filesystem::path& file, const Progress& progress,
 
 void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progress& progress,
                          const std::vector<SettingChange>& changes) {
-  // A scene starts with the defaults and its own settings; only how to compute is the machine's affair and
-  // stays.
+  // A scene starts with the defaults and its settings; only those of the machine stay.
   plan::Settings settings;
   for (const char* key : {"tracer", "path.batch", "path.classes"}) settings.set(key, settings_.text(key));
   for (const auto& [key, value] : scene->settings) settings.set(key, value, "settings.json");
@@ -64,7 +63,7 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
 void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings,
                        scene::Camera camera, const Progress& progress, const scene::Changes& changes) {
   rest();
-  // Everything that can fail happens before the old scene is given up.
+  // Everything that can fail happens before the old scene is released.
   scene::check_range(camera);
   const plan::Plan plan = plan::make_plan(settings);
   Relight relight = make_relight(plan, settings, scene, width_, height_);
@@ -97,7 +96,7 @@ Relight Renderer::make_relight(const plan::Plan& plan, const plan::Settings& set
 upload::LightSeparation Renderer::wanted_separation(const plan::Plan& plan, const plan::Settings& settings,
                                                     const Relight& relight) const {
   float threshold = wanted_sun_threshold(automaton_, plan, settings);
-  // Of one group the film's own sums are all there is to keep.
+  // With one group, the film's sums suffice.
   const bool several = relight.separate && relight.groups->groups.size() > 1;
   if (several && relight.groups->has_sun) threshold = scene::k_sun_threshold;
   return {threshold, several ? relight.groups : nullptr,
@@ -115,8 +114,8 @@ void Renderer::remix() {
   forget_filtered();
   film_->set_mix(relight_.weights), coarse_->set_mix(relight_.weights);
   if (display_) display_->mixed();
-  // A drag at a slider changes one group, and that at presets comes as a row of mixes.
-  constexpr double k_drag_seconds = 0.5;  // between these, at most; the first is shown meanwhile
+  // Dragging a slider changes one group; dragging over presets gives a sequence of mixes.
+  constexpr double k_drag_seconds = 0.5;  // maximum time between these; the first is shown meanwhile
   mixed_.resize(relight_.weights.size(), vec3(1));
   size_t groups = 0;
   for (size_t g = 0; g < mixed_.size(); ++g)
@@ -130,7 +129,7 @@ void Renderer::remix() {
 void Renderer::settle_mix() {
   if (!std::exchange(mix_pending_, false) || stats().paths == 0) return;
   engine_->wavefront().uncounted([&] { engine_->wavefront().mix(*film_); });
-  // What was told of errors was told of another picture.
+  // Errors so far belong to another picture.
   ledger_.clear();
   if (samples() == 0) return;
   if (adaptive()) change_schedule();
@@ -151,7 +150,7 @@ std::unique_ptr<Engine> Renderer::make_engine(const World& world, const plan::Pl
 void Renderer::use(std::unique_ptr<Engine> engine, const scene::Changes& changes) {
   if (engine_) kept_.replace(*engine_, *engine, changes);
   engine_ = std::move(engine);
-  // Kept work is a convenience: it leaves most of the memory to the picture.
+  // Kept data is optional: most of the memory is left to the picture.
   if (device_->allocated_bytes() > device_->info().memory_bytes / 2) kept_.clear();
 }
 
@@ -205,7 +204,7 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
   const bool by_group = factors && !factor && film_->groups() == factors->size();
   bool known = factor || keeps_light(changes);
   if (display_ && samples() > 0) {
-    // Groups that change by different factors are another mix of the picture that there is.
+    // Groups with different factors are a new mix of the present picture.
     if (by_group) {
       std::vector<vec3> weights = relight_.weights;
       for (size_t g = 0; g < weights.size(); ++g) weights[g] *= (*factors)[g];
@@ -306,7 +305,7 @@ bool Renderer::lookup_errors_known() const {
 }
 
 std::optional<double> Renderer::bias(size_t component) const {
-  // Light that is looked up for a component besides its solver's, straight from the sky.
+  // Another solver looks up part of the component: direct sky light.
   if (!engine_ || engine_->looked_up_besides(component)) return std::nullopt;
   return engine_->plan().bias(component);
 }
@@ -327,7 +326,7 @@ void Renderer::notify_settings_changed() {
 
 void Renderer::apply_settings() {
   if (!engine_) return;
-  scene::Changes changes;  // before anything is done, for a restart counts all as applied
+  scene::Changes changes;  // first, because a restart counts all as applied
   for (const auto& [key, value] : settings_.all())
     if (applied_[key] != value) changes.settings.insert(key);
   const auto changed = [&](const char* key) { return changes.settings.contains(key); };
@@ -346,7 +345,7 @@ void Renderer::apply_settings() {
   }
   bool again = false, retarget = false, remixed = false;
   for (const std::string& key : changes.settings) {
-    // What these say, the schedule in progress can take up.
+    // The current schedule can apply these.
     const bool goal = key == "sampling.target_error" || key == "sampling.min_samples" ||
                       key == "sampling.max_samples" ||
                       (key == "sampling.tile" && (!adaptive() || changed("sampling.mode")));
@@ -388,7 +387,7 @@ bool Renderer::apply_plan(scene::Changes& changes) {
   const plan::Plan plan = plan::make_plan(settings_);
   Relight relight = make_relight(plan, settings_, world_.scene, width_, height_);
   const upload::LightSeparation separation = wanted_separation(plan, settings_, relight);
-  // Where light is not kept apart another mix is another light of all lamps.
+  // If groups are not separate, a mix is an edit of all lamps.
   const bool relit = relight.baked != relight_.baked;
   if (relit)
     for (const scene::Change c : {scene::Change::lamp, scene::Change::environment, scene::Change::colour})
@@ -421,7 +420,7 @@ void Renderer::set_size(uint32_t width, uint32_t height) {
   if (width == width_ && height == height_ && film_) return;
   film::check_size(device_->info(), width, height);
   if (engine_) {
-    // Larger pictures may leave no memory for light by groups.
+    // A larger picture may leave no memory for separate groups.
     Relight relight = make_relight(engine_->plan(), settings_, world_.scene, width, height);
     const upload::LightSeparation separation = wanted_separation(engine_->plan(), settings_, relight);
     std::optional<WorldEdit> edit;
@@ -490,7 +489,7 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
     if (engine_->in_rounds() != rounds && samples() == 0) start_schedule();
     return went;
   }
-  // As soon as every pixel has a sample, so that the picture does not wait, and before errors are told.
+  // As soon as every pixel has a sample, so that the picture does not wait, and before errors are published.
   if (solvers::Solver* solver = samples() > 0 ? engine_->owing_errors(*film_) : nullptr) {
     const bool restarted = errors_restart_ != restarts_ || errors_of_ != solver;
     errors_restart_ = restarts_, errors_of_ = solver;
@@ -511,7 +510,7 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
     }
     const std::vector<uint32_t>& tiles = adaptive->to_report();
     std::vector<schedule::TileErrors> errors(tiles.size());
-    // One sample a pixel tells nothing of the error, and decides nothing.
+    // One sample a pixel gives no error estimate and decides nothing.
     if (!tiles.empty() && adaptive->tiles()[tiles[0]].samples + item.sample_count > 1) {
       engine_->estimator().estimate_stopping(wavefront.stream(), item.blocks, *film_, seen_range());
       wavefront.account_stages();

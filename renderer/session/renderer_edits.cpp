@@ -30,7 +30,7 @@ void Renderer::set_environment_file(const std::filesystem::path& file, std::opti
                                     std::optional<float> rotation_degrees) {
   if (!world_.scene || !loaded_) throw_error(file.string(), "there is no scene to be lit");
   auto edited = std::make_shared<scene::Scene>(*world_.scene);
-  // The images as they were loaded, so that those of earlier files go.
+  // The images as loaded; those of earlier files are dropped.
   edited->images = loaded_->images;
   scene::Environment environment = loaded_->environment;
   if (!file.empty()) {
@@ -66,7 +66,7 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
   if (!same)
     throw_error("material", "'{}': its textures, alpha mode, transmission and thickness cannot be changed",
                 before.name);
-  // Where there was a diffuse colour there is one still, and no other lobe: the same places ask.
+  // A diffuse colour remains, and no other lobe appears: lookups stay at the same places.
   const auto diffuse = [](const scene::Material& x) {
     return luminance(vec3(x.base_color)) > 0 && x.metallic < 1;
   };
@@ -115,7 +115,7 @@ void Renderer::edit(std::shared_ptr<const scene::Scene> edited, const scene::Cha
   const bool by_group = relight.separate && relight_.separate && *relight.groups == *relight_.groups;
   const std::optional<std::vector<vec3>> light =
       scene::light_factors(*world_.lit, *relight.lit, by_group ? relight.groups.get() : nullptr);
-  // Of materials nothing but what they emit is another.
+  // Only the emission of materials has changed.
   const scene::Changes what = light && factors ? scene::Changes(scene::Change::lamp) : changes;
   WorldEdit trial(*device_, world_, std::move(edited), relight.lit,
                   wanted_separation(engine_->plan(), settings_, relight),

@@ -1,4 +1,4 @@
-// Pictures without noise: a finished one when it is called for, and the window's between its samples.
+// Filtered pictures: a finished one on request, and the window's between its samples.
 #include <utility>
 
 #include "base/log.h"
@@ -8,10 +8,10 @@ namespace lucerna::session {
 
 namespace {
 
-// Samples that every pixel has when the window's picture is first filtered; before, it shows a preview.
+// Samples of every pixel before the window's picture is first filtered; before that it shows a preview.
 constexpr uint32_t k_first_samples = 8;
-// The window's picture is filtered again when it has so many times the samples, and so many times the seconds
-// of tracing that filtering it has taken.
+// The window's picture is filtered again after this factor in samples, and this factor of the filtering time
+// in tracing time.
 constexpr uint64_t k_more_samples = 2;
 constexpr double k_more_seconds = 3;
 // The filtered picture's error is estimated again when there are so many times the samples.
@@ -22,7 +22,7 @@ constexpr double k_more_to_judge = 1.2;
 const Filtered& Renderer::filter() {
   if (!engine_ || !film_ || stats().paths == 0) throw Error("filter", "there is no picture to filter yet");
   settle_mix();
-  forget_filtered();  // its memory first
+  forget_filtered();  // frees its memory first
   PixelSight own(*device_, *compiler_);
   PictureFilter filter(*device_, *compiler_);
   filter.begin(filter_job());
@@ -39,7 +39,7 @@ const Filtered* Renderer::filtered() const {
 }
 
 FilterJob Renderer::filter_job() const {
-  constexpr uint32_t k_by_way = 1u << 1 | 1u << 2;  // secondary and tertiary: what records hold
+  constexpr uint32_t k_by_way = 1u << 1 | 1u << 2;  // secondary and tertiary: the components of records
   uint32_t looked_up = 0;
   for (const auto& solver : engine_->solvers())
     looked_up |= engine_->plan().components_of(solver->info()) & k_by_way;

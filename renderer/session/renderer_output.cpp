@@ -1,4 +1,4 @@
-// The picture as it is shown and written.
+// The picture for display and files.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -70,7 +70,7 @@ void Renderer::draw_lights(const std::function<bool()>& cancel) {
 }
 
 bool Renderer::previewed(const film::View& v) const {
-  // Samples from which on the picture is shown as it is, whatever they are worth.
+  // Samples from which the picture is shown unfiltered, whatever its noise.
   constexpr uint32_t k_previewed_samples = 256;
   return display_ && settings_.text("preview.filter") == "auto" && !done() &&
          samples() < k_previewed_samples && display_->shows(v, *film_);
@@ -94,8 +94,8 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::functi
   const film::View v = view();
   const bool quick = mix_pending_ && samples() > 0 && film_->quick() && v.layer == shared::k_layer_beauty &&
                      v.show == (1u << paths::k_component_count) - 1 && v.tiles == 0;
-  // A drag is shown at display rate, by samples as they are. A mix of other groups at once takes a little
-  // longer where that would be grain in place of a picture that is filtered.
+  // A drag is shown at display rate, with unfiltered samples. A sudden mix of other groups takes a little
+  // longer if it would show noise in place of a filtered picture.
   if (quick && (mix_dragged_ || !previewed(v) || display_->shares().filtered < k_little_filtered)) {
     engine_->developer().mix(engine_->wavefront().stream(), *film_, v);
     return finished_picture(cancel);
@@ -116,7 +116,7 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::functi
     display_->develop(*engine_, picture_view(), *film_, *coarse_, v, samples(), stats().paths > 0);
   } catch (const Error& e) {
     engine_->wavefront().stream().discard();
-    // The picture itself does not need it.
+    // The picture does not need it.
     log::warning("{}; the window shows the samples as they are", e.what());
     settings_.set("preview.filter", "off");
     return picture(with_coarse, cancel);
@@ -152,8 +152,8 @@ film::Brightness Renderer::measure(std::optional<vec2> at) const {
   const auto sampled = [](uint32_t n) { return n > 0; };
   if (std::none_of(image.samples.begin(), image.samples.end(), sampled))
     throw Error("", "there is no picture to measure yet");
-  // The light that is shown: components left out of the picture are not in it, and a layer is one of them.
-  // Other layers have no exposure; the picture is measured then.
+  // The shown light: without hidden components; a layer is one component. Other layers have no exposure; the
+  // picture is measured then.
   const film::View v = view();
   const bool one = v.layer >= shared::k_layer_primary && v.layer < shared::k_layer_albedo;
   const uint32_t shown = one ? 1u << (v.layer - shared::k_layer_primary) : v.show;
@@ -166,8 +166,8 @@ film::Brightness Renderer::measure(std::optional<vec2> at) const {
 
 namespace {
 
-/// A layer of light of one group, as it is mixed: of 16-bit floats but where values are beyond these. What
-/// the group has nothing of is left out.
+/// A layer of the light of one group with its mix: 16-bit floats unless values exceed them. Empty layers are
+/// left out.
 void add_light_layer(film::FilmImage& out, const std::string& name, const std::vector<vec3>& mean,
                      const vec3& weight) {
   constexpr float k_largest_half = 65504;
@@ -182,16 +182,16 @@ void add_light_layer(film::FilmImage& out, const std::string& name, const std::v
   }
 }
 
-/// Layers of groups of lights: light.GROUP.COMPONENT, or light.GROUP where all components are kept together.
-/// Of one group the picture is the layer.
+/// Layers of light groups: light.GROUP.COMPONENT, or light.GROUP if components are stored together. With one
+/// group the picture is the layer.
 void add_group_layers(film::FilmImage& out, const film::Film& film, const Relight& relight) {
   if (film.groups() == 1) return;
   std::set<std::string> used;
   for (uint32_t g = 0; g < film.groups(); ++g) {
-    // A dot would part the layer's name.
+    // A dot would split the layer's name.
     std::string name = "light." + relight.groups->groups[g].name;
     std::replace(name.begin() + 6, name.end(), '.', '_');
-    // Which may make it another group's.
+    // The replacement may equal another group's name.
     while (!used.insert(name).second) name += '_';
     if (film.is_compact()) {
       add_light_layer(out, name, film.read_group_sum(g), relight.weights[g]);
@@ -248,7 +248,7 @@ void Renderer::save(const std::filesystem::path& file, bool as_shown) {
   if (extension == ".exr")
     film::write_exr(file, film_image());
   else if (extension == ".png") {
-    // Where somebody looks is no part of what is kept.
+    // The inspected place is not saved.
     const std::optional<vec2> at = looked_at_;
     inspect(std::nullopt);
     settle_mix();

@@ -1,4 +1,4 @@
-// What is told of a render's progress: ledger, reference, costs by component.
+// Progress of a render: ledger, reference, cost by component.
 #include <utility>
 
 #include "base/log.h"
@@ -26,12 +26,11 @@ void Renderer::set_reference(const std::filesystem::path& file) {
   if (!reference.view.empty() && reference.view != view_text())
     throw_error(file.string(), "the reference was taken with another camera ({}; now {})", reference.view,
                 view_text());
-  if (!reference.noise)
-    log::warning("{}: it does not tell its own noise, which is therefore taken for error", file.string());
+  if (!reference.noise) log::warning("{}: its own noise is unknown and counts as error", file.string());
   if (reference.seed == settings_.text("seed"))
     log::warning(
-        "{}: rendered with seed {} like this picture, so that they share samples and the difference is too "
-        "small; another seed tells the truth",
+        "{}: rendered with seed {} like this picture. Both share samples, so the measured error is too "
+        "small; use another seed",
         file.string(), reference.seed);
   reference_ = std::move(reference);
 }

@@ -1,4 +1,4 @@
-// The renderer's solvers: when they refine what paths read; by name commands, files, what they tell.
+// The renderer's solvers: refinement, commands, files and reports by name.
 #include <bit>
 
 #include "base/log.h"
@@ -10,8 +10,8 @@ namespace lucerna::session {
 std::optional<bool> Renderer::refine(const std::function<bool()>& cancel) {
   solvers::Solver* solver = engine_->refining();
   if (!solver) {
-    // At powers of two, where passes over the picture end whatever they are cut into (schedule/uniform.h): so
-    // the picture does not depend on that.
+    // At powers of two, where passes over the picture end for any size of work items (schedule/uniform.h):
+    // the picture does not depend on that size.
     constexpr uint32_t k_least = 16;
     solver = engine_->refinable();
     if (!solver) return std::nullopt;
@@ -31,8 +31,8 @@ std::optional<bool> Renderer::refine(const std::function<bool()>& cancel) {
 }
 
 bool Renderer::refining_pays(uint64_t paths) {
-  // With n paths either's squared error is in proportion to 1/n, and falls by itself over n with each. What
-  // is read is refined in steps that double its paths, so that the two are even in the middle of a step.
+  // With n paths both squared errors are proportional to 1/n, with derivative error / n. Refinement doubles
+  // its paths in each step, so the two are balanced in the middle of a step.
   const film::ImageError error = image_error();
   const double sampled = error.seen_rms[0] * error.seen_rms[0],
                read = error.seen_records * error.seen_records;

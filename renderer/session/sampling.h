@@ -1,5 +1,5 @@
 #pragma once
-// Which pixels get samples next: uniform or adaptive, behind one face.
+// Uniform or adaptive sampling behind one interface: which pixels get samples next.
 #include <algorithm>
 #include <optional>
 #include <vector>
@@ -13,30 +13,30 @@ class Sampling {
  public:
   void start(schedule::UniformSchedule schedule) { uniform_ = std::move(schedule), adaptive_.reset(); }
   void start(schedule::AdaptiveSchedule schedule) { adaptive_.emplace(std::move(schedule)); }
-  /// The state of every tile; null in uniform sampling.
+  /// State of every tile; null in uniform sampling.
   const schedule::AdaptiveSchedule* adaptive() const { return adaptive_ ? &*adaptive_ : nullptr; }
   schedule::AdaptiveSchedule* adaptive() { return adaptive_ ? &*adaptive_ : nullptr; }
   schedule::UniformSchedule& uniform() { return uniform_; }
 
   bool done() const { return adaptive_ ? adaptive_->done() : uniform_.done(); }
-  /// Samples that every pixel has.
+  /// Number of samples that every pixel has.
   uint32_t samples() const { return adaptive_ ? adaptive_->least_samples() : uniform_.complete(); }
-  /// Samples that some pixel has.
+  /// Number of samples that some pixel has.
   uint32_t most_samples() const {
     if (!adaptive_) return uniform_.complete();
     const std::vector<uint32_t> all = counts();
     return all.empty() ? 0 : *std::max_element(all.begin(), all.end());
   }
-  /// Samples a pixel at which the image is finished; adaptive: that no pixel goes beyond.
+  /// Samples a pixel at which the image is finished; adaptive: maximum of any pixel.
   uint32_t max_samples() const { return adaptive_ ? adaptive_->options().max_samples : uniform_.samples(); }
-  /// Passes over the picture, or over the tiles at work, that are complete.
+  /// Complete passes over the picture, or over the active tiles.
   uint32_t passes() const { return adaptive_ ? adaptive_->rounds() : uniform_.passes(); }
   /// Samples of every block, in raster order.
   std::vector<uint32_t> counts() const { return adaptive_ ? adaptive_->counts() : uniform_.counts(); }
 
  private:
   schedule::UniformSchedule uniform_;
-  std::optional<schedule::AdaptiveSchedule> adaptive_;  ///< in place of that
+  std::optional<schedule::AdaptiveSchedule> adaptive_;  ///< replaces the uniform one
 };
 
 }  // namespace lucerna::session

@@ -148,7 +148,7 @@ void Session::reload_shaders() {
 void Session::set_reference(const std::filesystem::path& file, SceneId scene) {
   const auto run = [file](Renderer& r) {
     r.set_reference(file);
-    r.finish_ledger();  // what there is is held against it at once
+    r.finish_ledger();  // the present samples are compared at once
     log::info("{} is the reference", file.string());
   };
   impl_->post({.run = run, .subject = "the reference", .scene = scene});

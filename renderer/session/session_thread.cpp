@@ -7,8 +7,8 @@
 namespace lucerna::session {
 
 namespace {
-constexpr double k_draft_seconds = 0.5;  // without a draft at most, while edits come one after the other
-// Without another mix, after which the last one is taken up in full.
+constexpr double k_draft_seconds = 0.5;  // maximum time without a preview sample during consecutive edits
+// Time without another mix after which the last one is applied in full.
 constexpr double k_mix_pause_seconds = 0.2;
 constexpr int k_nice = 10;  // rendering yields to the window's thread
 
@@ -68,18 +68,17 @@ void Session::Impl::carry_out_next(Renderer* renderer, std::unique_lock<std::mut
 }
 
 void Session::Impl::advance(Renderer& renderer, bool work) {
-  // What was there before, as it is seen now, does not wait for new light.
+  // The former picture in the new view does not wait for new light.
   if (std::exchange(recall_wanted, false) && renderer.remembers()) publish_picture(renderer, false);
   bool changed = dirty;
-  // A row of edits that come faster than drafts are drawn shows some of them all the same.
+  // During edits faster than preview samples, some of them are still shown.
   const auto draft_cancelled = [&] {
     return quit || (pending && (!draft_given_up || since_given_up.seconds() < k_draft_seconds));
   };
   if (!paused && renderer.draw_draft(draft_cancelled)) {
     draft_given_up = false;
     changed = changed || renderer.draft_news();
-    // The first one is shown at once, and the first of light that has got better; more of them as pictures
-    // are.
+    // The first one, and the first of improved light, are shown at once; more of them at the usual rate.
     if (renderer.has_draft())
       changed = changed || std::exchange(coarse_wanted, false);
     else
@@ -89,7 +88,7 @@ void Session::Impl::advance(Renderer& renderer, bool work) {
   } else if (work && renderer.step([&] { return pending.load() || quit; })) {
     accuracy.follow(renderer, scene_id);
   }
-  // The last line of the ledger is that of the finished image.
+  // The last entry of the ledger is that of the finished image.
   if (renderer.done() && !renderer.ledger().entries().empty() &&
       renderer.ledger().entries().back().paths != renderer.stats().paths)
     renderer.finish_ledger();
@@ -101,7 +100,7 @@ void Session::Impl::advance(Renderer& renderer, bool work) {
                                   (since_numbers.seconds() > numbers_seconds || renderer.done() || paused));
 }
 
-/// `numbers`: with what has to be read back from the film.
+/// `numbers`: including values read back from the film.
 void Session::Impl::publish_picture(Renderer& renderer, bool numbers) {
   if (numbers) since_numbers.restart();
   fill_snapshot(renderer, numbers);
@@ -124,14 +123,15 @@ void Session::Impl::end(Renderer* renderer, std::unique_lock<std::mutex>& lock) 
 }
 
 void Session::Impl::run() {
-  // Threads that the device starts inherit this, so that the window is served first.
+  // Threads of the device inherit this, so the window has priority.
   setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), k_nice);
   const std::unique_ptr<Renderer> renderer = make_renderer();
   std::unique_lock lock(mutex);
   while (!quit) {
     while (!queue.empty() && !quit) carry_out_next(renderer.get(), lock);
     pending = false;
-    // A drag at a group's slider: what it shows comes first, the film's sums and more samples when it pauses.
+    // During a drag at a group's slider display comes first; the film's sums and more samples follow when it
+    // pauses.
     const bool mixing = renderer && renderer->mix_pending();
     if (mixing && !dirty && wake.wait_for(lock, std::chrono::duration<double>(k_mix_pause_seconds), [&] {
           return quit || !queue.empty();
@@ -147,7 +147,7 @@ void Session::Impl::run() {
     try {
       if (renderer && renderer->ready()) {
         if (mixing && !dirty) {
-          // A drag has shown samples as they are, which may be few: the filter comes before more of them.
+          // A drag has shown unfiltered samples, which may be few: filter before taking more.
           renderer->settle_mix();
           publish_picture(*renderer, false);
         }
@@ -161,7 +161,7 @@ void Session::Impl::run() {
       next.activity.clear();
       next.progress = -1;
       next.paused = paused = true;
-      // A picture of the scene before is none of this one.
+      // A picture of the former scene must not be shown for this one.
       if (next.scene_id != scene_id && renderer)
         next.scene_id = scene_id, next.camera = renderer->camera(), next.rgba.clear();
       publish();

@@ -1,5 +1,5 @@
 #pragma once
-// The session's own thread: what it holds, and what it does between commands.
+// The session's thread: its state, and its work between commands.
 #include <condition_variable>
 #include <deque>
 #include <mutex>
@@ -18,7 +18,7 @@ namespace lucerna::session {
 inline constexpr double k_publish_seconds = 0.1;  // between pictures while the image refines
 inline constexpr double k_numbers_seconds = 0.5;  // between read-backs of the film for shares
 
-/// Thrown by a command that has ended without effect, as was wished.
+/// Thrown by a command that was cancelled as requested.
 struct Abandoned {};
 
 struct Session::Impl {
@@ -28,14 +28,14 @@ struct Session::Impl {
   std::condition_variable wake;
   CommandQueue queue;
   std::atomic<bool> quit{false}, pending{false};
-  uint64_t done = 0;  // number of the last command that was carried out
-  // Loads are numbered as they are asked for; those up to a number are given up.
+  uint64_t done = 0;  // number of the last command carried out
+  // Loads are numbered in order of request; those up to a number are cancelled.
   std::atomic<uint64_t> loads{0}, given_up{0};
   std::shared_ptr<const Snapshot> snapshot;
   State state;
   std::function<void()> published;
 
-  // Of the session thread alone.
+  // Used by the session thread only.
   Snapshot next;
   SceneId scene_id = 0;  // of the renderer's scene; the snapshot has it with the first picture
   AccuracyKeeper accuracy;
@@ -43,32 +43,32 @@ struct Session::Impl {
   bool paused = false, dirty = true, coarse_wanted = false, better_wanted = false, recall_wanted = false,
        draft_given_up = false, size_known = false;
   bool filled = false;
-  double publish_seconds = k_publish_seconds;  // showing takes no more than a fifth of the time
-  double numbers_seconds = k_numbers_seconds;  // and read-backs no more than a twentieth
+  double publish_seconds = k_publish_seconds;  // display takes at most a fifth of the time
+  double numbers_seconds = k_numbers_seconds;  // and read-backs at most a twentieth
   struct Save {
     std::filesystem::path file;
-    std::string solver;  // whose work it keeps; "": the picture
+    std::string solver;  // solver whose data is saved; "": the picture
     bool as_shown = false;
     std::shared_ptr<std::promise<void>> promise;
   };
-  std::vector<Save> saves;  // that wait for what they are to write
+  std::vector<Save> saves;  // waiting for their data
   struct Measure {
     std::optional<vec2> at;
     std::shared_ptr<std::promise<film::Brightness>> promise;
   };
-  std::vector<Measure> measures;  // that wait for a picture
+  std::vector<Measure> measures;  // waiting for a picture
 
   bool works(Renderer& r) const {
     return r.ready() && !paused && (!r.done() || r.filter_due()) && !r.waits();
   }
 
-  /// Whether it is to be written now, or cannot be, which writing will tell.
+  /// True if the save can run now, or can never succeed (saving reports why).
   bool due(Renderer& r, const Save& save) const {
     if (!save.solver.empty()) {
       const solvers::Solver* solver = r.solver(save.solver);
       return !solver || solver->ready();
     }
-    // As it is shown, a finished picture is filtered first.
+    // As shown: the finished picture is filtered first.
     if (save.as_shown && r.done() && works(r)) return false;
     return r.samples() > 0 || !works(r);
   }
@@ -123,7 +123,7 @@ struct Session::Impl {
 
   Saved post_save(const std::filesystem::path& file, const std::string& solver, SceneId scene,
                   bool as_shown = false) {
-    // A promise that is dropped, for want of a device, is a failure to the one who waits.
+    // A promise dropped for lack of a device is reported as a failure to its waiter.
     auto promise = std::make_shared<std::promise<void>>();
     Saved saved = promise->get_future().share();
     const auto run = [this, file, solver, as_shown, promise](Renderer& r) {
@@ -144,7 +144,7 @@ struct Session::Impl {
     wake.notify_one();
   }
 
-  /// The snapshots from now on say that this one was refused.
+  /// Lists it as refused in further snapshots.
   void refuse(const Command& command) {
     auto all = next.refused ? std::make_shared<std::vector<uint64_t>>(*next.refused)
                             : std::make_shared<std::vector<uint64_t>>();
@@ -175,9 +175,9 @@ struct Session::Impl {
     filled = false;
   }
 
-  stats::WorkPace pace;  // of what is prepared
+  stats::WorkPace pace;  // of preparation
 
-  /// From the reports of the solvers and the time that their work has taken so far.
+  /// Updates preparation progress from the solvers' reports and times.
   void update_preparing() {
     next.preparing.clear(), next.preparing_done = -1, next.preparing_left.reset();
     const auto preparing = std::find_if(next.reports.begin(), next.reports.end(),
@@ -190,7 +190,7 @@ struct Session::Impl {
     if (!(*preparing)->progress) return;
     const solvers::Report::Progress& progress = *(*preparing)->progress;
     next.preparing_done = progress.done;
-    // The solver is not at work all the time: pictures are shown and preview samples drawn between.
+    // Solver time excludes display and preview samples.
     const double done_ms = progress.left_ms * progress.done / std::max(1e-9, 1 - progress.done);
     next.preparing_left = pace.follow(next.seconds, done_ms, progress.left_ms);
   }
@@ -254,14 +254,14 @@ struct Session::Impl {
     }
   }
 
-  /// Null where there is no device to render with, which is told.
+  /// Null if there is no device; logs the reason.
   std::unique_ptr<Renderer> make_renderer();
-  /// The first command of the queue. `lock` is held before and after, not meanwhile.
+  /// Runs the first command of the queue. `lock` is held before and after, not meanwhile.
   void carry_out_next(Renderer* renderer, std::unique_lock<std::mutex>& lock);
-  /// A draft or, where there is `work`, a piece of the picture; publishes it when it is time.
+  /// Traces a preview sample or, with `work`, a work item of the picture; publishes it if it is time.
   void advance(Renderer& renderer, bool work);
   void publish_picture(Renderer& renderer, bool numbers);
-  /// What is still to be written, before the thread ends; `lock` is held before and not after.
+  /// Writes pending saves before the thread ends; `lock` is held before, not after.
   void end(Renderer* renderer, std::unique_lock<std::mutex>& lock);
   void run();
 };

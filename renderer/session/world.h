@@ -1,5 +1,5 @@
 #pragma once
-// A scene made ready to be traced: flattened, with its tree, in device memory.
+// A scene ready for tracing: flattened, with its tree, in device memory.
 #include <functional>
 #include <memory>
 
@@ -11,19 +11,19 @@
 
 namespace lucerna::session {
 
-/// fraction 0..1 and what is going on; returning false cancels (an Error "cancelled" is thrown).
+/// fraction 0..1 and the current step; returning false cancels (Error "cancelled" is thrown).
 using Progress = std::function<bool(float, const std::string&)>;
 
 struct World {
   std::shared_ptr<const scene::Scene> scene;
-  /// What is traced: the scene, or, where its light is not kept apart by groups, with lights as they are
-  /// mixed.
+  /// The traced scene: the scene itself or, if its light groups are not separate, with the mix applied to its
+  /// lights.
   std::shared_ptr<const scene::Scene> lit;
   upload::FlatScene flat;
   std::unique_ptr<upload::DeviceScene> device;
   std::unique_ptr<bvh::HostTracer> host;  ///< null: kernels trace
 
-  transport::HostTrace trace() const;  ///< by the host; empty where kernels trace
+  transport::HostTrace trace() const;  ///< on the host; empty if kernels trace
 };
 
 /// `tracer`: the setting. Throws Error: too large, no memory, cancelled.
@@ -31,14 +31,14 @@ World make_world(gpu::Device& device, std::shared_ptr<const scene::Scene> scene,
                  std::shared_ptr<const scene::Scene> lit, const std::string& tracer,
                  const upload::LightSeparation& separation, const Progress& progress);
 
-/// Tells how far it is; throws Error "cancelled" when that is the answer.
+/// Reports progress; throws Error "cancelled" if the callback returns false.
 void report_progress(const Progress& progress, float fraction, const std::string& what);
 
-/// The scene of a world with other lights, environment or factors of materials, for as long as it is being
-/// tried: unless keep() is called the world is put back as it was.
+/// Changes lights, environment or material factors of a world on trial: unless keep() is called, the
+/// destructor restores the world.
 class WorldEdit {
  public:
-  /// `factors`: those of materials differ. Throws Error: no memory; the world is then as before.
+  /// `factors`: material factors differ. Throws Error: memory; the world is then unchanged.
   WorldEdit(gpu::Device& device, World& world, std::shared_ptr<const scene::Scene> edited,
             std::shared_ptr<const scene::Scene> lit, const upload::LightSeparation& separation, bool factors);
   ~WorldEdit();

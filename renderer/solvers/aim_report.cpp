@@ -15,12 +15,11 @@ Table aim_table(const AimedAt& at, std::span<const overlay::AimedPair> pairs) {
     const uint32_t box = pairs[i].box;
     const std::string name = box < at.casters ? fmt::format("caster {}", box + 1)
                                               : fmt::format("entrance {}", box - at.casters + 1);
-    table.rows.push_back(
-        {.cells = {"", pairs[i].light, name, share_text(pairs[i].share, 1)},
-         .bar = float(pairs[i].share / std::max(1e-9, pairs[0].share)),
-         .ink = overlay::aim_ink(pairs[i].share),
-         .help = "Of all light paths, those that are aimed from this light at this cluster of "
-                 "surfaces that mirror or refract smoothly, or at where light from afar gets in."});
+    table.rows.push_back({.cells = {"", pairs[i].light, name, share_text(pairs[i].share, 1)},
+                          .bar = float(pairs[i].share / std::max(1e-9, pairs[0].share)),
+                          .ink = overlay::aim_ink(pairs[i].share),
+                          .help = "Share of all light paths aimed from this light at this cluster of "
+                                  "specular surfaces, or at this entrance of distant light."});
   }
   return table;
 }
@@ -31,20 +30,20 @@ void add_aim_rows(std::vector<PanelItem>& items, const AimedAt& at, double unaim
                   std::span<const overlay::AimedPair> pairs) {
   if (at.casters + at.entrances == 0) return;
   if (at.casters > 0)
-    items.push_back(
-        ValueRow{"Casters", count_text(double(at.casters)),
-                 "Clusters of surfaces that mirror or refract smoothly, at which paths are aimed."});
+    items.push_back(ValueRow{"Casters", count_text(double(at.casters)),
+                             "Clusters of specular surfaces at which light paths are aimed."});
   if (at.entrances > 0)
     items.push_back(ValueRow{"Entrances", count_text(double(at.entrances)),
-                             "Where light of the sun and the sky that comes to be of use arrives first, by a "
-                             "pilot; paths are aimed there."});
-  items.push_back(ValueRow{"Aimed", share_text(1 - unaimed, 1),
-                           "Of the paths, at these; as many as a pilot has found to be of use."});
+                             "First surfaces that useful light of sun and sky reaches, found by a pilot; "
+                             "light paths are aimed there."});
+  items.push_back(
+      ValueRow{"Aimed", share_text(1 - unaimed, 1),
+               "Share of the light paths aimed at these, chosen by the contributions in a pilot."});
   if (!pairs.empty()) items.push_back(aim_table(at, pairs));
 }
 
 Legend aim_legend() {
-  Legend legend{.title = "share of the paths that is aimed there",
+  Legend legend{.title = "share of the light paths aimed there",
                 .ramp = std::nullopt,
                 .ticks = {},
                 .range = {},

@@ -1,6 +1,6 @@
 #pragma once
-// What a way of computing light says of itself: plain tables, without a device, from which settings, help,
-// the window, scripts and the renderer take all that they know of it.
+// Static description of a solver: plain tables without a device. Settings, help, window, scripts and renderer
+// read all they need from it.
 #include <array>
 #include <map>
 #include <optional>
@@ -17,11 +17,11 @@ namespace lucerna::solvers {
 
 inline constexpr int k_components = 4;  ///< primary, secondary, tertiary, caustic
 
-/// What a change spoils of a solver's work; each without the ones before it.
+/// Which part of a solver's prepared data a change invalidates.
 struct Invalidation {
-  bool coverage = false;  ///< what there is holds, but something may be missing: more is added
-  bool light = false;     ///< places hold, and their light is computed anew
-  bool places = false;    ///< all is made anew
+  bool coverage = false;  ///< data stays valid but may be incomplete: more is added
+  bool light = false;     ///< positions stay valid; their light is computed again
+  bool places = false;    ///< everything is computed from scratch
   Invalidation& operator|=(const Invalidation& o) {
     coverage |= o.coverage, light |= o.light, places |= o.places;
     return *this;
@@ -35,76 +35,73 @@ inline constexpr Invalidation k_invalidates_light{.light = true};
 inline constexpr Invalidation k_invalidates_light_and_coverage{.coverage = true, .light = true};
 inline constexpr Invalidation k_invalidates_all{.coverage = true, .light = true, .places = true};
 
-/// One row of a solver's table of changes.
+/// One row of a solver's change table.
 struct ChangeRow {
-  /// An edit, or the settings whose keys begin with this ("cache.rays", "film."); of several rows the longest
-  /// counts.
+  /// An edit, or a prefix of setting keys ("cache.rays", "film."). The longest matching prefix applies.
   std::variant<scene::Change, std::string_view> change;
   Invalidation invalidates;
   std::string_view why;
 };
 
-/// Something that can be drawn over the picture: a setting that turns it on, with a place in the window.
+/// An overlay over the picture: the setting that shows it, and its place in the window.
 struct ViewInfo {
   std::string option;  ///< a boolean, or a choice whose first value is "off"
   std::string label;   ///< in panel and menu: "Records"
   char shortcut = 0;   ///< key in the window, 'A' to 'Z'; 0: none
-  /// Of a choice: the values that the key goes through, in a ring; none: all of them.
+  /// For a choice: the values that the key cycles through; empty: all.
   std::vector<std::string> ring;
-  bool inspects_pointer = false;  ///< while it is on, a pointer at rest in the picture asks what lies there
-  std::vector<std::string> refined_by{};  ///< choices that the menu offers while it is on
+  bool inspects_pointer = false;          ///< while shown, a resting pointer inspects the surface below it
+  std::vector<std::string> refined_by{};  ///< choices that the menu shows while the view is on
 };
 
-/// Something that a person can tell the solver to do: the command SOLVER.NAME.
+/// A solver command, available as SOLVER.NAME.
 struct CommandInfo {
   std::string name;   ///< "step"
   std::string label;  ///< in panel and menu: "Next stage"
   std::string help;   ///< one sentence
   char shortcut = 0;
-  /// A script goes on when preparation waits or is complete, with all in force that was commanded.
+  /// A script continues when preparation waits or is complete and all commands have taken effect.
   bool until_still = false;
 };
 
-/// Files that keep its work: the commands SOLVER.save and SOLVER.load.
+/// File format of the prepared data: commands SOLVER.save and SOLVER.load.
 struct FileInfo {
   std::string extension;  ///< ".cache"
   std::string content;    ///< for messages: "the photons of the map"
-  std::string fits;       ///< behind "a file": "of the same scene; what this view is missing is added"
+  std::string fits;       ///< completes "a file ...": "of the same scene; what this view is missing is added"
 };
 
-/// A matrix for `lucerna bench --NAME` (bench/matrix.h).
+/// Matrix of `lucerna bench --NAME` (bench/matrix.h).
 struct BenchInfo {
   std::string name, help;
   std::string matrix;  ///< JSON
 };
 
-/// A way of looking light up whose speed is worth measuring (`lucerna bench interpolation`).
+/// Settings of a lookup method that `lucerna bench interpolation` times.
 struct LookupWay {
   std::string name;
   std::map<std::string, std::string> set;  ///< settings
 };
 
 struct SolverInfo {
-  std::string name;   ///< as in settings: components.secondary = NAME; its options begin with it
-  std::string label;  ///< of its panel: "Cache"
-  std::string title;  ///< in sentences: "the photon map"
-  std::string help;   ///< one sentence
-  std::array<bool, k_components> serves{};  ///< components that it can compute
-  /// Whether its mean is the true image at every number of samples: then noise is all its error.
+  std::string name;                         ///< value of components.secondary = NAME; prefix of its options
+  std::string label;                        ///< panel title: "Cache"
+  std::string title;                        ///< used in sentences: "the photon map"
+  std::string help;                         ///< one sentence
+  std::array<bool, k_components> serves{};  ///< components it can compute
+  /// True if the mean image is correct at every sample count: the error is noise only.
   bool unbiased = false;
-  /// Whether its light is looked up at a diffuse vertex (paths::lookup_routes), not traced on from there.
+  /// True if its light is looked up at a diffuse vertex (paths::lookup_routes) instead of traced further.
   bool looked_up = false;
-  /// Whether it brings no more of a component than what the camera sees straight, without mirrors and glass
-  /// between: the rest is path traced, or looked up by another solver (components.X = NAME+OTHER).
+  /// True if it computes only directly visible light, without mirrors or glass between surface and camera.
+  /// Another solver or path tracing computes the rest (components.X = NAME+OTHER).
   bool directly_visible_only = false;
-  /// Whether it finds light of points and directions behind what refracts or mirrors it, which paths from the
-  /// eye cannot aim at.
+  /// True if it finds light of points and directions behind specular surfaces, which eye paths cannot sample.
   bool finds_points = false;
-  /// Whether rays that another solver traces to prepare its own light may end in lookups of this one's; and
-  /// whether this one's do, where it computes secondary light and the other one tertiary light.
+  /// Lookup ports. A provider's lookups may end rays that a consumer traces during preparation, if the
+  /// consumer computes secondary light and the provider tertiary light.
   bool provides_lookups = false, consumes_lookups = false;
-  /// Whether its light comes by groups of lights where films keep them in short
-  /// (film::GroupStorage::compact).
+  /// True if it separates light groups in films with compact groups (film::GroupStorage::compact).
   bool by_groups = false;
   std::vector<OptionInfo> options{};
   std::vector<ChangeRow> changes{};
@@ -112,21 +109,22 @@ struct SolverInfo {
   std::vector<CommandInfo> commands{};
   std::optional<FileInfo> file{};
   std::vector<BenchInfo> benches{};
-  /// Settings by which its work gets less noise, and less bias, that samples do not take away: for advice.
+  /// Settings that reduce noise or bias of the prepared data, which more samples do not; shown as advice.
   std::vector<std::string> against_noise{}, against_bias{};
-  /// Settings (JSON objects as in a matrix) that `lucerna bench --full` measures besides its own.
+  /// Further settings (JSON objects as in a matrix) that `lucerna bench --full` measures.
   std::vector<std::string> bench_settings{};
   std::vector<LookupWay> lookup_ways{};
 
   bool has_panel() const { return !options.empty() || !views.empty() || !commands.empty(); }
 };
 
-/// Null when there is no such command.
+/// The command of that name; null if there is none.
 const CommandInfo* find_command(const SolverInfo& solver, std::string_view name);
-/// By the solver's own rows: of an edit, k_invalidates_all where there is no row.
+/// What an edit invalidates, by the solver's change table; k_invalidates_all without a matching row.
 Invalidation invalidated_by(const SolverInfo& solver, scene::Change edit);
-/// Of a setting that is the solver's own or nobody's: k_invalidates_all where no row fits. Settings of
-/// another solver spoil nothing; the registry knows whose they are (registry.h).
+/// What a setting invalidates. For settings of this solver or of no solver; k_invalidates_all without a
+/// matching row.
+/// Settings of other solvers invalidate nothing: see invalidated_by_setting() (registry.h).
 Invalidation invalidated_by(const SolverInfo& solver, std::string_view key);
 
 }  // namespace lucerna::solvers

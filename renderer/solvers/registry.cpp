@@ -15,7 +15,7 @@ const SolverType k_path_tracing{.info = path_tracing::info()};
 struct Registry {
   std::vector<const SolverType*> types{&k_path_tracing, &irradiance_cache::type(), &photons::type(),
                                        &light_tracing::type()};
-  std::vector<const SolverInfo*> infos;  ///< empty until somebody has asked for them
+  std::vector<const SolverInfo*> infos;  ///< filled by the first registered()
 };
 
 Registry& registry() {

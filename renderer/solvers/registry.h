@@ -1,6 +1,5 @@
 #pragma once
-// All ways of computing light. Settings, help, window, scripts and benches take what they know of a solver
-// from here; a new one is a folder beside this file and a line in registry.cpp.
+// The list of all solvers. To add one, add a folder here and a line to registry.cpp.
 #include <string_view>
 #include <vector>
 
@@ -10,22 +9,22 @@ namespace lucerna::solvers {
 
 struct SolverType;  // solver.h
 
-/// The default of every component first.
+/// All solvers; the default of every component comes first.
 const std::vector<const SolverInfo*>& registered();
-/// One more, which must live as long as the program. Only before anything has asked for the list (throws
-/// std::logic_error): programs that bring solvers of their own call it first.
+/// Registers a solver, which must live as long as the program. Throws std::logic_error after the first call
+/// of registered(): call it at program start.
 void add(const SolverType& solver);
-/// How one is made that is registered.
+/// The type of a registered solver.
 const SolverType& type_of(const SolverInfo& solver);
-/// Null when there is none of that name.
+/// The solver of that name; null if there is none.
 const SolverInfo* find(std::string_view name);
-/// Whether a component's choice names that solver, alone or joined to another by '+'.
+/// True if a component's choice contains the solver, alone or joined to another by '+'.
 bool chooses(std::string_view choice, std::string_view solver);
-/// Whose option that is; null: nobody's alone.
+/// The solver that owns an option; null if it belongs to no single solver.
 const SolverInfo* owner_of(std::string_view key);
-/// What a setting that changes spoils of a solver's work. Another solver's settings spoil nothing.
+/// What a changed setting invalidates in a solver. Settings of other solvers invalidate nothing.
 Invalidation invalidated_by_setting(const SolverInfo& solver, std::string_view key);
-/// Of several changes at once.
+/// Union over several changes.
 Invalidation invalidated_by(const SolverInfo& solver, const scene::Changes& changes);
 
 }  // namespace lucerna::solvers

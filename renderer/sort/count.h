@@ -1,5 +1,5 @@
 #pragma once
-// What prefix sums and sorts are told about the length of an array.
+// Length of an array for prefix sums and sorts.
 #include <algorithm>
 #include <cstdint>
 

@@ -76,7 +76,7 @@ const gpu::Buffer& RadixSort::encode(gpu::Stream& stream, const gpu::Buffer& ent
       throw_error("buffer '" + b->name() + "'", "a sort of {} entries does not fit into its {} bytes",
                   count.most, b->bytes());
   if (bits > (keys_ == Keys::bits64 ? 64 : 32))
-    throw_error("sort", "keys of {} bits, and {} are asked for", keys_ == Keys::bits64 ? 64 : 32, bits);
+    throw_error("sort", "keys have {} bits, but {} are requested", keys_ == Keys::bits64 ? 64 : 32, bits);
   if (count.most > tuning_.runs.reach())
     throw_error("sort", "{} entries; it reaches {}", count.most, tuning_.runs.reach());
   const gpu::Buffer *from = &entries, *to = &scratch;

@@ -8,11 +8,11 @@ namespace lucerna::sort {
 
 enum class Keys { bits32, bits64 };  ///< of shared::SortPair, of shared::SortEntry64
 
-/// Sorts (key, value) by key; entries of equal keys keep their order. Least significant digit first, as many
-/// passes as the significant bits of the key need: at 1 M pairs on lavapipe one for every 11 bits.
+/// Sorts (key, value) by key; equal keys keep their order. Least significant digit first; the number of
+/// passes depends on the significant bits of the key: at 1 M pairs on lavapipe one for every 11 bits.
 ///
-/// A pass: every invocation counts the digits of its own run of entries; the prefix sum of the counts, digit
-/// by digit, is where each run's entries go; every invocation takes its entries there in their order. No
+/// A pass: every invocation counts the digits of its run of entries; the prefix sum of the counts, digit by
+/// digit, is the destination of each run's entries; every invocation then moves its entries in order. No
 /// barriers, no atomics.
 class RadixSort {
  public:

@@ -8,8 +8,8 @@ namespace lucerna::stats {
 
 namespace {
 
-constexpr double k_window = 16;     // factor of work that a law is told from
-constexpr double k_first_line = 4;  // samples a pixel: of fewer the sequence is not yet well spread
+constexpr double k_window = 16;     // factor of work over which a law is fitted
+constexpr double k_first_line = 4;  // samples a pixel; with fewer the sequence is not well distributed yet
 constexpr uint32_t k_shares = 20;   // places at which f is looked at
 constexpr double k_exponents[] = {0.25, 0.5, 0.75, 1};  // q
 /// Over 2 / degrees: the relative variance of a sum of squares, for tails heavier than have been met.
@@ -218,8 +218,8 @@ constexpr double k_history_spread = 0.07;  // of the mean of log(error / expecte
 constexpr double k_surprise = 0.01, k_surprise_spread = 1.5;
 constexpr double k_law_spread = 0.05, k_growth_spread = 0.15;  // of log(paths)
 
-/// 1/error^k over saturation. Beyond it a measured error tells little; at least a quarter of what it says
-/// without.
+/// 1/error^k over saturation. Beyond saturation a measured error contains little information; at least a
+/// quarter of the value without it.
 double quality(double error, double k) {
   const double q = std::pow(error, -k);
   return std::max(q - std::pow(k_saturated_error, -k), 0.25 * q);
@@ -241,13 +241,13 @@ double samples_to(const TileProgress& tile, double target, double k) {
 std::optional<Band> total_paths(std::span<const TileProgress> tiles, uint32_t across, double target,
                                 double min_samples, double max_samples) {
   const int width = static_cast<int>(across), height = across ? static_cast<int>(tiles.size() / across) : 0;
-  double closed = 0, now = 0;  // paths of the tiles that are done, and so far of those that are not
+  double closed = 0, now = 0;  // paths of the finished tiles, and so far of the others
   for (const TileProgress& t : tiles) {
     if (t.open && t.samples < Outlook::k_least_samples) return std::nullopt;
     (t.open ? now : closed) += t.samples * t.pixels;
   }
   if (now <= 0) return Band{closed, closed, closed};
-  std::vector<double> beside(tiles.size());  // samples that bring each under twice the target
+  std::vector<double> beside(tiles.size());  // samples at which each has twice the target
   const auto open_paths = [&](double k) {
     const auto goal = [&](const TileProgress& t) { return t.goal > 0 ? t.goal : target; };
     for (size_t t = 0; t < tiles.size(); ++t) beside[t] = samples_to(tiles[t], 2 * goal(tiles[t]), k);

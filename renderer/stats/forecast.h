@@ -1,6 +1,6 @@
 #pragma once
-// What a smaller error will cost, from the errors measured so far. Always a band: the law is extrapolated,
-// and what it rests on is noisy itself.
+// Forecast of the cost of a smaller error, from the errors measured so far. Always a band: the law is
+// extrapolated from noisy data.
 #include <optional>
 #include <span>
 #include <vector>
@@ -9,31 +9,30 @@
 
 namespace lucerna::stats {
 
-/// How the error of uniform sampling goes on, told from the ledger's lines.
+/// Predicts the error of uniform sampling from the ledger's entries.
 ///
-/// Variance falls as 1 / N where samples are as good as independent, and faster where a well-spread sequence
-/// meets something smooth, or edges of d dimensions, as N^(-1 - 1/d) (He and Wang 2015). A picture has both,
-/// so that with N samples a pixel
+/// Variance falls as 1 / N for independent samples, and faster where a well-distributed sequence meets
+/// something smooth, or edges of d dimensions, as N^(-1 - 1/d) (He and Wang 2015). A picture has both, so
+/// with N samples a pixel
 ///   error^2 = a / N + b / N^(1 + q),   a, b >= 0,  q in {1/4, 1/2, 3/4, 1}:
-/// the exponent begins between 1/2 and 1 and comes to 1/2 in the end. How much is left of the second part
-/// now, 1 - f, is what a forecast hangs on. All f in [0, 1] and the four q are taken for equally likely
-/// before, and weighted by what the lines of the last factor of 16 of work make of them. Lines share their
-/// samples: the logarithms of N error^2 at N1 < N2 are correlated with N1 / N2, a Markov chain in log N.
+/// the exponent starts between 1/2 and 1 and ends at 1/2. The forecast depends on the remaining share of the
+/// second part, 1 - f. All f in [0, 1] and the four q are equally likely a priori, and weighted by the
+/// entries of the last factor of 16 of work. Entries share their samples: the logarithms of N error^2 at N1 <
+/// N2 are correlated with N1 / N2, a Markov chain in log N.
 ///
-/// A line's own noise is that of a sum of squares with Entry::degrees degrees of freedom, so that few bright
-/// pixels widen the band; the degrees are themselves told from those pixels, and too kind by about half where
-/// tails are heavy. In three renders each of seven interiors (2048 samples a pixel) the band of 90 % held the
-/// truth in 94 to 99 of 100 cases, whether it was told at 16 or at 1000 samples, for targets near and far
-/// (measured on errors of the mean). Errors as seen are bounded pixel by pixel: where most of the light is
-/// not met yet they fall more slowly at first than any of these laws. It cannot speak for light that no
-/// sample has met.
+/// The noise of an entry is that of a sum of squares with Entry::degrees degrees of freedom, so a few bright
+/// pixels widen the band; the degrees are estimated from the same pixels, and too large by about half with
+/// heavy tails. In three renders each of seven interiors (2048 samples a pixel) the 90 % band contained the
+/// true value in 94 to 99 of 100 cases, for forecasts at 16 to 1000 samples and for near and far targets
+/// (errors of the mean). Errors as seen are bounded pixel by pixel: while most of the light is not sampled
+/// yet, they fall more slowly than any of these laws. Light that no sample has met cannot be predicted.
 class Outlook {
  public:
-  /// Lines from this many samples a pixel on, and at least three, tell something; before they do not.
+  /// Entries from this many samples a pixel on, and at least three, are used.
   static constexpr double k_least_samples = 16;
 
   explicit Outlook(const Ledger& ledger);
-  /// Whether there is enough to tell anything by; the rest is only for then.
+  /// True if there is enough data; the other functions require it.
   bool known() const { return !laws_.empty(); }
   /// Samples a pixel, over those of the last line (>= 1), with which the error is under `target` (> 0) with
   /// the probability `wanted`, 0 < p < 1.
@@ -62,18 +61,17 @@ class Outlook {
 double paths_target(const Ledger& ledger, double target);
 
 /// Wall seconds (Entry::wall_s) from the image's start until the sum's error is `target` in uniform sampling:
-/// the band holds the truth in 90 of 100 cases, as Outlook says; each further sample takes what those of the
-/// last half of the work have taken, give or take spread_of_pace(). Nothing before Outlook is known(), nor
-/// where paths_target() is 0. What is reached already is told as the second in which it was, between two
-/// lines.
+/// a 90 % band, see Outlook. Further samples take as long as those of the last half of the work, within
+/// spread_of_pace(). nullopt unless Outlook is known(), and if paths_target() is 0. A target already reached
+/// returns the time at which it was, interpolated between two entries.
 std::optional<Band> seconds_to(const Ledger& ledger, double target);
 
-/// The sum's error (Entry::sum) with so many samples a pixel, by the records of the last line; the band holds
-/// it in 90 of 100 cases. Nothing before Outlook is known().
+/// Error of the sum (Entry::sum) with that many samples a pixel, with the records of the last entry; a 90 %
+/// band. nullopt unless Outlook is known().
 std::optional<Band> error_at(const Ledger& ledger, double samples);
 
-/// Seconds left of work whose whole amount is an estimate that changes while the work goes on. What is said
-/// does not jump with it: totals are averaged over the newer half of the work, each unit of work alike.
+/// Remaining seconds of work whose total is an estimate that changes. The result does not jump with it:
+/// totals are averaged over the newer half of the work, each unit with equal weight.
 class WorkPace {
  public:
   static constexpr double k_least_seconds = 3, k_least_share = 0.1;
@@ -118,20 +116,19 @@ inline constexpr double k_saturated_error = 0.63;
 /// s the noise of one sample; k says how soon: about 2 where all pixels of a tile are alike, 1 and less where
 /// light comes in amounts of all sizes, so that pixels leave saturation one after another.
 double samples_to(const TileProgress& tile, double target, double k);
-inline constexpr double k_usual_k = 1.2;  ///< where nothing is known of the picture
+inline constexpr double k_usual_k = 1.2;  ///< without data of the picture
 
-/// Paths of the whole adaptive render: those there are, and for every open tile those that bring its error
-/// under the target and its neighbours' (`across` tiles in a row) under twice the target, within the minimum
-/// and maximum; the band holds the truth in 90 of 100 cases. Nothing while an open tile has fewer than
-/// Outlook::k_least_samples.
+/// Paths of the whole adaptive render: those so far, and for every open tile those that bring its error under
+/// the target and its neighbours' (`across` tiles in a row) under twice the target, within the minimum and
+/// maximum; a 90 % band. nullopt while an open tile has fewer than Outlook::k_least_samples.
 ///
-/// How fast tiles leave saturation is the picture's: log k is taken to be normal about log(1.2) with 0.5
-/// before, and weighted by how well the law takes the tiles' earlier errors to the present ones in the mean
-/// of the logarithms (deviation 0.07; once in a hundred times errors follow no law, because light is met that
-/// no sample had met before, and then history says next to nothing). What a law says is itself off by 5 % and
-/// 15 % of the logarithm of the growth. Of the bands told while seven interiors were rendered to 20 and to 10
-/// %, 128 of 134 held the truth (with 16 samples a pixel on average 26 of 28). They do not foresee light that
-/// no sample has met yet.
+/// The exponent k at which tiles leave saturation depends on the picture: log k is normal about log(1.2) with
+/// deviation 0.5 a priori, and weighted by how well the law predicts the tiles' present errors from earlier
+/// ones in the mean of the logarithms (deviation 0.07; with a probability of 1 % errors follow no law,
+/// because new light is met, and history has little weight). The law itself is uncertain by 5 % and 15 % of
+/// the logarithm of the growth. While seven interiors were rendered to 20 and to 10 %, 128 of 134 bands
+/// contained the true value (with 16 samples a pixel on average 26 of 28). Light that no sample has met
+/// cannot be predicted.
 std::optional<Band> total_paths(std::span<const TileProgress> tiles, uint32_t across, double target,
                                 double min_samples, double max_samples);
 

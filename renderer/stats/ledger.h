@@ -20,17 +20,17 @@ struct Band {
 };
 
 struct Entry {
-  /// The person's clock: wall time from the image's first work on, pauses left out. Showing pictures,
-  /// estimating errors and holding the picture against a reference are in it. Forecasts are in this time.
+  /// Wall time from the image's first work on, without pauses. Includes display, error estimates and
+  /// comparison with a reference. Forecasts use this time.
   double wall_s = 0;
-  double render_s = 0;  ///< of that, spent tracing: what the same picture takes when nobody looks
-  /// Of wall_s and of the rays, what went into what paths look up, before the first sample.
+  double render_s = 0;  ///< of that, spent tracing: the time of the same picture without display
+  /// Part of wall_s and of the rays spent on lookup data before the first sample.
   double prepared_s = 0;
   uint64_t prepared_rays = 0;
   double device_s = 0;  ///< sum of the stages, on the device and on the host
   uint64_t paths = 0, rays = 0;
   double samples = 0;  ///< a pixel, on average
-  /// Whether every pixel has samples in both halves of the film; otherwise errors are not known, and 0.
+  /// True if every pixel has samples in both halves of the film; otherwise errors are unknown, and 0.
   bool has_error = false;
   /// Noise of the paths, estimated, as it is seen (film::ImageError::seen).
   std::array<double, k_layers> error{};
@@ -39,7 +39,7 @@ struct Entry {
   /// lookups are off by in the mean (film/error.h). Samples do not take it away, or, where it is the blur of
   /// photons, slowly as their discs shrink.
   double records = 0, interpolation = 0;
-  /// Error of the sum by all three: what is told of the picture.
+  /// Estimated error of the sum, from all three.
   double sum() const { return error_sum(error[0], records, interpolation); }
   /// What more samples do not go below, as things are.
   double floor() const { return records + interpolation; }
@@ -62,9 +62,9 @@ struct Entry {
 
 class Ledger {
  public:
-  /// Whether a line is due, of a picture of so many pixels: the first with two samples a pixel (from fewer no
-  /// error can be told), then each time there are half as many more, and from 32 samples on a quarter more: a
-  /// line costs a pass over the film, which short renders would feel.
+  /// True if it is time for an entry, for a picture of that many pixels: the first with two samples a pixel
+  /// (with fewer there is no estimate), then after half as many more, and from 32 samples on after a quarter
+  /// more: an entry costs a pass over the film, which matters in short renders.
   bool due(uint64_t paths, uint64_t pixels) const {
     if (paths < 2 * pixels) return false;
     const uint64_t last = entries_.empty() ? 0 : entries_.back().paths;
@@ -73,10 +73,10 @@ class Ledger {
   void add(const Entry& entry);
   void clear() { entries_.clear(), ++changes_; }
   const std::vector<Entry>& entries() const { return entries_; }
-  /// How often lines have come or gone: another number tells that there is something new.
+  /// Number of times entries were added or removed.
   uint64_t changes() const { return changes_; }
 
-  /// A table with a heading, a line an entry; empty fields for what is not known.
+  /// A table with a heading and a line per entry; unknown values are empty.
   std::string csv() const;
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// Which share of the light paths is aimed at which pair of lights and caster (light_source.h), from what a
-// pilot tells.
+// Shares of light paths aimed at each pair of lights and caster (light_source.h), from a pilot's
+// contributions.
 #include <span>
 #include <vector>
 
@@ -8,32 +8,32 @@
 
 namespace lucerna::transport {
 
-/// Shares of strata from what the pilot's paths of each have brought to the picture; 0 is that which is not
-/// aimed. By the root of it, so that what is dim where nothing else is has paths too, and with a floor: a
-/// tenth of what is aimed is for all pairs alike, and three more for those that have brought anything.
-/// `least_unaimed`: share that paths that are not aimed keep at least. Sums to 1.
+/// Shares of strata from the contributions of the pilot's paths; stratum 0 is unaimed. Proportional to their
+/// square root, so that dim regions get paths too, with a floor: a tenth of the aimed paths is spread over
+/// all pairs, and three more tenths over those with a contribution. `least_unaimed`: minimum unaimed share.
+/// The sum is 1.
 std::vector<double> aim_shares(std::span<const double> contribution, double least_unaimed);
-/// ... where aimed paths bring all that is wanted, and what they miss are chance paths to the same places;
+/// ... if aimed paths find all wanted light, and unaimed ones add chance paths to the same places;
 inline constexpr double k_least_unaimed_of_caustics = 1.0 / 7;
-/// ... where others bring all light but caustics;
+/// ... if unaimed paths find all light but caustics;
 inline constexpr double k_least_unaimed_of_all = 0.5;
-/// ... and where boxes are where light from afar gets in: what comes in over walls and ground outside is
-/// brought by them alone, in few paths, each of which brings more the fewer of them are sent.
+/// ... and if boxes are entrances of distant light: only unaimed paths find light that enters over walls and
+/// ground outside, and each of them contributes more the fewer there are.
 inline constexpr double k_least_unaimed_from_afar = 0.6;
 
-/// By what lights are chosen where paths are not aimed, an entry each: within a group by power, among groups
-/// for a pilot half by power and half evenly (`worth` empty), and then by the root of what each light has
-/// brought to the picture (`worth`, by entry), with a fifth by power, a tenth for all groups alike and
-/// another fifth for those that have brought anything. So a lamp in a house has paths beside the sun, which
-/// lights all that is outside.
+/// Probabilities of lights for unaimed paths, one per entry. Within a group by power. Among groups: for a
+/// pilot (`contribution` empty) half by power and half uniform; then by the square root of each group's
+/// contribution to the picture (`contribution`, by entry), with a fifth by power, a tenth uniform and another
+/// fifth uniform over groups with a contribution. Thus a lamp in a house gets paths beside the sun, which
+/// lights everything outside.
 std::vector<double> light_weights(std::span<const std::vector<uint32_t>> groups,
                                   std::span<const double> power, std::span<const double> contribution);
 
-/// A pilot's paths, all in a round of no sample.
+/// Paths of a pilot, all in one round that belongs to no sample.
 inline constexpr uint32_t k_pilot_paths = 1u << 14, k_pilot_paths_a_stratum = 8;
 inline constexpr uint32_t k_pilot_round = 0xffffffffu;
 
-/// Whether pilots of two frames find the same: they see the same from the same place, by the same seed.
+/// True if pilots of two frames give the same result: equal view and seed.
 bool same_view(const shared::Frame& a, const shared::Frame& b);
 
 }  // namespace lucerna::transport

@@ -108,7 +108,7 @@ std::vector<bool> casting_materials(const upload::FlatMaterials& flat) {
     const vec4 &surface = m[at + k_material_surface], &specular = m[at + k_material_specular];
     const uint32_t flags = std::bit_cast<uint32_t>(m[at + k_material_emission].w);
     const bool smooth = surface.y <= k_most_roughness || textured(m, at, k_use_metallic_roughness);
-    // A thin wall that is smooth lets light through as it was; what it mirrors is as little as of varnish.
+    // A thin smooth wall transmits light undeflected; its reflection is as weak as that of varnish.
     const bool glass = specular.w >= k_least_transmission && (flags & k_flag_solid) != 0;
     casts[i] = smooth && (flags & k_flag_unlit) == 0 && (surface.x >= k_least_metal || glass);
   }

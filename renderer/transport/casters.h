@@ -1,6 +1,6 @@
 #pragma once
-// What bundles light in a scene: surfaces that mirror or refract smoothly, in clusters, each with its box.
-// Light paths are aimed at these (light_source.h).
+// Casters of a scene, surfaces that focus light by smooth reflection or refraction: clusters with boxes, at
+// which light paths are aimed (light_source.h).
 #include <span>
 #include <vector>
 
@@ -9,20 +9,20 @@
 
 namespace lucerna::transport {
 
-/// Clusters of things in space: at most `most`, fewer where parting them would not make their boxes smaller
-/// together. Returns the cluster of each, 0 ... n - 1. Splits the cluster first of which that takes most
-/// surface of boxes away (binned as in a tree of least surface; I. Wald 2007).
+/// Clusters of items in space: at most `most`, fewer if splitting would not reduce the surface of their
+/// boxes. Returns the cluster of each item, 0 ... n - 1. Splits first the cluster with the largest reduction
+/// of surface (binned surface area heuristic; I. Wald 2007).
 std::vector<uint32_t> cluster(std::span<const Box> things, uint32_t most);
 
-/// A box around the things of each such cluster.
+/// Bounding boxes of such clusters.
 std::vector<Box> cluster_boxes(std::span<const Box> things, uint32_t most);
 
-/// Whether a material's smooth lobes can bundle light: a metal, or glass, rougher at most than 0.5.
-/// Varnish, which mirrors a twenty-fifth of what it gets, is found without being aimed at.
+/// By material: true if its smooth lobes can focus light: metal or glass with a roughness of at most 0.5.
+/// Varnish, which reflects 4 %, is found without aiming.
 std::vector<bool> casting_materials(const upload::FlatMaterials& flat);
 
-/// At most shared::k_most_casters boxes around all casters, a little wider than these so that no box is flat.
-/// None: nothing casts.
+/// At most shared::k_most_casters boxes around all casters, slightly enlarged so that none is flat. Empty
+/// without casters.
 std::vector<Box> find_casters(const upload::FlatScene& flat);
 
 }  // namespace lucerna::transport

@@ -9,14 +9,14 @@ namespace lucerna::transport {
 
 namespace {
 
-constexpr double k_part = 0.95;  ///< of the worth; who brings the rest lies far off
+constexpr double k_part = 0.95;  ///< of the contribution; the rest is far off
 /// By which boxes are wider than what has been found in them, for what lies between: of their greatest size,
 /// and of that of all places together.
 constexpr float k_wider = 0.05f, k_wider_of_all = 0.005f;
 
 /// Of the weight, within each of the nested boxes.
 constexpr std::array k_nested_parts = {0.5, 0.8, 0.95};
-/// Each further one is so many times as wide as the one before.
+/// Width of each further box over the one before.
 constexpr float k_shell = 4;
 
 float greatest(const vec3& v) { return std::max({v.x, v.y, v.z}); }

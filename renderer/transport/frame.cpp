@@ -52,14 +52,13 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
       const std::vector<uint32_t> all = paths::pack(automaton, enabled, routes, met);
       for (size_t i = 0; i < all.size(); ++i) f.automaton[at + i] = all[i] + (at | at << 8 | at << 16);
     };
-    // Whoever passes a lookup has to bring the light of the next vertex himself, of whatever component.
+    // A path that passes a lookup must compute the light of the next vertex itself, for any component.
     paths::LookupRoutes gather = options.gather, nothing;
     gather.replaced = nothing.replaced = options.routes.replaced;
     put(shared::k_gather_state, options.fallback, gather);
     put(shared::k_fallback_state, options.fallback, nothing);
     put(shared::k_known_state, options.fallback, nothing);
-    // What has been looked up behind ED is all that comes after: what is left is to meet the light that was
-    // sampled.
+    // Everything behind ED has been looked up: such a path may only meet the light that was sampled.
     constexpr uint32_t k_next = 0xffffff, k_live = 1u << 27, k_none = paths::k_component_count << 24;
     constexpr uint32_t k_dead = shared::k_dead_state | shared::k_dead_state << 8 | shared::k_dead_state << 16;
     for (size_t i = 0; i < table.size(); ++i) {

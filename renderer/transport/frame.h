@@ -1,5 +1,5 @@
 #pragma once
-// The frame's constants as the kernels read them, from scene, camera and a few numbers.
+// The frame's constants for kernels, from scene, camera and a few numbers.
 #include "paths/automaton.h"
 #include "scene/scene.h"
 #include "shaders/shared/scene.h"
@@ -13,15 +13,14 @@ struct FrameOptions {
   uint32_t max_depth = 64;      ///< scattering events after which a path ends
   uint32_t roulette_depth = 3;  ///< events before roulette may end one
   uint32_t enabled = 15;        ///< components on (bit i)
-  paths::LookupRoutes routes;   ///< what is looked up, beside those
-  /// Components of paths that a lookup has left alone (shared::k_fallback_state); 0: there are no such paths.
+  paths::LookupRoutes routes;   ///< additional lookups
+  /// Components of paths in shared::k_fallback_state; 0: there are no such paths.
   uint32_t fallback = 0;
-  /// What of these is looked up later, by paths that have passed a lookup on purpose
-  /// (shared::k_gather_state).
+  /// Components among these that gathering paths look up later (shared::k_gather_state).
   paths::LookupRoutes gather;
 };
 
-/// Paths that begin in shared::k_delegated_states go by the automaton of `other`.
+/// Paths that start in shared::k_delegated_states use the automaton of `other`.
 void set_delegated_tables(shared::Frame& frame, const shared::Frame& other);
 
 shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& camera,

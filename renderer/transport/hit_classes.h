@@ -1,8 +1,8 @@
 #pragma once
-// Which kernels shade hits: of the kinds of materials that a scene has (upload/material_kinds.h) those with
-// most hits get a kernel of their own, in which nothing else is compiled. The others go to the class that
-// lacks nothing they call for and has least besides, or to the kernel for all hits. Pure; a hit is shaded the
-// same in every class that may take it, bit for bit.
+// Choice of shading kernels. The scene's material kinds (upload/material_kinds.h) with the most hits get
+// separate kernels that compile in nothing else. Other kinds join the class that has all their features and
+// the fewest others, or use the kernel for all hits. Pure; shading is bit-identical in every class that may
+// take a hit.
 #include <array>
 #include <cstdint>
 #include <span>
@@ -14,27 +14,26 @@
 namespace lucerna::transport {
 
 struct HitClass {
-  uint32_t features = 0;  ///< upload::MaterialFeature, of all its kinds together
-  bool sky = false;       ///< paths that leave the scene, and nothing else
+  uint32_t features = 0;  ///< upload::MaterialFeature, union over its kinds
+  bool sky = false;       ///< only paths that leave the scene
   bool operator==(const HitClass&) const = default;
 };
 
 struct HitClasses {
   std::vector<HitClass> classes;  ///< at most shared::k_hit_classes - 1
-  /// By kind: 0: no class, else one more than its number.
+  /// By kind: 0: no class, else 1 + number of its class.
   std::array<uint32_t, shared::k_hit_kinds> of_kind{};
   bool operator==(const HitClasses&) const = default;
 };
 
-/// Share of the hits from which on a kind gets a class.
+/// Minimum share of hits of a kind with a class.
 inline constexpr double k_least_class_share = 0.03;
 
-/// Features that a mean hit is spared at least, lobes and textures; with less, sorting takes longer than it
-/// saves.
+/// Minimum mean number of features (lobes and textures) omitted per hit; with fewer, sorting takes longer
+/// than it saves.
 inline constexpr double k_least_left_out = 0.5;
 
-/// `features`: by kind; `hits`: of each kind, shared::k_hit_kinds of them. No classes where they would save
-/// nothing.
+/// `features`: by kind; `hits`: number by kind, shared::k_hit_kinds of them. No classes if they save nothing.
 HitClasses choose_hit_classes(std::span<const uint32_t> features, std::span<const uint64_t> hits);
 
 /// transport::ClassesPush::classes.

@@ -1,7 +1,7 @@
 #pragma once
-// Shades the hits of a wavefront class by class (transport/hit_classes.h), once enough of them have been
-// shaded that their kernels are compiled in less time than they save. Until then, and where few paths are
-// left, one kernel shades all. Both make the same picture; and what is shaded how follows from counts alone.
+// Shades the hits of a wavefront class by class (transport/hit_classes.h), once so many have been shaded that
+// compiling the kernels takes less time than they save. Before that, and for few paths, one kernel shades
+// all. The pictures are identical; the choice depends on counts alone.
 #include <future>
 
 #include "gpu/stream.h"
@@ -13,8 +13,9 @@ namespace lucerna::transport {
 /// When hits are shaded by class. Counts of hits.
 struct HitClassRules {
   bool enabled = true;
-  uint64_t count_after = 1'000'000;  ///< after so many a run's hits are counted by kind, and kernels compiled
-  uint64_t switch_after = 2'500'000;  ///< after so many these are waited for, and used
+  uint64_t count_after =
+      1'000'000;  ///< number of hits after which they are counted by kind, and kernels are compiled
+  uint64_t switch_after = 2'500'000;  ///< number of hits after which these kernels are waited for and used
   uint32_t least_hits = 16384;        ///< of paths in flight; fewer are shaded by the kernel for all
   uint32_t least_of_class = 1024;     ///< fewer of a class at a time likewise
   /// From the second run on, where there are more than a few.
@@ -31,20 +32,20 @@ class HitShading {
 
   /// Other kinds begin from scratch.
   void set_features(const Features& features);
-  /// Takes what is bound for the kernel for all hits; by parity of the queue.
+  /// Sets the resources of the kernel for all hits; by parity of the queue.
   void bind(size_t parity, const gpu::Resources& resources);
 
   /// Before the first hits of a run are shaded: makes the kernels ready once it is time.
   void begin_run(gpu::Stream& stream);
-  /// Whether `hits` of a run's hits, at one time, are to be shaded by class.
+  /// True if that many hits at once are shaded by class.
   bool shades(uint32_t hits) const { return ready_ && hits >= rules_.least_hits; }
   /// Records what counts hits by kind, if it is time. `counters`: cleared at the beginning of the run.
   void count(gpu::Stream& stream, size_t parity, uint32_t hits, bool use_queue);
   /// After a run that shaded `hits`, of which `counters` are.
   void end_run(uint64_t hits, const uint32_t* counters);
 
-  /// Records what puts hits into their classes' parts of the queue; `counters` tell their sizes once it has
-  /// run.
+  /// Records the sorting of hits into their classes' parts of the queue; `counters` contain the sizes
+  /// afterwards.
   void sort(gpu::Stream& stream, size_t parity, uint32_t hits, bool use_queue, const gpu::Buffer& counters);
   /// Records what shades them. `all`: the kernel for all hits.
   void shade(gpu::Stream& stream, size_t parity, const gpu::Kernel& all, const uint32_t* counters);

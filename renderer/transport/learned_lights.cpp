@@ -21,9 +21,9 @@ namespace {
 constexpr double k_defensive = 0.11, k_even = 0.04;
 /// The latter before anything is learned: where a strong light is hidden, a weak one is chosen now and then.
 constexpr double k_even_at_first = 0.1;
-/// Samples that what is known of the cells around counts for, in each cluster.
+/// Weight of the surrounding cells' moments, in samples, for each cluster.
 constexpr double k_prior_samples = 6;
-/// Samples of a cell that is cut at least; a fifth of what it takes gives a cell its own row.
+/// Minimum samples of a cell to split it; a fifth of that gives a cell its own row.
 constexpr size_t k_cut = 256;
 /// Light samples of which the share that has arrived is a figure.
 constexpr size_t k_known_rays = 16;
@@ -56,7 +56,7 @@ struct Sample {
   double value, rate;
 };
 
-/// What is known of a cell's clusters: second moments of their contributions.
+/// Second moments of the contributions of a cell's clusters.
 using Moments = std::vector<double>;
 
 class Learner {
@@ -76,7 +76,7 @@ class Learner {
       if (r.met > 0 && r.before > 0)
         samples_.push_back({key, true, false, false, r.met - 1, double(r.met_value) / r.before, r.met_rate});
     }
-    // By all that they are, so that sums do not hang on the order in which they came.
+    // By all fields, so that sums do not depend on the order of arrival.
     std::sort(samples_.begin(), samples_.end(), [](const Sample& a, const Sample& b) {
       return std::tie(a.key, a.scattered, a.cluster, a.value, a.rate) <
              std::tie(b.key, b.scattered, b.cluster, b.value, b.rate);
@@ -226,7 +226,7 @@ class Learner {
     to_.arrived[row] = count >= k_known_rays ? float(arrived) / float(count) : around;
   }
 
-  /// A cell of a level with what is known of the one around it, and its row.
+  /// A cell of a level, with the moments and the row of its parent.
   void visit(Range range, uint32_t key, uint32_t level, uvec3 corner, const Moments& around, uint32_t row) {
     Moments own = around;
     bool judged = false;
@@ -250,7 +250,7 @@ class Learner {
     }
   }
 
-  /// Whoever asks in this cell is served by the row from now on.
+  /// Lookups in this cell read the row from now on.
   void fill(uint32_t level, uvec3 corner, uint32_t key, uint32_t row) {
     const uint32_t facing = key >> 3 * level;
     const auto top_index = [&](uvec3 t) {

@@ -1,5 +1,6 @@
 #pragma once
-// What light samples teach about choosing lights (shaders/shared/learned_lights.h): pure host code.
+// Learned probabilities of lights from recorded light samples (shaders/shared/learned_lights.h): pure host
+// code.
 #include <span>
 #include <vector>
 
@@ -8,37 +9,36 @@
 
 namespace lucerna::transport {
 
-/// Where the cells of space lie: a cube of shared::k_learned_cells along an axis. What lies outside is served
-/// by the cells at its border.
+/// Grid of the cells of space: a cube of shared::k_learned_cells along an axis. Points outside use the cells
+/// at its border.
 struct LearnedCells {
   vec3 origin{0};
-  float scale = 0;  ///< cells a metre; 0: there is one cell
+  float scale = 0;  ///< cells a metre; 0: a single cell
 };
-/// Around most of the places where lights were sampled.
+/// Grid around most of the positions of light samples.
 LearnedCells learned_cells(std::span<const shared::LightRecord> records);
 
-/// Rows of probabilities of clusters, and which serves where.
+/// Rows of probabilities of clusters, and the row of each cell.
 struct LearnedLights {
   LearnedCells cells;
   std::vector<uint32_t> grid;  ///< learned_grid
   std::vector<vec4> rows;      ///< learned_rows
   uint32_t row_count = 0;
-  /// By row: share of the light samples of the last generation there whose shadow rays have arrived; < 0: not
-  /// known.
+  /// By row: share of unblocked shadow rays among the light samples of the last generation; < 0: unknown.
   std::vector<float> arrived;
-  /// Variance of a light sample with the probabilities without learning over that with these, both relative
-  /// to the square of what arrives: estimated from the same samples. 1 where nothing was recorded.
+  /// Variance of a light sample without learning over that with these probabilities, both relative to the
+  /// squared arriving light and estimated from the same samples. 1 without records.
   double gain = 1;
 };
 
-/// Nearly as without learning, everywhere: a tenth is even over clusters.
+/// Probabilities of an unlearned start: nearly as without learning, with a tenth uniform over clusters.
 LearnedLights plain_lights(const upload::LightClusters& clusters);
-/// For what is recorded first: half as without learning, half evenly over clusters, so that lights of little
-/// power are found that are all that a place sees.
+/// For the first generation: half as without learning, half uniform over clusters, so that weak lights are
+/// found where they are the only ones visible.
 LearnedLights exploring_lights(const upload::LightClusters& clusters);
-/// From recorded samples. Cells are as small as what was recorded there allows; where little was, they begin
-/// with what the cells around them have found, all of space with the probabilities without learning. The
-/// order of records does not matter. `last`: records of the last generation, which are the last of them.
+/// Learns from recorded samples. Cells are as small as the number of records allows; the prior of cells with
+/// few records is that of the cells around them, and of all space the probabilities without learning. The
+/// order of records does not matter. `last`: number of records of the last generation, at the end.
 LearnedLights learn_lights(const upload::LightClusters& clusters, const LearnedCells& cells,
                            std::span<const shared::LightRecord> records, size_t last = 0);
 

@@ -1,6 +1,6 @@
 #pragma once
-// Rounds of paths from lights, in batches of as many as the wavefront has slots: begins them, and traces them
-// through a kernel of the caller's at their vertices. For photons and for light tracing.
+// Rounds of light paths, in batches of at most the wavefront's slots: starts them and traces them with the
+// caller's kernel at their vertices. For photons and light tracing.
 #include <functional>
 #include <string>
 
@@ -10,15 +10,15 @@
 
 namespace lucerna::transport {
 
-/// Of a round, what these kernels are told.
+/// Parameters of a round for these kernels.
 struct LightRound {
-  uint32_t number = 0;   ///< its random numbers are those of this number and the frame's seed
+  uint32_t number = 0;   ///< its random numbers are determined by this number and the frame's seed
   uint32_t paths = 0;    ///< at most shared::k_most_light_paths
-  uint32_t parts = 0;    ///< of light that is wanted (bits, paths::k_part_count)
-  uint32_t account = 0;  ///< component that their time is accounted to
+  uint32_t parts = 0;    ///< computed parts of light (bits, paths::k_part_count)
+  uint32_t account = 0;  ///< component to which their time is accounted
 };
 
-/// What is done at vertices (PathEnds::vertex), and with what shadow rays bring (PathEnds::arrival).
+/// Kernels for vertices (PathEnds::vertex) and for light of shadow rays (PathEnds::arrival).
 struct LightVertexWork {
   const gpu::Kernel* vertex = nullptr;
   std::string stage;
@@ -28,20 +28,20 @@ struct LightVertexWork {
 
 class LightEmitter {
  public:
-  /// `scene_defines`: of the kernels that know the scene. Throws Error: a kernel does not compile (located).
+  /// `scene_defines`: those of kernels that use the scene. Throws Error, located: a kernel does not compile.
   LightEmitter(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& scene_defines,
                const paths::Automaton& automaton);
 
-  /// Paths first ... first + count - 1 of the round, one a slot. The wavefront's frame is then `picture`, of
-  /// `enabled` components, again. False when it was cancelled.
+  /// Traces paths first ... first + count - 1 of the round, one a slot. Afterwards the wavefront's frame is
+  /// `picture` with `enabled` components again. False if cancelled.
   bool trace(Wavefront& wavefront, const LightSource& lights, const LightRound& round, uint32_t first,
              uint32_t count, const LightVertexWork& work, const shared::Frame& picture, uint32_t enabled,
              const std::function<bool()>& cancel);
-  /// Of the last batch.
-  uint32_t dark() const { return dark_; }        ///< paths that began where their light has no light
+  /// Counts of the last batch.
+  uint32_t dark() const { return dark_; }        ///< paths that started where their light does not emit
   uint32_t escaped() const { return escaped_; }  ///< paths that left the scene
 
-  /// Of strata over the paths of a round (shaders/lib/emission.glsl).
+  /// Step of strata over the paths of a round (shaders/lib/emission.glsl).
   static uint32_t stratum_step(uint32_t paths) { return uint32_t((uint64_t{1} << 32) / paths); }
 
  private:

@@ -1,6 +1,6 @@
 #pragma once
-// Direct light that learns, on the device: what kernels choose lights by (shaders/shared/learned_lights.h),
-// and the recorded light samples that it is learned from.
+// Learned light selection on the device: the kernels' probabilities (shaders/shared/learned_lights.h), and
+// the recorded light samples from which they are learned.
 #include <vector>
 
 #include "gpu/kernel.h"
@@ -10,48 +10,48 @@ namespace lucerna::transport {
 
 class LightLearning {
  public:
-  /// Chooses as without learning at first. `most_paths`: that are recorded at once.
+  /// At first, selection is as without learning. `most_paths`: maximum number of paths recorded at once.
   LightLearning(gpu::Device& device, upload::LightClusters clusters, uint32_t most_paths);
 
-  /// Sets what kernels read and write that are compiled with upload::learned_defines().
+  /// Binds the buffers of kernels compiled with upload::learned_defines().
   void bind(gpu::Resources& resources) const;
-  /// Sets what they are told of it.
+  /// Sets the fields of the frame.
   void describe(shared::Frame& frame) const;
-  /// What is bound has other buffers since this number changed.
+  /// Changes with the bound buffers.
   uint32_t version() const { return version_; }
 
-  /// A generation: light samples of the paths that are traced between begin_recording() and end_recording()
-  /// are recorded, by slot, as many times as it takes. Paths of a generation choose by what all before have
-  /// found, those of the first by exploring_lights(); finish_generation() makes what the next choose by of
-  /// all samples so far. How a generation is cut does not matter.
+  /// A generation records light samples, by slot, of the paths traced between begin_recording() and
+  /// end_recording(), repeatedly. Its paths use the probabilities learned before, those of the first
+  /// generation exploring_lights(); finish_generation() learns from all samples so far. The division of a
+  /// generation does not matter.
   void begin_generation();
   void begin_recording();
   void end_recording(uint32_t paths);
   void finish_generation();
-  /// In place of that, where not all of its paths were traced: they count for nothing.
+  /// Discards the generation, if not all of its paths were traced.
   void abandon_generation();
-  /// No generation follows: the records are let go.
+  /// Frees the records; no generation may follow.
   void end();
-  /// The same of samples recorded elsewhere, as a generation.
+  /// Likewise, with samples recorded elsewhere, as a generation.
   void learn(std::vector<shared::LightRecord> records);
   uint32_t generations() const { return generations_; }
   uint32_t most_paths() const { return most_paths_; }
-  /// Begins again, for these lights, or for those that there are.
+  /// Restarts, with these lights or the present ones.
   void forget(upload::LightClusters clusters);
   void forget();
 
-  /// Without what the device alone reads.
+  /// Without data that only the device reads.
   const upload::LightClusters& clusters() const { return clusters_; }
   uint32_t rows() const { return row_count_; }
   size_t records() const { return record_count_; }
   double gain() const { return gain_; }
-  /// Share of the recorded light samples of the last generation that brought light.
+  /// Share of the last generation's recorded light samples that contributed light.
   double arrived() const { return arrived_; }
   /// Probabilities of the clusters in a row of learned_rows.
   std::vector<float> row(uint32_t row) const;
   /// LearnedLights::arrived.
   const std::vector<float>& row_arrived() const { return row_arrived_; }
-  /// That all of this takes, on the device and the host.
+  /// Memory on the device and the host.
   uint64_t bytes() const;
 
  private:
@@ -63,7 +63,7 @@ class LightLearning {
   uint32_t most_paths_;
   gpu::Buffer grid_, rows_, cluster_texels_, members_, primitives_, tiles_, facets_, records_;
   LearnedCells cells_;
-  std::vector<shared::LightRecord> samples_, fresh_;  ///< of the generations before, and of that at work
+  std::vector<shared::LightRecord> samples_, fresh_;  ///< of earlier generations, and of the current one
   std::vector<float> row_arrived_;
   size_t record_count_ = 0;
   bool recording_ = false;

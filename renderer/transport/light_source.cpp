@@ -44,7 +44,7 @@ LightGroups group_lights(const upload::FlatScene& flat, std::span<const double> 
     triangles.push_back(i), boxes.push_back(box);
   }
   if (!triangles.empty()) {
-    // Lamps first; what they leave, half of all at least, is for triangles.
+    // Lamps first; triangles get the rest, at least half.
     const auto wanted = uint32_t(std::min<size_t>(alone.size(), most / 2));
     const std::vector<uint32_t> of = cluster(boxes, std::max(1u, most - wanted));
     groups.members.resize(*std::max_element(of.begin(), of.end()) + 1);
@@ -147,7 +147,7 @@ void LightSource::share_out(std::span<const double> shares) {
   double sum = 0, before = 0;
   for (const double s : shares) sum += s;
   shares_.assign(shares.begin(), shares.end());
-  // Shares are what the intervals are, so that densities are those of what is drawn.
+  // Shares come from the rounded intervals, so that densities equal those of sampling.
   std::vector<vec4> intervals;
   constexpr double k_all = 4294967296.0;
   const auto at = [&](double share) { return uint64_t(std::lround(k_all * std::min(1.0, share / sum))); };

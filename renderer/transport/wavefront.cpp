@@ -17,7 +17,7 @@ struct Wavefront::Impl {
   HostTrace host_trace;
   uint32_t slots;
   bool transparent = false;
-  uint32_t groups = 1;          // of lights, that are kept apart
+  uint32_t groups = 1;          // separate light groups
   bool compact_groups = false;  // ... all components of one together
   bool writes_bias = false;
   uint32_t enabled = 15;
@@ -149,7 +149,7 @@ struct Wavefront::Impl {
       stats.component_ms[c] += ms * rays_by_component[c] / total;
   }
 
-  /// Runs what is recorded and shares its stages' times out: shadow stages by `shadow`, the others by
+  /// Runs the recorded commands and distributes their times: shadow stages by `shadow`, the others by
   /// `closest`.
   void run_and_account(const uint32_t* closest, const uint32_t* shadow_rays_by_component) {
     stream.run();
@@ -185,7 +185,7 @@ struct Wavefront::Impl {
       for (uint64_t bits = in_queue[word]; bits != 0; bits &= bits - 1)
         *out++ = word * 64 + uint32_t(std::countr_zero(bits));
   }
-  /// Runs what is recorded; of the shadow rays those that are on their way still.
+  /// Runs the recorded commands; returns the number of unfinished shadow rays.
   uint32_t take_going(const uint32_t* closest, const uint32_t* shadows) {
     run_and_account(closest, shadows);
     const uint32_t going = static_cast<const uint32_t*>(counters.mapped())[k_counter_shadow_next];
@@ -206,7 +206,7 @@ struct Wavefront::Impl {
     account("shadow trace", timer.milliseconds(), shadows, true);
     return going;
   }
-  /// Whether any of a shadow queue's rays has met something.
+  /// True if any ray of a shadow queue has hit something.
   bool meets_any(uint32_t side, uint32_t count) const {
     const auto* queue = static_cast<const uint32_t*>(shadow_queues[side].mapped());
     const auto* met = static_cast<const Hit*>(shadow_hits.mapped());
@@ -251,7 +251,7 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   w.learning = std::move(learning);
   w.bind(scene);
   if (!w.host_trace) {
-    // Where nothing is transparent the any-hit kernel need not look at the flag.
+    // Without transparent surfaces the any-hit kernel ignores the flag.
     const auto tracer = [&](int query) {
       return gpu::Kernel(
           device, compiler, "trace.comp",
@@ -423,7 +423,7 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
   ends.begin();
   const uint32_t* counters = static_cast<const uint32_t*>(w.counters.mapped());
   uint32_t active = count, parity = 0, shadow_count = 0, branch = 0;
-  bool first = true, branching = false;  // vertices are known, and another branch is to leave them
+  bool first = true, branching = false;  // the vertices are stored, and another branch leaves them
   // A path may pass any number of transparent surfaces; each costs it a factor, and roulette bounds the
   // events.
   for (; active > 0 || shadow_count > 0; parity ^= 1) {
@@ -431,9 +431,8 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
       w.run_and_account(closest, shadows);
       return false;
     }
-    // Shadow rays of the vertices before, then the next vertices. Where the host traces, it traces both
-    // before the device goes on: one submission a bounce, of which each costs as much as tracing a thousand
-    // rays.
+    // Shadow rays of the former vertices, then the next vertices. The host tracer traces both before the
+    // device continues: one submission per bounce, each of which costs as much as tracing a thousand rays.
     const auto trace_vertices = [&] {
       w.trace(bvh::Query::closest, w.trace_closest, w.main[parity], w.rays, w.hits,
               first ? nullptr : &w.queues[parity], active, "closest trace", closest, shadows);
@@ -450,7 +449,7 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
       push.use_queue = 1;
       push.round = 0;
       if (w.transparent) {
-        // Those that no opaque surface blocks; then again those that a transparent one has let through.
+        // Rays that no opaque surface blocks; then again those that passed a transparent one.
         side = 1;
         if (w.host_trace) {
           going = w.pass_unblocked(shadow_count, shadows);

@@ -35,7 +35,7 @@ struct StageSum {
 
 /// Sums since the last reset().
 struct TransportStats {
-  uint64_t paths = 0;  ///< of the film's
+  uint64_t paths = 0;  ///< paths added to the film
   uint64_t rays = 0, shadow_rays = 0;
   uint64_t dropped = 0;              ///< contributions refused because they were not finite
   uint64_t roulette = 0, depth = 0;  ///< paths ended by roulette, by the maximum depth
@@ -43,30 +43,29 @@ struct TransportStats {
   std::array<double, shared::k_component_count> component_ms{};  ///< sums to the stages' total
 };
 
-/// Where paths come from and where their light goes, recorded on the wavefront's stream with resources that
-/// bind_paths() has filled. Path p lies in slot p.
+/// Source and destination of paths, recorded on the wavefront's stream with resources from bind_paths(). Path
+/// p is in slot p.
 struct PathEnds {
   std::function<void()> begin;  ///< writes ray, path state and zero radiance of every slot
   std::function<void()>
       first_hits;             ///< reads the hits of the first rays (before they are shaded); may be empty
   std::function<void()> end;  ///< reads the radiance of every slot, by component
-  bool hits_only = false;     ///< only the first rays are traced, and nothing is shaded
-  /// What is done at every vertex in place of shade.comp, for paths that come from lights: a kernel that
-  /// begins with shaders/lib/wavefront.glsl and is told a TransportPush, as a stage of that name. Null:
-  /// shade.comp.
+  bool hits_only = false;     ///< traces only the first rays, without shading
+  /// Kernel that replaces shade.comp at every vertex, for light paths: it includes
+  /// shaders/lib/wavefront.glsl, takes a TransportPush, and is the stage of that name. Null: shade.comp.
   const gpu::Kernel* vertex = nullptr;
   std::string vertex_stage = {};
-  std::function<void(gpu::Resources&)> bind_vertex = {};  ///< what it reads besides the paths
-  /// What is done with what the shadow rays of these vertices bring, in place of adding it to the paths'
-  /// radiance: transport/shadow.comp, compiled otherwise. Reads what `bind_vertex` sets. Null: shadow.comp.
+  std::function<void(gpu::Resources&)> bind_vertex = {};  ///< binds its resources other than the paths
+  /// Kernel that receives the light of shadow rays of these vertices instead of the paths' radiance: a
+  /// variant of transport/shadow.comp. Reads what `bind_vertex` sets. Null: shadow.comp.
   const gpu::Kernel* arrival = nullptr;
 };
 
 class Wavefront {
  public:
-  /// `host_trace` empty: compute-bvh. `bind_lookup`: sets what kernels read that are compiled, by
-  /// `extra_defines`, with a lookup; called again by rebind(). Compiles all kernels (throws Error, located)
-  /// and warms them up, but for those of `rules`. `learning`: given where `extra_defines` have
+  /// `host_trace` empty: compute-bvh. `bind_lookup`: binds the resources of kernels that `extra_defines`
+  /// compile with a lookup; called again by rebind(). Compiles all kernels (throws Error, located) and warms
+  /// them up, except those of `rules`. `learning`: required if `extra_defines` contain
   /// upload::learned_defines().
   Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const upload::DeviceScene& scene,
             uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines = {},
@@ -74,52 +73,51 @@ class Wavefront {
             std::shared_ptr<LightLearning> learning = {});
   ~Wavefront();
 
-  /// The frame's constants; `enabled`: components on (bit i).
+  /// Sets the frame's constants; `enabled`: computed components (bit i).
   void set_frame(const shared::Frame& frame, uint32_t enabled);
-  /// After DeviceScene::exchange.
+  /// Binds the scene's buffers, after DeviceScene::exchange.
   void rebind(const upload::DeviceScene& scene);
-  /// Calls `bind_lookup` again: after its buffers have changed.
+  /// Calls `bind_lookup` again, after a change of its buffers.
   void rebind_lookup();
   uint32_t slots() const;
-  /// Traces the item and adds it to the film, group by group of lights where the scene's are kept apart and
-  /// the film does so too, else mixed as the film says. `cancel` is asked between bounces; a cancelled item
-  /// leaves the film as it was and returns false.
+  /// Traces the item and adds it to the film, by light group if scene and film separate groups, else mixed as
+  /// the film says. `cancel` is called between bounces; a cancelled item leaves the film unchanged and
+  /// returns false.
   bool run(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel = {});
-  /// Makes the film's picture anew of its groups of lights, as they are mixed (film::Film::set_mix), where it
-  /// keeps them apart by component. Traces nothing.
+  /// Recomputes the film's picture from its light groups by their mix (film::Film::set_mix), if it stores
+  /// them by component. Traces nothing.
   void mix(film::Film& film);
-  /// The same for a film that is not the picture's: stats().paths stays as it is.
+  /// Likewise, for a film other than the picture's: stats().paths is unchanged.
   bool try_out(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel = {});
-  /// The same without a film: for what kernels note on the way.
+  /// Likewise, without a film, for data that kernels note.
   bool probe(const schedule::WorkItem& item, const std::function<bool()>& cancel = {});
-  /// Traces the item for what its light samples teach: one generation of the learning it was made with. The
-  /// frame is then `picture` again, of `enabled` components. False when it was cancelled: nothing was
-  /// learned.
+  /// Traces the item to learn from its light samples: one generation of `learning`. Afterwards the frame is
+  /// `picture` with `enabled` components again. False if cancelled: nothing was learned.
   bool learn(const schedule::WorkItem& item, const shared::Frame& pilot, const shared::Frame& picture,
              uint32_t enabled, const std::function<bool()>& cancel = {});
   /// Null: lights are chosen by power.
   LightLearning* learning();
-  /// Lights are chosen as without learning again: those there are, or these. The next frame is to be set.
+  /// Resets learned light selection, for the present lights or these. The frame must be set again.
   void forget_learned(std::optional<upload::LightClusters> clusters = {});
   const LightLearning* learning() const;
-  /// Traces `count` <= slots() paths between ends of the caller's; cancellable as above, `end` is then not
-  /// called. Their time and rays are in stats() like those of the film's paths. Their frame is that of
-  /// set_frame().
+  /// Traces `count` <= slots() paths between the caller's ends; cancellable as above, then without `end`.
+  /// Their time and rays count in stats() like those of the film's paths. Uses the frame of set_frame().
   bool run(uint32_t count, const PathEnds& ends, const std::function<bool()>& cancel = {});
-  /// The paths' buffers, under the names of shaders/lib/wavefront.glsl, and the scene's.
+  /// Binds the paths' buffers, with the names of shaders/lib/wavefront.glsl, and the scene's.
   void bind_paths(gpu::Resources& resources) const;
   gpu::Stream& stream();
-  /// Runs what others have recorded on the stream and takes its stages' times into stats(), as the eye's.
+  /// Runs the commands that others have recorded on the stream and adds their stages' times to stats(), as
+  /// eye paths'.
   void account_stages();
-  /// shared::Hit a slot, of the rays traced last.
+  /// One shared::Hit per slot, of the last traced rays.
   const gpu::Buffer& hits() const;
 
   const TransportStats& stats() const;
   void reset_stats();
-  /// What `trace` runs here is no part of the picture's cost: stats() stay as they are.
+  /// Calls `trace` without accounting: stats() are unchanged, as for work that is not part of the picture.
   void uncounted(const std::function<void()>& trace);
   double compile_seconds() const;
-  /// Of the hits that are shaded by kernels of their own; none before these are ready.
+  /// Classes of hits with separate kernels; none before these are ready.
   HitClasses hit_classes() const;
 
  private:

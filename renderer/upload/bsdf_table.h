@@ -9,8 +9,7 @@
 namespace lucerna::upload {
 
 /// Table 0 (Schlick reflector), then two tables for each index of refraction. The averages are integrals of
-/// the table as it is read back (bilinear), so that the energy that the complement returns is exactly what
-/// the table says is missing.
+/// the bilinearly interpolated table, so that the complement returns exactly the energy missing in the table.
 std::vector<vec4> build_bsdf_tables(std::span<const float> glass_iors);
 
 }  // namespace lucerna::upload

@@ -13,8 +13,8 @@ gpu::Buffer upload(gpu::Device& device, const char* name, const std::vector<T>& 
   return buffer;
 }
 
-/// The environment's texels as shaders read them, radiance and density (shaders/shared/scene.h); in pieces,
-/// for maps are large.
+/// The environment's texels for shaders, radiance and density (shaders/shared/scene.h); in chunks, because
+/// maps are large.
 gpu::Buffer upload_environment(gpu::Device& device, const FlatLights& flat) {
   constexpr size_t k_piece = 1 << 16;
   const size_t count = flat.environment_texels.size();

@@ -22,7 +22,7 @@ struct EnvironmentBuffers {
 /// Lights and environment on the device.
 struct LightBuffers {
   LightBuffers() = default;
-  /// `before`: whose environment is taken where it is the same.
+  /// `before`: provides the environment if it is equal.
   LightBuffers(gpu::Device& device, const FlatLights& flat, const LightBuffers& before = {});
   explicit operator bool() const { return bool(lights); }
   gpu::Buffer lights, alias, pmf, groups, sun_density;
@@ -40,15 +40,15 @@ struct MaterialBuffers {
 class DeviceScene {
  public:
   DeviceScene(gpu::Device& device, const FlatScene& flat, const bvh::BvhData& tree);
-  /// Takes others (sizes may differ) in place of those it has, which it returns. What was bound before is
-  /// stale: call bind() afterwards.
+  /// Exchanges the buffers for others, of any size, and returns the old ones. Invalidates earlier bindings:
+  /// call bind() afterwards.
   LightBuffers exchange(LightBuffers lights, const Effects& effects) noexcept;
   const LightBuffers& lights() const { return lights_; }
   MaterialBuffers exchange(MaterialBuffers materials, const Effects& effects) noexcept;
   /// Names: scene_*, texture_bucket_N, light_alias, PrimitiveLightPmf, environment_*, sun_*, bsdf_table,
   /// scene_media, bvh_nodes, bvh_triangles.
   void bind(gpu::Resources& resources) const;
-  /// #defines that compile in what the scene needs and nothing else.
+  /// #defines that compile in only the features of the scene.
   gpu::Defines defines() const;
   const Effects& effects() const { return effects_; }
 

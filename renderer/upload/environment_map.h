@@ -1,6 +1,6 @@
 #pragma once
-// The environment as a map of texels. A constant one is a map of one texel: sampled like any light it has 1.2
-// times less variance a second in an interior than left to the scattered rays alone.
+// The environment as a map of texels. A constant environment is a map of one texel: with light samples it has
+// 1.2 times less variance per time in an interior than with scattered rays alone.
 #include <algorithm>
 #include <cmath>
 
@@ -8,7 +8,7 @@
 
 namespace lucerna::upload {
 
-/// Some light comes from it.
+/// True if it emits light.
 inline bool environment_shines(const scene::Environment& environment) {
   const bool constant = environment.image == scene::k_none;
   return environment.scale > 0 && !(constant && luminance(environment.radiance) <= 0);
@@ -21,7 +21,7 @@ struct EnvironmentMap {
     const scene::Image& image = scene.images[environment.image];
     texels = image.floats.data(), width = image.width, height = image.height;
   }
-  /// Of a texel, without Environment::scale; what is not finite or below 0 is 0.
+  /// Radiance of a texel without Environment::scale; 0 if not finite or negative.
   vec3 radiance(size_t texel) const {
     const float* t = texels + 4 * texel;
     vec3 c = texels ? vec3(t[0], t[1], t[2]) : environment.radiance;

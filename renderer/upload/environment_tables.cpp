@@ -61,7 +61,7 @@ std::vector<uint8_t> sun_texels(const std::vector<double>& y, uint32_t w, uint32
 
 /// What the environment weighs, as one emitter or as two.
 struct EnvironmentWeights {
-  std::vector<double> texels, sun_texels;  ///< the latter none unless the sun is apart
+  std::vector<double> texels, sun_texels;  ///< the latter empty unless the sun is separate
   std::vector<uint8_t> is_sun;             ///< by texel
 };
 

@@ -119,7 +119,7 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
     out[k_material_base] = m.base_color;
     out[k_material_emission] = vec4(m.unlit ? vec3(0) : m.emission, as_float(flags));
     out[k_material_surface] = vec4(m.metallic, m.roughness, m.ior, m.specular);
-    // Unlit surfaces show their colour and are black otherwise: what is behind them is hidden.
+    // Unlit surfaces show their colour and are black otherwise: they transmit nothing.
     out[k_material_specular] = vec4(m.specular_color, m.unlit ? 0 : m.transmission);
     out[k_material_volume] = vec4(absorption, row);
     out[k_material_diffuse_t] = vec4(m.diffuse_transmission_color, m.diffuse_transmission);

@@ -37,7 +37,7 @@ LightTexels lamp_texels(const scene::Light& l, uint32_t kind) {
 /// Of a table's entry; `surfaces` by primitive.
 uint32_t group_of(const FlatScene& flat, const LightEntry& entry, const std::vector<uint8_t>& surfaces) {
   if (entry.kind == k_light_triangle) return surfaces[entry.index];
-  // Where the sky is apart the entry is the sun's.
+  // With a separate sky, the entry is the sun's.
   if (entry.kind == k_light_environment)
     return flat.effects.separate_sky ? flat.groups->sun : flat.groups->sky;
   return entry.index == scene::k_none ? 0 : flat.groups->lamps[entry.index];

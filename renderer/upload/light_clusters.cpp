@@ -18,7 +18,7 @@ constexpr uint32_t k_sky_clusters = 256;  // their numbers are bytes
 constexpr uint32_t k_sky_side = 16;       // squares of a constant sky along a side
 constexpr uint32_t k_triangle_clusters = 128, k_lamp_clusters = 64, k_distant_clusters = 16;
 constexpr uint32_t k_most_squares = 8;  // of a triangle, along a side
-/// Of so many emissive triangles one is drawn from this many candidates of its cluster.
+/// With at least this many emissive triangles, one is resampled from this many candidates of its cluster.
 constexpr size_t k_many_triangles = 64, k_triangle_candidates = 8;
 
 float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
@@ -84,7 +84,7 @@ class SkyCut {
       open.push(a), open.push(b);
     }
     for (; !open.empty(); open.pop()) done.push_back(open.top());
-    // An order that does not hang on equal priorities.
+    // The order does not depend on equal priorities.
     std::sort(done.begin(), done.end(), [](const Rectangle& a, const Rectangle& b) {
       return std::pair(a.y0, a.x0) < std::pair(b.y0, b.x0);
     });

@@ -97,8 +97,8 @@ std::vector<float> triangle_densities(const FlatScene& flat, const LightDistribu
   return densities;
 }
 
-/// A table of the lamps alone, for scenes with as many as make it worth to choose among them
-/// (shaders/lib/lights.glsl). Lamps that are off count, so that switching them compiles no kernels.
+/// Separate table of the lamps, for scenes with enough lamps to resample among them
+/// (shaders/lib/lights.glsl). Includes lamps that are off, so that switching them compiles no kernels.
 void choose_lamps(const scene::Scene& scene, const std::vector<double>& weights, FlatScene& flat,
                   LightDistribution& d) {
   constexpr size_t k_least = 3, k_many = 6;

@@ -1,7 +1,6 @@
 #pragma once
-// What hits on a material call for of shading, told apart by kind: materials that call for the same are of
-// one kind. By kinds hits are counted, and given to kernels in which nothing else is compiled
-// (transport/hit_classes.h).
+// Kinds of materials by the shading features they need: materials with equal features are of one kind. Hits
+// are counted by kind, and shaded by kernels that compile in nothing else (transport/hit_classes.h).
 #include <array>
 #include <cstdint>
 #include <vector>
@@ -11,13 +10,13 @@
 
 namespace lucerna::upload {
 
-/// Bits of a set of features. A material without a bit is shaded the same, bit for bit, where that part is
-/// not compiled in.
+/// Bits of a set of features. Shading of a material without a bit is bit-identical if that part is not
+/// compiled in.
 enum MaterialFeature : uint32_t {
   k_feature_specular = 1u << 0,  ///< conductor, or a dielectric's coat
   k_feature_solid_glass = 1u << 1,
   k_feature_thin_glass = 1u << 2,
-  k_feature_glass_specular = 1u << 3,  ///< of glass: a specular factor or colour
+  k_feature_glass_specular = 1u << 3,  ///< specular factor or colour of glass
   k_feature_diffuse_transmission = 1u << 4,
   k_feature_unlit = 1u << 5,
   k_feature_alpha = 1u << 6,  ///< mask or blend
@@ -29,7 +28,7 @@ enum MaterialFeature : uint32_t {
   k_feature_specular_texture = 1u << 12,  ///< of factor or colour
   k_feature_transmission_texture = 1u << 13,
   k_feature_diffuse_transmission_texture = 1u << 14,  ///< of factor or colour
-  k_feature_light_samples = 1u << 15,                 ///< a lobe that is no delta
+  k_feature_light_samples = 1u << 15,                 ///< a lobe that is not a delta
   k_all_features = (1u << 16) - 1u,
 };
 
@@ -37,7 +36,8 @@ uint32_t features_of(const scene::Material& material);
 
 /// The kinds of a scene's materials.
 struct MaterialKinds {
-  /// By kind, from shared::k_kind_first on; what there is no room for is of the last one, which has all.
+  /// By kind, from shared::k_kind_first on; kinds beyond the maximum share the last one, which has all
+  /// features.
   std::array<uint32_t, shared::k_hit_kinds> features{};
   std::vector<uint32_t> of_material;
 };

@@ -107,7 +107,7 @@ Shells shells_of(const Solids& solids) {
 void join_borders(Solids& solids, std::vector<uint32_t> borders) {
   std::sort(borders.begin(), borders.end());
   borders.erase(std::unique(borders.begin(), borders.end()), borders.end());
-  // Along a direction in which the vertices of grids lie apart.
+  // Along a direction in which vertices of grids are distinct.
   std::vector<std::pair<double, uint32_t>> line;
   line.reserve(borders.size());
   for (const uint32_t corner : borders) {

@@ -1,10 +1,9 @@
 #pragma once
-// The volumes of a scene: which media there are, and which of them enclose a place where a path starts
-// (shaders/lib/media.glsl).
+// The media of a scene, and the media that enclose the origin of a path (shaders/lib/media.glsl).
 //
-// A medium is what solids absorb: materials with transmission and thickness that absorb alike are one medium.
+// A medium is an absorption: materials with transmission, thickness and equal absorption are one medium.
 // A path keeps a stack of the media that it has entered; the last one entered and not yet left absorbs, and
-// glTF has no priorities that would say otherwise. Where a path starts (camera, lamp, emissive surface) the
+// glTF has no priorities. At the origin of a path (camera, lamp, emissive surface) the
 // stack is found from closed shells: triangles of one solid material, connected by vertices of equal
 // position, in which each edge is used as often in either direction. Open surfaces enclose nothing.
 #include <memory>
@@ -14,8 +13,8 @@
 
 namespace lucerna::upload {
 
-/// Closed shells of solids, as a binary tree in depth-first order whose nodes name where to go on when they
-/// are missed (texels: shaders/shared/scene.h, scene_media).
+/// Closed shells of solids, as a binary tree in depth-first order whose nodes store where traversal continues
+/// if they are missed (texels: shaders/shared/scene.h, scene_media).
 struct SolidShells {
   std::vector<bool> solid;          ///< by material: the shells are made of these
   std::vector<Box> boxes;           ///< one a shell
@@ -25,11 +24,11 @@ struct SolidShells {
 };
 std::shared_ptr<const SolidShells> make_solid_shells(const FlatScene& flat, std::vector<bool> solid);
 
-/// Sets FlatMaterials::media, ::shells, Effects::media and each material's medium, for the materials that
-/// `flat` has. Nothing where no solid absorbs.
+/// Sets FlatMaterials::media, ::shells, Effects::media and each material's medium, for the materials of
+/// `flat`. Does nothing if no solid absorbs.
 void flatten_media(FlatScene& flat);
 
-/// Whether any solid's box meets `box`, so that a path that starts in it may start inside a medium.
+/// True if any solid's box intersects `box`, so that a path starting in it may start inside a medium.
 bool meets_solids(const FlatMaterials& flat, const Box& box);
 
 }  // namespace lucerna::upload

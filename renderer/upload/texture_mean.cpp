@@ -14,7 +14,7 @@ constexpr double k_most_repeats = 4;  // of rows: beyond, a triangle has the who
 
 int64_t floor_mod(int64_t i, int64_t n) { return (i % n + n) % n; }
 
-/// Index of a texel of a row or column that goes on as the wrap mode says.
+/// Index of a texel of a row or column continued by the wrap mode.
 int64_t wrapped(int64_t i, int64_t size, scene::Wrap wrap) {
   if (wrap == scene::Wrap::clamp) return std::clamp<int64_t>(i, 0, size - 1);
   if (wrap == scene::Wrap::repeat) return floor_mod(i, size);
@@ -22,8 +22,8 @@ int64_t wrapped(int64_t i, int64_t size, scene::Wrap wrap) {
   return at < size ? at : 2 * size - 1 - at;
 }
 
-/// Sum of the texels before `i` of a row that goes on on both sides, less that before 0. `before`: of the
-/// row's own, size + 1.
+/// Sum of the texels before `i` of a row continued on both sides, minus that before 0. `before`: prefix sums
+/// of the row, size + 1.
 double sum_before(const double* before, int64_t i, int64_t size, scene::Wrap wrap) {
   if (wrap == scene::Wrap::clamp) {
     if (i < 0) return double(i) * before[1];

@@ -1,5 +1,5 @@
 #pragma once
-// What an emission texture has on a triangle: by how much its light is chosen.
+// Mean of an emission texture over a triangle, for the selection probability of its light.
 #include <array>
 #include <map>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace lucerna::upload {
 
-/// Mean luminances of textures over triangles, without a texel left out. Keeps the sums of each texture that
-/// it was asked about, 8 bytes a texel; valid as long as the scene.
+/// Exact mean luminances of textures over triangles. Keeps the sums of each requested texture, 8 bytes a
+/// texel; valid as long as the scene.
 class TextureMeans {
  public:
   explicit TextureMeans(const scene::Scene& scene) : scene_(scene) {}

@@ -1,8 +1,7 @@
 #pragma once
-// Textures -> pages. All 8-bit colour textures lie side by side on the pages (layers) of one texture array,
-// all 8-bit data textures on those of another, float ones on a third: a device without dynamic indexing of
-// sampler arrays pays for each array that a read may have to look at, whatever the textures' sizes. Texels
-// are copied, never resampled.
+// Texture pages. All 8-bit colour textures share the pages (layers) of one texture array, all 8-bit data
+// textures another, float ones a third: a device without dynamic indexing of sampler arrays pays for each
+// array that a read may access, whatever the textures' sizes. Texels are copied, never resampled.
 #include <vector>
 
 #include "scene/scene.h"
@@ -10,16 +9,16 @@
 
 namespace lucerna::upload {
 
-/// Most bytes that one bucket may take; more pages of the same format open another bucket.
+/// Maximum bytes of a bucket; further pages of the same format are in another bucket.
 inline constexpr uint64_t k_bucket_bytes = uint64_t(1) << 30;
 
-/// Where a texture went.
+/// Position of a texture on the pages.
 struct TexturePlace {
-  uint32_t bits = 0;  ///< layer | bucket << 11 | wraps | nearest | present, as shaders/shared/scene.h
+  uint32_t bits = 0;  ///< layer | bucket << 11 | wraps | nearest | present (shaders/shared/scene.h)
   uint32_t bucket = 0;
   /// Lower left texel and size on the page, over the page's size: a texture coordinate t in [0, 1] is at
-  /// rect.xy + t * rect.zw. Beyond that lies a border of one texel, filled as the wrap mode says, so that the
-  /// hardware's bilinear filter is right up to the edge.
+  /// rect.xy + t * rect.zw. A border of one texel, filled by the wrap mode, makes the hardware's bilinear
+  /// filter exact up to the edge.
   vec4 rect{0};
   vec2 size{0};  ///< texels
 };
@@ -30,15 +29,15 @@ struct TextureMap {
   uint32_t bits(const scene::TextureUse& use) const;
 };
 
-/// Throws Error when there are more than k_max_buckets buckets or more than 2048 pages in one.
+/// Throws Error if there are more than k_max_buckets buckets or more than 2048 pages in one.
 TextureMap pack_textures(const scene::Scene& scene, std::vector<Bucket>& buckets,
                          uint64_t bucket_bytes = k_bucket_bytes);
 
 /// A texel's linear colour. Host side, for estimates.
 vec3 read_texel(const scene::Scene& scene, scene::Id texture, uint32_t x, uint32_t y);
 
-/// A texel as the shader would read it at uv (before the use's transform), nearest, linear colour. Host side,
-/// for estimates.
+/// Linear colour of the nearest texel at uv (before the use's transform), as in shaders. Host side, for
+/// estimates.
 vec3 read_texture(const scene::Scene& scene, const scene::TextureUse& use, vec2 uv);
 
 }  // namespace lucerna::upload

@@ -1,7 +1,6 @@
-// The bench of lookups: which spheres contain a point, as their number and a checksum that does not depend on order.
-// LUCERNA_NEIGHBOURS 0: the octree's one list. 27 or 8: a grid that lists a sphere in the cell of its centre alone; 27 cells
-// around that of the point (cells no smaller than the largest radius), or the 8 nearest (no smaller than the largest
-// diameter).
+// Lookup bench: which spheres contain a point, as a count and an order-independent checksum. LUCERNA_NEIGHBOURS 0: one list
+// of the octree. 27 or 8: a grid that lists a sphere only in the cell of its centre; reads the 27 cells around the point
+// (cells at least as wide as the largest radius), or the 8 nearest (at least as wide as the largest diameter).
 #include "lib/variants.glsl"
 #include "lib/octree.glsl"
 #include "lib/invocation.glsl"

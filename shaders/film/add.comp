@@ -10,12 +10,12 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { FilmPush push; };
 uniform samplerBuffer feature_texels;
 #if LUCERNA_VERTEX_COUNT
-// How many vertices each pixel's paths had, from the state in which they ended: its share of the device's time.
+// Number of vertices of each pixel's paths, from their final states: its share of the device time.
 #include "shaders/shared/transport.h"
 uniform samplerBuffer path_texels;
 layout(scalar) buffer FilmVertices { uint film_vertices[]; };
 uint vertices_of(uint slot) {
-  // The events that led on (PathState.bits) and the surfaces passed since the last; the last vertex is not among them.
+  // Scattering events (PathState.bits) and surfaces passed since the last one, plus the last vertex.
   uint bits = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 1u))).z;
   uint nulls = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 2u))).z;
   return 1u + ((bits & ~k_path_branched) >> k_path_events_shift) + nulls;
@@ -23,7 +23,7 @@ uint vertices_of(uint slot) {
 #endif
 
 #if LUCERNA_LOOKUP_BIAS
-// Of the even and of the odd samples, of the light as it is.
+// Lookup bias of the even and of the odd samples, of the unmixed light.
 layout(scalar) buffer FilmBiasEven { float film_bias_even[]; };
 layout(scalar) buffer FilmBiasOdd { float film_bias_odd[]; };
 #endif
@@ -39,19 +39,19 @@ void add(inout FilmHalf h, vec3 x) {
 #if LUCERNA_FILM_LANES
 layout(scalar) writeonly buffer GroupLights { GroupLight group_lights_out[]; };
 
-// Adds a half of a group's sums, as the group is mixed.
+// Adds a half of a group's sums, times its mix weight.
 void add_mixed(inout FilmHalf h, FilmHalf of_group, vec3 weight) {
   add(h, weight * of_group.sum);
   add(h, weight * of_group.compensation);
 }
 #endif
 
-// What sample `slot` brings of a component.
+// Light of sample `slot` in a component.
 vec3 light_of_component(uint slot, uint component) {
 #if LUCERNA_FILM_LANES
   return texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(push.group, component)))).rgb;
 #elif LUCERNA_GROUP_SUMS && !LUCERNA_FILM_UNMIXED
-  // In a draft, what the groups' light comes to as they are mixed is shared out to the components as they have it.
+  // In a preview sample, the mix of all groups is distributed to the components in proportion to their light.
   vec3 all = vec3(0.0), mixed = vec3(0.0);
   for (uint lit = groups_lit(slot); lit != 0u; lit &= lit - 1u) {
     uint group = uint(findLSB(lit));
@@ -101,7 +101,7 @@ void main() {
 #if LUCERNA_FILM_LANES
   for (uint i = 0u; i < push.sample_count; ++i) {
 #else
-  // There is one at least: lavapipe takes less time for a loop that is tested at its end.
+  // At least one: on lavapipe a loop tested at its end is faster.
   uint i = 0u;
   do {
 #endif
@@ -129,7 +129,7 @@ void main() {
 #endif
 #if LUCERNA_FILM_LANES
   }
-  // What all groups have in common comes with the first.
+  // Data common to all groups are added with the first.
   uint first_samples = push.group == 0u ? push.sample_count : 0u;
   for (uint i = 0u; i < first_samples; ++i) {
     uint slot = index + i * push.pixel_count;
@@ -139,7 +139,7 @@ void main() {
     vertices += vertices_of(slot);
 #endif
   }
-  // Where nothing was added nothing is written; a loop, because a branch saves no work on lavapipe.
+  // Without new samples nothing is written; a loop, because a branch saves no work on lavapipe.
   for (uint once = 0u; once < min(push.sample_count, 1u); ++once) {
     LUCERNA_FILM_STORE(group_primary_out, pixel, sums[0])
     LUCERNA_FILM_STORE(group_secondary_out, pixel, sums[1])
@@ -154,7 +154,7 @@ void main() {
       group_lights_out[(push.group / 2u * push.width * push.height + pixel) * 2u + push.group % 2u] =
           GroupLight(packHalf2x16(short_light.rg), packHalf2x16(vec2(short_light.b, 0.0)));
   }
-  // The picture is the sum of the groups in their order, whenever that is taken.
+  // The picture is the sum of the groups in a fixed order, so that it does not depend on when it is computed.
   FilmPixel none = FilmPixel(FilmHalf(vec3(0.0), vec3(0.0)), FilmHalf(vec3(0.0), vec3(0.0)));
   vec3 weight = light_weight(push.group);
   for (uint c = 0u; c < k_component_count; ++c) {

@@ -1,6 +1,6 @@
-// What the two halves of the film say of the noise in the blocks of a work item: one invocation a row of a block, eight
-// blocks a workgroup. All sums are taken in a fixed order. With LUCERNA_STOPPING_ONLY just what decides whether a tile goes
-// on, `relative` and `quadrant_pixels`: the rest is not read after every pass.
+// Estimates the noise in the blocks of a work item from the two halves of the film: one invocation a row of a block, eight
+// blocks a workgroup. The order of all sums is fixed. With LUCERNA_STOPPING_ONLY it computes only `relative` and
+// `quadrant_pixels`, which decide whether a tile continues; the rest is not needed after every pass.
 #include "lib/variants.glsl"
 #include "lib/film.glsl"
 #include "lib/blocks.glsl"
@@ -10,7 +10,7 @@ layout(push_constant, scalar) uniform Push { ErrorPush push; };
 layout(scalar) writeonly buffer BlockErrors { BlockError block_errors[]; };
 #if LUCERNA_LOOKUP_ERRORS
 layout(scalar) readonly buffer FilmRecords { vec2 film_records[]; };  // squares: noise of records, of interpolation
-// What lookups blur, with its sign: sums over the even and over the odd samples.
+// Blur error of lookups, signed: sums over the even and over the odd samples.
 layout(scalar) readonly buffer FilmBiasEven { float film_bias_even[]; };
 layout(scalar) readonly buffer FilmBiasOdd { float film_bias_odd[]; };
 #endif
@@ -20,10 +20,10 @@ const uint k_sums = 4u;
 #else
 const uint k_sums = 17u;
 #endif
-// Of a row, by what is summed: how many pixels its two halves of four have, then luminance [0..4], variance [0..4], fourth,
-// difference. All of a kind lie together, so that neighbouring invocations write side by side.
+// Sums of each row: number of pixels in its two halves of four, then luminance [0..4], variance [0..4], fourth, difference.
+// Equal quantities of all rows are adjacent, so that neighbouring invocations write to adjacent words.
 shared float values[k_sums * 64u];
-// Of each block, shown(Y) of its pixels and those around; negative: none there.
+// shown(Y) of the pixels of each block and those around it; negative: no pixel.
 const uint k_around = k_block + 2u * k_seen_reach;
 shared float around[8u * k_around * k_around];
 
@@ -37,23 +37,22 @@ float sum_of_rows(uint what, uint first, uint rows) {
 
 // A row of a block.
 struct Row {
-  float shown[k_block], seen[k_block];  // of its pixels: shown(Y) and D of seen_error.h; 0 where there are no two samples
-  float half_n[2];                      // pixels of its halves
+  float shown[k_block], seen[k_block];  // per pixel: shown(Y) and D of seen_error.h; 0 with less than two samples
+  float half_n[2];                      // number of pixels of its halves
   uint there;                           // bit x: pixel x has two samples
 #if LUCERNA_LOOKUP_ERRORS
-  vec2 squares[k_block];  // of its pixels, as FilmRecords, where they are seen
-  vec2 records;           // the sum of all of them
-  vec2 bias;              // sums over the row, of the even and of the odd samples' mean
-  float unmixed;          // sum over the row: luminance as samples have brought it
+  vec2 squares[k_block];  // per pixel: FilmRecords, weighted by visibility
+  vec2 records;           // sum of FilmRecords
+  vec2 bias;              // sums over the row, of the means of the even and of the odd samples
+  float unmixed;          // sum over the row: luminance before the mix
 #endif
 #if !LUCERNA_STOPPING_ONLY
-  float seen_of[4 * k_block];                                 // of its pixels, D of each component
-  float ys[5], vs[5], fourth, total_difference, white, dark;  // sums over the row, as BlockError
+  float seen_of[4 * k_block];                                 // per pixel: D of each component
+  float ys[5], vs[5], fourth, total_difference, white, dark;  // sums over the row, as in BlockError
 #endif
 };
 
-// Means of the luminance in the film's two halves, of the sum and by component; `unmixed`: twice the luminance as samples
-// have brought it.
+// Mean luminance of the film's two halves, total and by component; `unmixed`: twice the luminance before the mix.
 void read_halves(uint pixel, uint count, out float a[5], out float b[5], out float unmixed) {
   float even = float(max((count + 1u) / 2u, 1u)), odd = float(max(count / 2u, 1u));
   FilmRatio ratio = film_ratio(pixel);
@@ -71,7 +70,7 @@ void read_halves(uint pixel, uint count, out float a[5], out float b[5], out flo
   b[0] = b[1] + b[2] + b[3] + b[4];
 }
 
-// The row that begins at the pixel `first`; an empty one where there is no work.
+// The row that begins at the pixel `first`; empty unless `working`.
 Row read_row(bool working, uvec2 first) {
   Row r;
   r.half_n[0] = r.half_n[1] = 0.0;
@@ -96,11 +95,11 @@ Row read_row(bool working, uvec2 first) {
     r.shown[x] = seen_shown(y, push.luminance_white);
     r.seen[x] = part * abs(difference);
 #if LUCERNA_LOOKUP_ERRORS
-    // Lookups err in proportion to their light, in that of each group alike.
+    // The relative errors of lookups are taken as equal for all light groups.
     float mixed = unmixed > 0.0 ? (a[0] + b[0]) / unmixed : 1.0;
     r.squares[x] = there && push.records != 0u ? square(mixed) * film_records[pixel] : vec2(0.0);
     r.unmixed += there ? 0.5 * unmixed : 0.0;
-    // The halves are independent: in the mean the product of theirs is the square, without the noise of either.
+    // The halves are independent: the expected product of their errors is the square, without their noise.
     vec2 bias = vec2(0.0);
     if (there && push.bias != 0u) bias = vec2(film_bias_even[pixel], film_bias_odd[pixel]) / vec2((count + 1u) / 2u, count / 2u);
     bias *= mixed;
@@ -129,7 +128,7 @@ Row read_row(bool working, uvec2 first) {
   return r;
 }
 
-// Puts a row where the others of its block see it.
+// Writes a row to shared memory for the other rows of its block.
 void share_row(Row r, uint lane) {
   for (uint h = 0u; h < 2u; ++h) values[h * 64u + lane] = r.half_n[h];
 #if !LUCERNA_STOPPING_ONLY
@@ -143,7 +142,7 @@ void share_row(Row r, uint lane) {
 }
 
 #if !LUCERNA_STOPPING_ONLY
-// What does not hang on the quadrants, each sum by a row of its own.
+// Sums that do not depend on the quadrants, each computed by a different row.
 void write_sums(uint block, uint row, uint first_row) {
   if (row < 5u) block_errors[block].luminance[row] = sum_of_rows(2u + row, first_row, k_block);
   if (row < 5u) block_errors[block].variance[row] = sum_of_rows(7u + row, first_row, k_block);
@@ -153,7 +152,7 @@ void write_sums(uint block, uint row, uint first_row) {
 }
 #endif
 
-// shown(Y) of a pixel, whose place may be outside of the picture; negative: it has no two samples.
+// shown(Y) of a pixel, which may be outside of the picture; negative: less than two samples.
 float shown_at(ivec2 at) {
   bool inside = at.x >= 0 && at.y >= 0 && uint(at.x) < push.width && uint(at.y) < push.height;
   uint pixel = inside ? uint(at.y) * push.width + uint(at.x) : 0u;
@@ -195,7 +194,7 @@ float local_shown(uint lane, uint x, uint row) {
   return sum / max(count, 1.0);
 }
 
-// Of a row, held against what is shown around its pixels: sums of r by half, of the lookups' squares, and of e^2 and e^4.
+// Sums over a row of errors relative to the shown luminance around: r by half, squared lookup errors, e^2 and e^4.
 struct Relative {
   float of_half[2];
   vec2 records;

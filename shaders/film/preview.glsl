@@ -1,15 +1,15 @@
-// Pixels as shaders/shared/preview.h has them.
+// Access to the pixels of shaders/shared/preview.h.
 #ifndef LUCERNA_FILM_PREVIEW
 #define LUCERNA_FILM_PREVIEW
 #include "lib/math.glsl"
 #include "shaders/shared/lanes.h"
 #include "shaders/shared/preview.h"
 
-// Light that has come by way of other surfaces, which single paths find by chance: secondary and tertiary. Lamps' own is there or
-// it is not.
+// 1 for components with light from other surfaces, which single paths find by chance: secondary and tertiary. Light of visible
+// lamps has no such noise.
 const vec4 k_preview_by_way = vec4(0.0, 1.0, 1.0, 0.0);
 
-// By component: rgb, standard error of the luminance.
+// Light by component: rgb, standard error of the luminance.
 struct PreviewLight {
   vec4 of[k_component_count];
 };
@@ -23,7 +23,7 @@ PreviewLight preview_unpack(vec4 a, vec4 b) {
   l.of[3] = vec4(unpackHalf2x16(y.z), unpackHalf2x16(y.w));
   return l;
 }
-// Two texels a pixel or cell.
+// Reads a pixel or cell: two texels.
 PreviewLight preview_light(samplerBuffer texels, int at) {
   return preview_unpack(texelFetch(texels, 2 * at), texelFetch(texels, 2 * at + 1));
 }
@@ -40,7 +40,7 @@ vec4 preview_texel(vec4 c, vec4 d) { return uintBitsToFloat(uvec4(preview_pack(c
   buffer[2u * (at)] = preview_texel((light).of[0], (light).of[1]); \
   buffer[2u * (at) + 1u] = preview_texel((light).of[2], (light).of[3]);
 
-// Normals on an octahedron (Cigolle et al. 2014).
+// Octahedral normals (Cigolle et al. 2014).
 uint preview_normal(vec3 n) {
   n /= abs(n.x) + abs(n.y) + abs(n.z) + 1e-20;
   vec2 o = n.z >= 0.0 ? n.xy : (1.0 - abs(n.yx)) * vec2(n.x >= 0.0 ? 1.0 : -1.0, n.y >= 0.0 ? 1.0 : -1.0);
@@ -55,11 +55,11 @@ vec3 preview_normal(uint bits) {
 }
 
 struct PreviewSurface {
-  float depth;  // [m]; 0: nothing is there; below 0: not known
+  float depth;  // [m]; 0: no surface; below 0: unknown
   vec3 normal, albedo;
   float samples;
-  bool emits;     // as far as a ray has met it
-  float covered;  // share of the samples that have met a surface, where any has
+  bool emits;     // true only if a ray has hit it
+  float covered;  // share of the samples with a hit, if any has one
 };
 const float k_preview_least_covered = 1.0 / 255.0;
 PreviewSurface preview_surface(vec4 texel) {
@@ -72,10 +72,10 @@ vec4 preview_texel(PreviewSurface s) {
   return vec4(s.depth, uintBitsToFloat(preview_normal(s.normal)), uintBitsToFloat(packUnorm4x8(vec4(s.albedo, covered))), s.samples);
 }
 
-// Whether a pixel that was shown, or holds samples, tells of light at all.
+// Whether a pixel has information about the light: it was shown or has samples.
 bool preview_lit(PreviewLight l, PreviewSurface s) { return l.of[0].w >= 0.0 || s.samples > 0.0; }
 
-// What blocks of cells say of how light has changed (film/preview_change.comp), between their middles; 1 where there are none.
+// Change of light by component, interpolated between the centres of blocks (film/preview_change.comp); 1 without blocks.
 vec4 preview_change(samplerBuffer ratios, uvec2 blocks, vec2 cell) {
   if (blocks.x == 0u) return vec4(1.0);
   vec2 p = (cell + 0.5) / float(k_preview_change_step) - 0.5;
@@ -86,12 +86,12 @@ vec4 preview_change(samplerBuffer ratios, uvec2 blocks, vec2 cell) {
              mix(texelFetch(ratios, hi.y * row + lo.x), texelFetch(ratios, hi.y * row + hi.x), f.x), f.y);
 }
 
-// What light is divided by to be filtered: the surface's colour, where it has one.
+// Divisor of light for filtering: the surface's colour, if there is a surface.
 vec3 preview_modulation(PreviewSurface s) { return s.depth > 0.0 ? max(s.albedo, vec3(0.04)) : vec3(1.0); }
 
-// How light goes with the colours of a surface: of pixels side by side the products of both's differences, and the squares of those
-// of the colour and of the light, in luminance; of how many such sums it is the mean (1 over that); and the mean of 1 over what
-// light is multiplied with to be filtered.
+// Correlation of light with the colour of a surface, in luminance: `with_light`, product of the differences of both between
+// adjacent pixels; `square` and `light_square`, squared differences of colour and of light; `few`, inverse number of averaged
+// sums; `inverse`, mean inverse of preview_modulation().
 struct PreviewTexture {
   vec3 inverse;
   float with_light, square, light_square, few;
@@ -108,23 +108,23 @@ PreviewTexture preview_sum(PreviewTexture a, PreviewTexture b, float weight) {
 }
 const PreviewTexture k_preview_no_texture = PreviewTexture(vec3(0.0), 0.0, 0.0, 0.0, 0.0);
 
-// Whether pixels of these show one surface.
+// Whether two pixels show the same surface.
 bool preview_same(PreviewSurface a, PreviewSurface b) {
   if (a.depth <= 0.0 || b.depth <= 0.0) return a.depth == b.depth;
   return abs(a.depth - b.depth) < 0.1 * a.depth && dot(a.normal, b.normal) > 0.7 && a.emits == b.emits;
 }
-// ... of what was shown before, as far as both are known: another surface's light may lie where this one has come into view.
+// Likewise, with a pixel of the previous picture; true if either is unknown. False for newly visible surfaces.
 bool preview_may_be_same(PreviewSurface now, PreviewSurface was) {
   return now.depth < 0.0 || was.depth < 0.0 || preview_same(now, was);
 }
 
-// What a ray through a pixel's middle has met; depth below 0: not known. `known`: k_preview_surface_*, of `surfaces`.
+// Surface hit by a ray through a pixel's centre; depth below 0: unknown. `known`: k_preview_surface_* of `surfaces`.
 PreviewSurface preview_centre(samplerBuffer surfaces, uint known, int pixel) {
   PreviewSurface s = preview_surface(texelFetch(surfaces, pixel));
   if (known != k_preview_surface_seen) s.depth = -1.0;
   return s;
 }
-// Whether a surface that emits is seen by the middle of a pixel beside. `surfaces`: what rays through the middles have met.
+// Whether the centre of an adjacent pixel shows an emitter. `surfaces`: hits of rays through the pixels' centres.
 bool preview_beside_emitter(samplerBuffer surfaces, uvec2 size, uint pixel) {
   ivec2 xy = ivec2(pixel % size.x, pixel / size.x);
   bool beside = false;
@@ -134,9 +134,9 @@ bool preview_beside_emitter(samplerBuffer surfaces, uvec2 size, uint pixel) {
   }
   return beside;
 }
-// Whether samples of a pixel show more than one surface, or one and what is behind all: its depth, normal and colour are means
-// then, and its light a mixture. `centre`: what a ray through its middle has met; depth below 0: not known. `primary`: the
-// luminance that the samples have of lamps' own light, in units of white. `surfaces`: as preview_beside_emitter has it.
+// Whether the samples of a pixel show several surfaces, or a surface and the background: then its depth, normal and colour are
+// means, and its light is a mixture. `centre`: surface hit by a ray through its centre; depth below 0: unknown. `primary`:
+// luminance of the primary component, in units of white. `surfaces`: as for preview_beside_emitter.
 const float k_preview_bright = 0.25, k_preview_facing = 0.95;
 bool preview_mixed(PreviewSurface s, PreviewSurface centre, float primary, samplerBuffer surfaces, uvec2 size, uint pixel) {
   if (s.samples <= 0.0 || s.depth <= 0.0) return false;
@@ -148,9 +148,9 @@ bool preview_mixed(PreviewSurface s, PreviewSurface centre, float primary, sampl
   return !s.emits && primary > k_preview_bright && preview_beside_emitter(surfaces, size, pixel);
 }
 
-// Whether one surface's light tells of the other's: 0..1. `offset`: between their points; `scale`: how far they may be off
-// each other's plane [m]. Colours of which one is four times as bright count half: light over the colour is not what falls on a
-// surface where it mirrors some of it, and next to a table that shines a dark mat would glow.
+// Similarity of two surfaces, 0..1: how well the light of one predicts the other's. `offset`: between their points; `scale`:
+// tolerance of the distance from each other's plane [m]. Colours that differ by a factor of four count half: light over
+// colour is not irradiance where the surface is glossy, and a dark mat next to a bright table would glow.
 float preview_alike(PreviewSurface a, PreviewSurface b, vec3 offset, float scale) {
   if (a.depth < 0.0 || b.depth < 0.0) return 1.0;
   if (a.depth == 0.0 || b.depth == 0.0) return a.depth == b.depth ? 1.0 : 0.0;

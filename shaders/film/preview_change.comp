@@ -1,28 +1,29 @@
-// How much light has changed since what was shown before, told by few samples of many pixels: by component, pooled over
-// blocks of the grid's cells and over the whole picture. One workgroup a block, then one for all.
+// Estimates how much the light has changed since the last display, from few samples of many pixels: by component, pooled
+// over blocks of grid cells and over the whole picture. One workgroup a block, then one for all.
 #include "film/preview.glsl"
 #define LUCERNA_SUM_ROWS int(k_preview_change_texels)
 #include "lib/sum_rows.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewChangePush push; };
 uniform samplerBuffer grid_texels, grid_surfaces, before_texels;
-layout(scalar) buffer Sums { vec4 sums[]; };              // a block: light now, before, square of what is off, by component; samples; square of noise
-// Of a block: now over before; behind them, of all, the variance of a sample over the square of its light.
+// Per block: light now, light before, squared residual, by component; samples; squared noise.
+layout(scalar) buffer Sums { vec4 sums[]; };
+// Per block: light now over light before; then, for the picture, the variance of a sample over the square of its light.
 layout(scalar) writeonly buffer Ratios { vec4 ratios[]; };
 
-const float k_most_ratio = 16.0;  // that light is taken to have grown by
-const float k_unusual = 2.0;  // noise of a block over that of the picture, up to which it is expected
-const float k_least_noise = 1.0, k_most_noise = 1e4;  // of a sample, squared, over the square of its light
-const uint k_cells = k_preview_change_step * k_preview_change_step / 64u;  // of a lane
+const float k_most_ratio = 16.0;  // maximum growth of light
+const float k_unusual = 2.0;  // expected maximum of a block's noise over that of the picture
+const float k_least_noise = 1.0, k_most_noise = 1e4;  // squared noise of a sample over the square of its light
+const uint k_cells = k_preview_change_step * k_preview_change_step / 64u;  // per lane
 
-// How far sums are believed, where what is known without them is `off` from them, squared: nothing within two standard errors,
-// by the square that has been found (`spread`) or by that which was to be expected; all of it far off.
+// Weight of measured sums, 0..1, given the squared deviation `off` of the prior estimate from them: 0 within two standard
+// errors, by the measured square `spread` or the `expected` one; 1 far outside.
 vec4 belief(vec4 off, vec4 spread, vec4 expected) {
   vec4 found = clamp(1.0 - 4.0 * spread / max(off, vec4(1e-20)), 0.0, 1.0);
   return found * smoothstep(4.0 * expected, 9.0 * expected + 1e-20, off);
 }
 
-// What sums say of the ratio where `known` is known without them.
+// Estimate of the ratio from sums and the prior estimate `known`.
 vec4 ratio_of(vec4 now, vec4 before, vec4 spread, vec4 expected, vec4 known) {
   vec4 off = now - known * before, measured = min(now / max(before, vec4(1e-20)), vec4(k_most_ratio));
   return mix(known, mix(known, measured, belief(off * off, spread, expected)), greaterThan(before, vec4(0.0)));
@@ -36,9 +37,9 @@ void main() {
       for (uint k = 0u; k < k_preview_change_texels; ++k) lanes[k][lane] += sums[k_preview_change_texels * b + k];
     add_up(lane);
     vec4 all = ratio_of(lanes[0][0], lanes[1][0], lanes[2][0], vec4(0.0), vec4(1.0));
-    // Of a sample over the square of its light. A block whose few samples have found nothing seems to be without noise.
+    // Noise of a sample over the square of its light. A block whose few samples found no light would seem noise-free.
     vec4 usual = lanes[2][0] * lanes[3][0].x / max(lanes[1][0] * lanes[1][0], vec4(1e-20));
-    // The mean over blocks of its logarithm: a few bright paths are not to speak for all.
+    // Mean of its logarithm over blocks, so that a few bright paths do not dominate.
     barrier();
     lanes[0][lane] = lanes[1][lane] = vec4(0.0);
     for (uint b = lane; b < blocks; b += 64u) {
@@ -76,7 +77,7 @@ void main() {
     lanes[0][lane] += before[i], lanes[1][lane].x += 1.0;
   }
   add_up(lane);
-  // One weight for the block: by what single cells had before, those would weigh most that noise had left dark.
+  // One weight for the block: weights by single cells' light would favour cells that are dark by noise.
   vec4 mean = max(lanes[0][0] / max(lanes[1][0].x, 1.0), vec4(1e-6));
   barrier();
   for (int k = 0; k < LUCERNA_SUM_ROWS; ++k) lanes[k][lane] = vec4(0.0);
@@ -91,10 +92,10 @@ void main() {
   lanes[0][lane] = lanes[1][lane] = vec4(0.0);
   for (uint i = 0u; i < k_cells; ++i) {
     vec4 off = weights[i] * (now[i] - ratio * before[i]);
-    // Cells that share a sample of a draft err alike.
+    // Cells that share a preview sample have the same error.
     vec4 spread = samples[i] > 0.0 ? off * off / min(samples[i], 1.0) : vec4(0.0), own = weights[i] * noise[i];
     lanes[0][lane] += spread;
-    lanes[1][lane] += mix(own * own, spread, lessThan(noise[i], vec4(0.0)));  // of one sample it is not known
+    lanes[1][lane] += mix(own * own, spread, lessThan(noise[i], vec4(0.0)));  // unknown with one sample
   }
   add_up(lane);
   if (lane == 0u && block < blocks) {

@@ -1,33 +1,33 @@
-// A pass of an edge-avoiding a-trous filter over the grid (Dammertz et al. 2010): 3x3 cells, `step` apart, weighed by
-// whether they are of one surface, and by whether their light differs by more than its noise (Schied et al. 2017). The first
-// pass weighs by surfaces alone and finds the noise, from the halves of the samples where there are two, else from how much
-// neighbours differ.
+// One pass of an edge-avoiding a-trous filter over the grid (Dammertz et al. 2010): 3x3 cells, `step` apart, weighted by
+// similarity of the surfaces, and of their light relative to its noise (Schied et al. 2017). The first pass weights by
+// surfaces only and estimates the noise, from the halves of the samples if there are two, else from the differences of
+// neighbours.
 //
-// The few cells that hold most of what single paths bring count for less in the first pass, or they would show as specks. What
-// is so lost is spread more widely, over what is of one surface, and given back by the preview's picture: rooms would seem
-// darker than they are as long as samples are few.
+// The first pass reduces the weight of the few cells that hold most of the light of single paths, which would show as
+// specks. The removed light is spread over the same surface and added back in the preview's picture; otherwise rooms would
+// look too dark while samples are few.
 #include "lib/invocation.glsl"
 #include "film/preview.glsl"
 #ifndef LUCERNA_PREVIEW_FIRST
-#define LUCERNA_PREVIEW_FIRST 0  // of the passes
+#define LUCERNA_PREVIEW_FIRST 0  // first pass
 #endif
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewFilterPush push; };
 uniform samplerBuffer grid_texels, grid_surfaces, before_texels, lost_texels, change_texels, texture_texels;
-layout(scalar) writeonly buffer FilteredBefore { vec4 filtered_before[]; };  // the same way, so that both can be compared
+layout(scalar) writeonly buffer FilteredBefore { vec4 filtered_before[]; };  // filtered with the same weights, for comparison
 layout(scalar) writeonly buffer Filtered { vec4 filtered[]; };
 layout(scalar) writeonly buffer FilteredLost { vec4 filtered_lost[]; };  // luminance, by component
 layout(scalar) writeonly buffer FilteredTexture { vec4 filtered_texture[]; };
 layout(scalar) writeonly buffer GridNoise { vec4 grid_noise[]; };  // standard error of a cell, by component
 
-// Luminance of a cell, in units of white, up to which it is given back.
+// Maximum luminance of a cell, in units of white, that is added back.
 const float k_most_lost = 32.0;
-// Per sample of a cell: how soon one that is alone is taken at its word.
+// Per sample of a cell: how fast a cell alone on its surface becomes trusted.
 const float k_alone_until = 0.05;
-const float k_around = 9.0;                    // cells whose paths might have found it
-const float k_dark = 0.25, k_not_dark = 0.75;  // of what is to be expected
-// Light from lamps and bundled light have bright parts with sharp borders, which would glow if what is lost there were spread.
-// Of them it is given back as far as the halves of the samples do not agree about it.
+const float k_around = 9.0;                    // cells whose paths could have found the light
+const float k_dark = 0.25, k_not_dark = 0.75;  // of the expected light
+// Light from lamps and caustics have bright parts with sharp borders, which would glow if lost light were spread there. It is
+// added back as far as the halves of the samples disagree about it.
 const float k_agree = 0.3, k_disagree = 0.8;  // standard error over light
 
 vec3 ray_at(vec2 cell) {
@@ -46,7 +46,7 @@ void main() {
   PreviewLight own = preview_light(grid_texels, int(cell));
   vec4 own_luminance = preview_luminances(own), own_noise = preview_errors(own);
   vec3 ray = ray_at(vec2(xy)), point = point_at(ray, max(here.depth, 0.0));
-  // A cell's width there, and a little more for surfaces that are not plane.
+  // Width of a cell at that depth, with a margin for curved surfaces.
   float scale = (push.orthographic != 0u ? 1.0 : max(here.depth, 0.0)) *
                     (2.0 * length(push.right) / float(push.across) * float(push.step)) * 0.3 + 5e-4 * max(here.depth, 0.0) + 1e-6;
   vec3 sum[k_component_count];
@@ -56,7 +56,7 @@ void main() {
   PreviewTexture colours = k_preview_no_texture;
 #if LUCERNA_PREVIEW_FIRST
   vec4 mean = vec4(0.0), square_mean = vec4(0.0), known = vec4(0.0), any_mean = vec4(0.0), any_square = vec4(0.0);
-  vec4 around[k_component_count];  // on whatever surfaces, and weights
+  vec4 around[k_component_count];  // on any surface; w: weights
   for (uint c = 0u; c < k_component_count; ++c) around[c] = vec4(0.0);
   float alike_square = 0.0, others = 0.0, known_sum = 0.0, any_sum = 0.0;
   vec4 bright = vec4(0.0), by_chance = vec4(0.0), brightest = vec4(0.0), next_bright = vec4(0.0), certain = vec4(0.0);
@@ -69,7 +69,7 @@ void main() {
     PreviewLight l = preview_light(grid_texels, there);
     float kernel = (k == 4 ? 4.0 : (k & 1) == 1 ? 2.0 : 1.0) * (inside ? 1.0 : 0.0) * min(s.samples, 1.0);
     float alike = preview_alike(here, s, point_at(ray_at(vec2(at)), max(s.depth, 0.0)) - point, scale);
-    // What knows of no samples takes whatever there is, rather than nothing.
+    // Cells without samples take any light rather than none.
     if (here.samples <= 0.0) alike = max(alike, 1e-4);
     vec4 y = preview_luminances(l), noise = preview_errors(l);
     float plain = kernel * alike;
@@ -77,7 +77,7 @@ void main() {
     plain_sum += plain;
     colours = preview_sum(colours, preview_texture(texelFetch(texture_texels, there)), plain);
 #if LUCERNA_PREVIEW_FIRST
-    // Few cells hold most of what single paths bring: shown bright, they count for less.
+    // Few cells hold most of the light of single paths; they get less weight, so that they do not show as specks.
     float white = 1.0 / luminance(preview_modulation(s));
     vec4 damped = 1.0 + max(y / white - 1.0, vec4(0.0));
     w /= damped;
@@ -104,7 +104,7 @@ void main() {
     if (l.of[0].w >= 0.0) known += plain * noise * noise, known_sum += plain;
 #else
     lost += plain * texelFetch(lost_texels, there);
-    // Of both: where no path has found light yet, its absence seems certain.
+    // Noise of both cells: where no path has found light yet, a cell alone seems noise-free.
     vec4 chance = 3.0 * max(max(own_noise, noise), vec4(0.0)) + 0.02 * own_luminance + 1e-4;
     w *= exp2(-min(abs(y - own_luminance) / chance, vec4(40.0)));
 #endif
@@ -117,25 +117,24 @@ void main() {
   vec4 error = sqrt(variance) * inverse;
 #if LUCERNA_PREVIEW_FIRST
   mean /= max(plain_sum, 1e-20);
-  // Where few are alike, their differences tell little: all around then stand for them.
+  // With few similar cells, their differences are uncertain: all cells around are used.
   any_mean /= max(any_sum, 1e-20);
   vec4 any = max(any_square / max(any_sum, 1e-20) - any_mean * any_mean, vec4(0.0));
   vec4 alike = max(square_mean / max(plain_sum, 1e-20) - mean * mean, vec4(0.0));
   vec4 spread = mix(any, alike, clamp(plain_sum / max(any_sum, 1e-20) * 2.0 - 1.0, 0.0, 1.0)) * (9.0 / 8.0);
   vec4 of_cell = known_sum > 0.5 * plain_sum ? known / max(known_sum, 1e-20) : spread;
   if (push.blocks_across > 0u) {
-    // Few paths that find next to nothing tell of no noise: they have what samples have of the light that is to be expected.
+    // Few paths that find almost no light underestimate the noise: then that of samples of the expected light is used.
     uvec2 blocks = uvec2(push.blocks_across, push.blocks_down);
     vec4 expected = texelFetch(before_texels, int(cell)) * preview_change(change_texels, blocks, vec2(xy));
     vec4 dark = k_preview_by_way * (1.0 - smoothstep(vec4(k_dark), vec4(k_not_dark), mean / max(expected, vec4(1e-6))));
     vec4 noise = texelFetch(change_texels, int(blocks.x * blocks.y));
-    // Where one path of 1 + noise finds the light: how likely all of those around have missed it.
+    // Probability that all paths around missed the light if one path in 1 + noise finds it.
     vec4 missed = exp(-k_around * here.samples / (1.0 + noise));
     of_cell = max(of_cell, dark * missed * noise * expected * expected / max(here.samples, 1e-3));
   }
   grid_noise[cell] = sqrt(of_cell);
-  // A cell that is alone on its surface has nobody to tell it more than its few paths do. Those around, on other surfaces,
-  // are better than that.
+  // A cell alone on its surface has only its few paths; even cells of other surfaces around predict its light better.
   float alone = (1.0 - smoothstep(0.05, 0.2, others / max(any_sum - 4.0, 1e-20))) / (1.0 + k_alone_until * here.samples);
   of_cell = mix(of_cell, max(of_cell, any), alone);
   error = sqrt(of_cell * alike_square) / max(plain_sum, 1e-20);
@@ -150,8 +149,8 @@ void main() {
     if (around[c].w > 0.0) result.of[c].rgb = mix(result.of[c].rgb, around[c].rgb / around[c].w, alone);
 #endif
 #if LUCERNA_PREVIEW_FIRST
-  // Beside what is bright for certain it is a border: halves differ there by where in a pixel samples lie. While there are no
-  // halves: one that is bright alone.
+  // Cells beside certainly bright ones are a border, where halves differ by the positions of samples within a pixel. Without
+  // halves, a single bright cell counts as chance.
   vec4 chance = by_chance / max(bright, vec4(1e-20)) *
                 (1.0 - smoothstep(vec4(k_agree), vec4(k_disagree), certain / max(brightest, vec4(1e-20))));
   if (own.of[0].w < 0.0) chance = 1.0 - smoothstep(vec4(k_agree), vec4(k_disagree), next_bright / max(brightest, vec4(1e-20)));

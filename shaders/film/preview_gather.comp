@@ -1,5 +1,5 @@
-// What was shown before, as another camera sees it (preview_scatter.comp): a pixel between those that moved apart takes that
-// of a neighbour. Seams and what comes into view stay unknown.
+// Previous picture from another camera (after preview_scatter.comp): a pixel between pixels that moved apart takes that of a
+// neighbour. Seams and newly visible surfaces stay unknown.
 #include "lib/invocation.glsl"
 #include "film/preview.glsl"
 layout(local_size_x = 64) in;
@@ -14,7 +14,7 @@ const int k_apart = 3;  // pixels
 uint depth_bits(int at) { return texelFetch(nearest_depths, at >> 2)[at & 3]; }
 uint nearest_pixel(int at) { return texelFetch(nearest_pixels, at >> 2)[at & 3]; }
 
-// Pixels that the camera came close to lie farther apart: the nearest one, where there are some on three sides at least.
+// Pixels that the camera approached lie farther apart: finds the nearest one, if there are some on at least three sides.
 bool between(ivec2 xy, ivec2 size, out ivec2 nearest) {
   uint sides = 0u;
   int least = 3 * k_apart * k_apart;
@@ -37,8 +37,8 @@ void main() {
   if (pixel >= push.width * push.height) return;
   uint from = nearest_pixel(int(pixel)), depth = depth_bits(int(pixel));
   ivec2 xy = ivec2(pixel % push.width, pixel / push.width), size = ivec2(push.width, push.height);
-  // What lies between pixels that moved apart: the nearest of its neighbours, where most of them are there. So are pixels
-  // of what is behind that show through.
+  // Gaps between pixels that moved apart take the nearest neighbour, if most neighbours are known. So do pixels of a surface
+  // behind that shows through.
   uint around = 0u, best_depth = k_preview_none;
   ivec2 best_at = xy;
   float near = from == k_preview_none ? uintBitsToFloat(0x7f7fffffu) : 0.95 * uintBitsToFloat(depth);

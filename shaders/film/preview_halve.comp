@@ -1,5 +1,5 @@
-// Pixels of the preview -> the grid that is filtered: light over the surface's colour, of all samples there are in a cell,
-// the draft's among them.
+// Grid to filter from the pixels of the preview: light over the surface's colour, of all samples in a cell, including preview
+// samples.
 #include "lib/invocation.glsl"
 #include "film/preview.glsl"
 layout(local_size_x = 64) in;
@@ -7,15 +7,15 @@ layout(push_constant, scalar) uniform Push { PreviewHalvePush push; };
 uniform samplerBuffer packed_texels, surface_texels, guide_surfaces, draft_texels, draft_surfaces, history_texels, history_surfaces;
 layout(scalar) writeonly buffer Grid { vec4 grid[]; };
 layout(scalar) writeonly buffer GridSurfaces { vec4 grid_surfaces[]; };
-// Luminance by component of what was shown before, likewise over the colour; the present's where that is not known.
+// Luminance of the previous picture by component, likewise over the colour; the present luminance where it is unknown.
 layout(scalar) writeonly buffer GridBefore { vec4 grid_before[]; };
 layout(scalar) writeonly buffer GridTexture { vec4 grid_texture[]; };
 
-const float k_doubtful = 0.01;  // what samples count that may have met something else
+const float k_doubtful = 0.01;  // weight of samples that may have hit another surface
 
 PreviewSurface centre_of(int pixel) { return preview_centre(guide_surfaces, push.surfaces, pixel); }
 
-// Where the film has no samples, as it is known otherwise.
+// Surface of a pixel, from the film or, without samples, from the guide.
 PreviewSurface surface_at(int pixel) {
   if (push.sampled != 0u) return preview_surface(texelFetch(surface_texels, pixel));
   vec4 texel = push.surfaces != k_preview_surface_unknown ? texelFetch(guide_surfaces, pixel) : vec4(-1.0, 0.0, 0.0, 0.0);
@@ -29,7 +29,7 @@ bool mixed(int pixel, PreviewSurface s) {
 }
 
 uvec2 draft_size() { return uvec2(push.draft_width, push.draft_height); }
-// Of a draft's pixel; where its middle shows a mirror or glass, what is seen there.
+// Surface of a preview sample; if its centre shows a mirror or glass, the surface seen there.
 PreviewSurface draft_surface(uvec2 at) {
   PreviewSurface s = preview_surface(texelFetch(draft_surfaces, int(at.y * push.draft_width + at.x)));
   if (push.surfaces != k_preview_surface_seen) return s;
@@ -40,8 +40,8 @@ PreviewSurface draft_surface(uvec2 at) {
   return seen;
 }
 
-// Whether a draft's pixel may show something else than a cell of it: light of surfaces that emit and of those that do not, side
-// by side in one plane, would show as specks.
+// Whether a preview sample's pixel also has a surface of the other kind, emitting or not: light of both, side by side in one
+// plane, would show as specks.
 bool mixed_draft(uvec2 at, bool emits) {
   if (push.surfaces != k_preview_surface_seen) return false;
   uvec2 size = uvec2(push.width, push.height), draft = uvec2(push.draft_width, push.draft_height);
@@ -81,9 +81,9 @@ bool alike(PreviewSurface a, PreviewSurface b) {
   return (a.depth > 0.0) == (b.depth > 0.0) && dot(a.normal, b.normal) > 0.8 && a.emits == b.emits;
 }
 
-// Light, in units of white, up to which it is looked at to tell whether it goes with the colours (preview_resolve.comp).
+// Light, in units of white, up to which its correlation with colour is measured (preview_resolve.comp).
 const float k_most_light = 4.0;
-// Of four pixels, two rows of two.
+// Four pixels, two rows of two.
 struct Quad {
   float light[4], colour[4];
   bool known[4];
@@ -91,7 +91,7 @@ struct Quad {
 PreviewTexture texture_of(Quad q, uint pairs) {
   PreviewTexture t = k_preview_no_texture;
   t.few = 4.0 / float(pairs);
-  for (uint k = 0u; k < pairs; ++k) {  // one beside the other, one below the other, and so from the last one
+  for (uint k = 0u; k < pairs; ++k) {  // horizontally and vertically, from the first and from the last pixel
     uint a = k < 2u ? 0u : 3u, b = k % 2u == 0u ? 1u : 2u;
     if (!q.known[a] || !q.known[b]) continue;
     t.with_light += (q.light[a] - q.light[b]) * (q.colour[a] - q.colour[b]);
@@ -121,7 +121,7 @@ PreviewTexture texture_of_pixels(uvec2 xy, PreviewSurface here, bool show_others
   t.inverse = sum / max(count, 1.0);
   return t;
 }
-// The same of a pixel of the draft and those after it.
+// Likewise, of a preview sample and its right and lower neighbours.
 PreviewTexture texture_of_draft(uvec2 at, PreviewSurface here) {
   Quad q;
   uvec2 size = draft_size();
@@ -149,7 +149,7 @@ void main() {
   if (cell >= push.across * push.down) return;
   uvec2 xy = push.step * uvec2(cell % push.across, cell / push.across);
   for (uint c = 0u; c < k_component_count; ++c) total.of[c] = vec4(0.0);
-  // The cell's surface is that of its first pixel; pixels that show another one are left out where that is known.
+  // The cell's surface is that of its first pixel; pixels known to show another one are omitted.
   int first = int(xy.y * push.width + xy.x);
   PreviewSurface here = surface_at(first), centre = centre_of(first);
   if (centre.depth >= 0.0 && mixed(first, here)) {
@@ -163,7 +163,7 @@ void main() {
     bool doubtful = push.sampled == 0u && push.surfaces != k_preview_surface_seen;
     if ((here.depth < 0.0 || doubtful) && s.samples > 0.0) here = s;
     if (push.repainted != 0u && here.samples <= 0.0 && s.samples > 0.0) here.albedo = s.albedo;
-    // Across an edge it is another surface's light, and better than none.
+    // Across an edge it is another surface's light, with a small weight better than none.
     bool akin = (s.depth > 0.0) == (here.depth > 0.0) &&
                  (s.depth <= 0.0 || (dot(s.normal, here.normal) > 0.8 && abs(s.depth - here.depth) < 0.1 * here.depth));
     akin = akin && !mixed_draft(at, here.emits);
@@ -172,7 +172,7 @@ void main() {
   }
   vec4 before = vec4(0.0);
   float before_known = 0.0;
-  // Pixels that show other surfaces as well are left out where there are some that do not.
+  // Pixels that show several surfaces are omitted if others show only this one.
   bool show_others[4] = bool[](true, true, true, true), pure = false;
   for (uint k = 0u; k < 4u && push.sampled != 0u; ++k) {
     int pixel = pixel_of(xy, k);
@@ -180,7 +180,7 @@ void main() {
     show_others[k] = mixed(pixel, s);
     pure = pure || (s.samples > 0.0 && alike(s, here) && !show_others[k]);
   }
-  for (uint k = 0u; k < 4u; ++k) {  // of a wider cell, which is one of a draft alone, these tell enough
+  for (uint k = 0u; k < 4u; ++k) {  // wider cells exist only with preview samples; four of their pixels are enough
     int pixel = pixel_of(xy, k);
     PreviewSurface s = surface_at(pixel);
     if (s.samples > 0.0 && (alike(s, here) || s.depth < 0.0) && !(pure && show_others[k]))
@@ -202,7 +202,7 @@ void main() {
   vec4 now = vec4(luminance(total.of[0].rgb), luminance(total.of[1].rgb), luminance(total.of[2].rgb), luminance(total.of[3].rgb));
   grid_before[cell] = before_known > 0.0 ? before / before_known : now;
   LUCERNA_PREVIEW_STORE(grid, cell, total)
-  // Where all of them may have light of what shines beside they tell little of its own.
+  // If all of them may contain light of an adjacent emitter, they have little information about the surface's own light.
   bool lit_beside = push.sampled != 0u && !pure && !here.emits && luminance(preview_modulation(here) * total.of[0].rgb) > k_preview_bright &&
                   push.surfaces == k_preview_surface_seen &&
                   preview_beside_emitter(guide_surfaces, uvec2(push.width, push.height), uint(first));

@@ -1,4 +1,4 @@
-// How wrong the preview is, tile by tile: what it expects of itself, and what samples say that it has not used.
+// Error of the preview, tile by tile: its expected error, and the error measured by samples that it has not used.
 //
 // The picture shown at first, of luminance L, is compared with samples of the film taken since, of mean S. With d = (L - S) / D,
 // D a scale of the tile, the mean of d_i d_j over pairs of different pixels is an unbiased estimate of the square of the mean of d
@@ -16,13 +16,13 @@ layout(scalar) readonly buffer SumsNow { vec2 sums_now[]; };
 layout(scalar) writeonly buffer Tiles { PreviewTile tiles[]; };
 
 const uint k_pixels = k_preview_tile * k_preview_tile;
-// How far the mean of the samples may move a tile's scale from what was shown.
+// Maximum factor by which the mean of the samples changes a tile's scale from that of the shown picture.
 const float k_scale = 4.0;
 
 shared vec4 lanes[64];
 shared vec4 tile_sum;
 
-// Sum of a vector over the group, for all of it.
+// Sum of a vector over the workgroup, returned to all its invocations.
 vec4 group_sum(vec4 value) {
   uint lane = gl_LocalInvocationIndex;
   barrier();
@@ -37,8 +37,8 @@ vec4 group_sum(vec4 value) {
   return tile_sum;
 }
 
-// Luminance shown before of a pixel of the film, which may cover several of the picture, and that of its new samples; false where
-// either is missing.
+// Previously shown luminance of a film pixel, which may cover several of the picture, and luminance of its new samples. False
+// if either is missing.
 bool pair_of(uvec2 at, uint step, out float shown, out float sampled) {
   if (at.x >= push.film_width || at.y >= push.film_height) return false;
   uint film = at.y * push.film_width + at.x;

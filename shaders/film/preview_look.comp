@@ -1,8 +1,8 @@
-// What rays through the picture's pixels show, in mirrors and through glass as well: the first surface that does not only mirror
-// or refract. They go on with most of the light. In place of transport/shade.comp (transport/wavefront.h, PathEnds::vertex), from
-// overlay/centre.comp to film/preview_sight.comp, which reads the features as k_sight_* says. What is seen in a mirror lies behind
-// it, mirrored at its plane, and what is seen through glass where it would be without: there it moves, about, as a surface does
-// when the camera moves.
+// Finds the surfaces that the picture's pixels show, also in mirrors and through glass: the first surface that does not only
+// mirror or refract. Rays follow the strongest lobe. Replaces transport/shade.comp (transport/wavefront.h, PathEnds::vertex),
+// between overlay/centre.comp and film/preview_sight.comp, which reads the features (k_sight_*). A surface seen in a mirror is
+// placed behind it, mirrored at its plane; one seen through glass at its undeflected position. There it moves approximately as
+// a surface does when the camera moves.
 #include "lib/variants.glsl"
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
@@ -46,7 +46,7 @@ void main() {
   if (!on.cut_out) path.throughput *= surface.parameters.base;
   if (on.turned) {
     path.bits += 1u << k_path_events_shift;
-    path.nulls += on.mirrored ? 1u : 0u;  // of mirrors, here
+    path.nulls += on.mirrored ? 1u : 0u;  // here: number of mirrors
     features[2u * slot] = vec4(0.0, 0.0, 0.0, float(k_sight_beyond));
   }
   path.travelled = travelled;

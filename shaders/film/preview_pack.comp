@@ -1,4 +1,4 @@
-// Film -> pixels of the preview: means, their noise by the two halves of the samples, surfaces.
+// Pixels of the preview from the film: means, their noise from the two halves of the samples, surfaces.
 #include "lib/film.glsl"
 #include "lib/invocation.glsl"
 #include "film/preview.glsl"
@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewPackPush push; };
 layout(scalar) writeonly buffer Packed { vec4 packed[]; };
 layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
-layout(scalar) writeonly buffer PackedSums { vec2 packed_sums[]; };  // sum of the luminance of what is shown, samples
+layout(scalar) writeonly buffer PackedSums { vec2 packed_sums[]; };  // sum of the shown luminance, number of samples
 uniform samplerBuffer guide_surfaces;
 
 void main() {
@@ -38,7 +38,7 @@ void main() {
   PreviewSurface seen = preview_surface(guide);
   bool beyond = push.guided != 0u && seen.samples == k_preview_beyond;
   s.emits = push.guided != 0u && seen.emits;
-  // Samples have met the mirror or the glass.
+  // Samples have hit the mirror or the glass.
   if (beyond) {
     float samples = s.samples;
     s = seen;

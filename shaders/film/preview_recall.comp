@@ -1,5 +1,5 @@
-// What was shown before, as the camera sees it now, is the picture until there is new light. What has come into view takes
-// the light of what is next to it, rather of what is behind: that is found for cells of k_preview_first_step pixels.
+// Shows the previous picture from the present camera until there is new light. Newly visible surfaces take the light next to
+// them, preferably of surfaces behind, found for cells of k_preview_first_step pixels.
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "film/preview.glsl"
@@ -7,14 +7,14 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewRecallPush push; };
 uniform samplerBuffer history_texels, history_surfaces;
-uniform samplerBuffer cell_texels;  // of a cell: light, depth (0: not known)
+uniform samplerBuffer cell_texels;  // per cell: light, depth (0: unknown)
 layout(scalar) writeonly buffer Cells { vec4 cells[]; };
 layout(scalar) writeonly buffer Picture { uint picture[]; };
 
 const int k_reach = 64;    // cells
-const float k_sky = 10.0;  // depth that the background is taken for [m], so that it does not outweigh a wall that is next
+const float k_sky = 10.0;  // depth assumed for the background [m], so that it does not outweigh an adjacent wall
 
-// Of what was shown: about where its surface is; 0: it is not known, nor its light.
+// Approximate depth of the previous picture's surface; 0: surface and light are unknown.
 float depth_at(int pixel) {
   float depth = texelFetch(history_surfaces, pixel).x;
   if (depth < 0.0 && depth > k_preview_about) return 0.0;
@@ -28,7 +28,7 @@ vec3 shown_at(int pixel) {
   return sum;
 }
 
-// The cell's mean, of pixels that are known.
+// Mean over the cell's known pixels.
 vec4 cell_mean(ivec2 cell) {
   vec4 sum = vec4(0.0);
   float known = 0.0;
@@ -44,7 +44,7 @@ vec4 cell_mean(ivec2 cell) {
   return sum / max(known, 1.0);
 }
 
-// What is known in eight directions, in steps that double: all of a picture may have to be looked for.
+// Weighted mean of the first known cells in eight directions. Steps double, so that the search may span the whole picture.
 vec4 cell_around(ivec2 cell, ivec2 size) {
   vec4 sum = vec4(0.0);
   float weights = 0.0;

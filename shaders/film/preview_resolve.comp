@@ -1,10 +1,10 @@
-// The preview's picture: of each component the pixel's own samples as far as their noise allows, else the filtered grid
-// times the surface's colour; mixed with what was shown before as far as that is not seen to be wrong.
+// Picture of the preview: for each component the pixel's own samples as far as their noise permits, else the filtered grid
+// times the surface's colour; mixed with the previous picture where that is not visibly wrong.
 //
-// With new light N of variance v and older light O of variance u the difference d = N - O tells of a change: its square is
-// on average v + u + change^2. The mix w O + (1 - w) N errs least with w = v / (v + u + change^2). Both are filtered for the
-// difference, so that detail which the filter takes away is no change. Before, what was there is scaled by what the samples
-// of many pixels around say of the change (film/preview_change.comp).
+// For new light N of variance v and older light O of variance u, the difference d = N - O measures the change: the mean of
+// its square is v + u + change^2. The mix w O + (1 - w) N has the least error for w = v / (v + u + change^2). Both are
+// filtered for the difference, so that detail lost in filtering does not count as change. Before that, O is scaled by the
+// change measured over many pixels (film/preview_change.comp).
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "film/preview.glsl"
@@ -18,36 +18,36 @@ layout(scalar) writeonly buffer Packed { vec4 packed[]; };
 layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
 layout(scalar) writeonly buffer Picture { uint picture[]; };
 layout(scalar) writeonly buffer Shares { PreviewShares shares[]; };
-// Halves: luminance of what is shown, and its expected relative error over a mean of 3x3 pixels (1 at most).
+// Two half floats: shown luminance, and its expected relative error over a mean of 3x3 pixels (1 at most).
 layout(scalar) writeonly buffer Shown { uint shown_pixels[]; };
 
-// Squares of a difference, over its variance, up to which it is taken for chance: noise of few paths has far outliers, and
-// where no light has changed nearly all of what is different is one.
+// Maximum squared difference, over its variance, that counts as chance: noise of few paths has far outliers, and without a
+// change of light almost all differences are outliers.
 const float k_by_chance = 3.0, k_by_chance_same = 16.0;
-const float k_least_noise = 0.5;  // of a sample, relative, in light that has not changed
-// Relative noise of a pixel up to which it is shown as it is, and from which on it is filtered.
+const float k_least_noise = 0.5;  // minimum relative noise of a sample where light has not changed
+// Relative noise of a pixel up to which it is shown unfiltered, and from which it is fully filtered.
 const float k_clean = 0.02, k_noisy = 0.08;
-// Of light, how much may not follow the colours; and of the sums that are filtered, 1 over how many are independent at most.
+// Expected share of light that does not follow the colours; inverse of the maximum number of independent filtered sums.
 const float k_prior = 0.35, k_fewest = 1.0 / 256.0;
-// Of what pixels around have, the noise of a pixel from which on that is asked itself.
+// A pixel's own noise is used if it exceeds this times the noise of its surroundings.
 const float k_outlier = 3.0;
-// Of filtered light, what the filter may be off by.
+// Assumed relative error of filtered light.
 const float k_filter_error = 0.04;
-// Mean size of a deviation, in standard errors: sqrt(2 / pi) of a normal variable's; and a quarter more, by which light that was
-// filtered was measured to be off on interiors, because few samples know too little of their noise.
+// Mean absolute deviation in standard errors: sqrt(2 / pi) for a normal variable, times 1.25, measured on filtered interiors,
+// where few samples underestimate their noise.
 const float k_mean_deviation = 1.25 * 0.798;
 
-// Of the nearest cells' weight, what has to be of a pixel's surface. Else cells so far around are asked.
+// Minimum weight of the nearest cells on a pixel's surface. With less, cells farther away are searched.
 const float k_alone = 0.02;
 const int k_wide = 3;
-// A pixel that is of no cell's surface, or an outlier, is filtered until it has so many samples, less and less up to so many.
+// A pixel on no cell's surface, or an outlier, is filtered fully up to the first number of samples, not at all from the second.
 const float k_alone_until = 16.0, k_not_alone_from = 96.0;
-// How much filtered light may get of what the filter has lost: in units of white, and of itself.
+// Maximum lost light that is added back to filtered light: in units of white, and relative to itself.
 const float k_most_back = 1.0, k_most_back_relative = 3.0;
 
 shared vec4 group_shares[64];
 
-// Sums over the cells that tell of the pixel, by weight.
+// Weighted sums over the cells that contribute to the pixel.
 vec4 light[k_component_count];
 vec4 noise = vec4(0.0), before_smooth = vec4(0.0), lost = vec4(0.0);
 vec3 modulation = vec3(0.0);
@@ -57,11 +57,11 @@ ivec2 grid_size() { return ivec2(push.across, push.down); }
 bool in_grid(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, grid_size())); }
 int cell_at(ivec2 at) { return at.y * int(push.across) + at.x; }
 
-// How far a cell's light is its own surface's: it may have next to nothing but light of what is beside it (preview_halve.comp).
+// Weight of a cell by how much of its light is its own surface's (doubtful samples of preview_halve.comp count little).
 float own_light(PreviewSurface s) { return clamp(4.0 * s.samples, 1e-3, 1.0); }
 
-// `other`: of another surface, where there may be none of the pixel's own. What is dark there is borrowed rather than what
-// shines: a window's frame is not lit as its panes are bright.
+// `other`: a cell of another surface, in case there are none of the pixel's own. Dark cells then weigh more than bright ones: a
+// window's frame is not as bright as its panes.
 void add_cell(int cell, PreviewSurface s, float w, bool other) {
   PreviewLight l = preview_light(filtered_texels, cell);
   vec4 shown = preview_luminances(l);
@@ -71,14 +71,14 @@ void add_cell(int cell, PreviewSurface s, float w, bool other) {
   for (uint c = 0u; c < k_component_count; ++c) light[c] += there * l.of[c];
   lost += there * texelFetch(lost_texels, cell);
   if (push.history != 0u) before_smooth += there * texelFetch(before_texels, cell);
-  if (push.sampled != 0u) noise += there * texelFetch(noise_texels, cell) * sqrt(max(s.samples, 1e-3));  // of one sample
+  if (push.sampled != 0u) noise += there * texelFetch(noise_texels, cell) * sqrt(max(s.samples, 1e-3));  // per sample
   modulation += there * preview_modulation(s);
   colours = preview_sum(colours, preview_texture(texelFetch(texture_texels, cell)), there);
   weights += there;
   if (s.samples > 0.0 && s.depth >= 0.0 && there > nearest_weight) nearest_weight = there, nearest_depth = s.depth;
 }
 
-// What is around a pixel whose samples show several surfaces: the one in its middle, others, and what is behind all.
+// Parts around a pixel whose samples show several surfaces: the surface at its centre, other surfaces, the background.
 const uint k_own = 0u, k_other = 1u, k_background = 2u, k_part_count = 3u;
 uint part_of(PreviewSurface cell, PreviewSurface centre) {
   if (cell.depth == 0.0) return k_background;
@@ -89,9 +89,9 @@ struct Part {
   vec3 normal, albedo;
 };
 const int k_mix_across = 3;  // cells
-const float k_apart = 0.3;   // difference of depths, relative, that tells as much as one of normals
+const float k_apart = 0.3;   // relative difference of depths that counts as much as one of normals
 
-// The k-th of the cells about a place, with its weight; false where none is known.
+// The k-th cell around a position, with its weight; false if it is unknown.
 bool near_cell(vec2 p, int k, out int cell, out PreviewSurface s, out float weight) {
   ivec2 at = ivec2(round(p)) + ivec2(k % k_mix_across, k / k_mix_across) - k_mix_across / 2;
   if (!in_grid(at)) return false;
@@ -102,13 +102,13 @@ bool near_cell(vec2 p, int k, out int cell, out PreviewSurface s, out float weig
   return s.depth >= 0.0 && s.samples > 0.0;
 }
 
-// How much of what is met is of part a, by where between both parts the means of the pixel's samples lie.
+// Share of part a in the hit surfaces, from the position of the pixel's means between both parts.
 float share_of(Part a, Part b, PreviewSurface here, float primary) {
   vec3 normal = a.normal - b.normal, albedo = a.albedo - b.albedo;
   float depth = (a.depth - b.depth) / (k_apart * here.depth), light = a.primary - b.primary;
   float off = dot(here.normal - b.normal, normal) + dot(here.albedo - b.albedo, albedo) + (here.depth - b.depth) / (k_apart * here.depth) * depth;
   float all = dot(normal, normal) + dot(albedo, albedo) + square(depth);
-  // Light that is emitted has no noise.
+  // Emitted light has no noise.
   if (max(a.emits, b.emits) > 0.5) {
     off = light * (primary - b.primary);
     all = square(light);
@@ -116,8 +116,8 @@ float share_of(Part a, Part b, PreviewSurface here, float primary) {
   return all > 0.0 ? clamp(off / all, 0.0, 1.0) : 1.0;
 }
 
-// Light of a pixel that shows several surfaces: of those around that show each of them alone, in the shares that its means
-// and the number of its rays that have met any tell of. False, and nothing is done: nobody around shows its own.
+// Light of a pixel that shows several surfaces: mixed from nearby pixels that show each of them alone, in the shares that
+// the pixel's means and hit count imply. False, and nothing is done, if no nearby pixel shows its surfaces.
 bool mix_cells(vec2 p, PreviewSurface here, PreviewSurface centre, float primary) {
   if (centre.depth <= 0.0) centre = here;
   Part parts[k_part_count];
@@ -165,17 +165,17 @@ bool mix_cells(vec2 p, PreviewSurface here, PreviewSurface centre, float primary
   return true;
 }
 
-// How much of the light goes with a surface's colours, 0..1: what it mirrors does not. `falling`: light over the colour. A
-// regression of differences of light on those of colour; what is to be expected before is that all does, give or take k_prior.
+// Share of the light that follows a surface's colours, 0..1; mirrored light does not. `falling`: light over the colour. A
+// regression of differences of light on those of colour; the prior is 1 with standard deviation k_prior.
 float follows_colour(PreviewTexture t, float falling) {
   float scale = falling * t.square;
   if (scale <= 1e-9) return 1.0;
-  // Of four pairs a cell.
+  // Four pairs a cell.
   float variance = 0.25 * t.light_square * t.square * max(t.few, k_fewest) / square(scale);
   return clamp(1.0 + (t.with_light / scale - 1.0) * square(k_prior) / (square(k_prior) + variance), 0.0, 1.0);
 }
 
-// Whether no pixel around shows its surface: what one ray has met of a veil or of leaves finer than pixels.
+// Whether no adjacent pixel shows its surface, such as one ray's hit on a veil or on leaves finer than pixels.
 bool isolated(ivec2 at, PreviewSurface here) {
   bool akin = false;
   for (int k = 0; k < 9 && !akin; ++k) {
@@ -211,11 +211,11 @@ void main() {
     float primary = luminance(own.of[0].rgb);
     bool mixed = push.sampled != 0u && preview_mixed(here, centre, primary, guide_surfaces, uvec2(push.width, push.height), pixel);
     bool mixture = mixed && mix_cells(p, here, centre, primary);
-    // A slat before a lamp that no cell is of: what its samples have is mostly the lamp's, which has no noise.
+    // A slat before a lamp, on no cell: its samples have mostly the lamp's light, which has no noise.
     bool mostly_lamp = mixed && !mixture && primary > k_preview_bright &&
                        preview_beside_emitter(guide_surfaces, uvec2(push.width, push.height), pixel);
     float akin = mixture ? 1.0 : 0.0;
-    // The grid's four nearest cells, those of another surface left out.
+    // The four nearest cells of the grid, without those of other surfaces.
     for (int k = 0; k < 4 && !mixture; ++k) {
       ivec2 corner = ivec2(k & 1, k >> 1);
       ivec2 at = clamp(base + corner, ivec2(0), grid_size() - 1);
@@ -233,7 +233,7 @@ void main() {
       }
       add_cell(cell, s, w, other);
     }
-    // A narrow surface has few cells of its own, which the next pixel of it may be beside.
+    // A narrow surface has few cells of its own, perhaps not next to this pixel.
     for (int k = 0; akin <= k_alone && k < 2 * k_wide * 2 * k_wide; ++k) {
       ivec2 at = base + ivec2(k % (2 * k_wide), k / (2 * k_wide)) - (k_wide - 1);
       if (!in_grid(at)) continue;
@@ -245,7 +245,7 @@ void main() {
     if (akin <= k_alone && weights > k_alone) akin = 1.0;
     float inverse = 1.0 / max(weights, 1e-20);
     if (mixture) {
-      modulation = vec3(1.0);  // each part has its own
+      modulation = vec3(1.0);  // included in each part
     } else if (here.depth >= 0.0 && (push.repainted == 0u || here.samples > 0.0)) {
       modulation = preview_modulation(here);
       float falling = 0.0;
@@ -256,7 +256,7 @@ void main() {
       modulation *= inverse;
     }
     noise *= inverse * luminance(modulation) * inversesqrt(max(here.samples, 1.0));
-    // What cells know of noise is not this pixel's then, and two paths that found nothing are not certain.
+    // Then the cells' noise is not that of this pixel, and two paths without light are no certainty.
     float few = 1.0 - smoothstep(k_alone_until, k_not_alone_from, here.samples), alone = akin > k_alone ? 0.0 : few;
     PreviewLight old;
     for (uint c = 0u; c < k_component_count; ++c) old.of[c] = vec4(0.0);
@@ -265,8 +265,8 @@ void main() {
       old = preview_light(history_texels, int(pixel));
       PreviewSurface was = preview_surface(texelFetch(history_surfaces, int(pixel)));
       has_old = preview_lit(old, was) && (push.moved == 0u || preview_may_be_same(here, was));
-      // A surface of another colour shows the light that fell on it by that; so does, seen from nearer, one whose texture has
-      // more detail than there was.
+      // With another surface colour, the old light is scaled by the ratio of colours; likewise if a texture seen from nearer has
+      // more detail.
       bool finer = push.moved != 0u && push.surfaces == k_preview_surface_seen;
       vec3 colour = here.depth >= 0.0 ? preview_modulation(here) : modulation;
       vec3 repaint = (push.recoloured != 0u || finer) && was.depth > 0.0 ? min(colour / preview_modulation(was), vec3(8.0)) : vec3(1.0);
@@ -274,28 +274,28 @@ void main() {
       before_smooth *= change;
       for (uint c = 0u; c < k_component_count; ++c) old.of[c] *= change[c] * vec4(repaint, luminance(repaint));
     }
-    // For cameras that come after this one.
+    // For later camera positions.
     if (here.depth < 0.0 && nearest_depth >= 0.0) surface = vec4(k_preview_about - nearest_depth, 0.0, 0.0, 0.0);
     packed_surfaces[pixel] = surface;
     float by_chance = push.same_light != 0u ? k_by_chance_same : k_by_chance;
     PreviewLight result;
     vec3 color = vec3(0.0);
-    float variance = 0.0;  // of what is shown, as far as it is left by a mean over 3x3 pixels
+    float variance = 0.0;  // of a mean of the shown picture over 3x3 pixels
     bool unknown = false;
     for (uint c = 0u; c < k_component_count; ++c) {
       float plain = luminance(light[c].rgb) * inverse, back = min(lost[c] * inverse, k_most_back + k_most_back_relative * plain);
       vec3 colour = plain > 1e-4 ? light[c].rgb * (inverse / plain) : vec3(1.0);
       vec3 smooth_light = (plain + back) * colour * modulation;
       float smooth_luminance = luminance(smooth_light), own_luminance = luminance(own.of[c].rgb);
-      // Where light was lost nearby, paths that found none are not certain.
+      // Where light was lost nearby, paths without light are uncertain.
       noise[c] = max(noise[c], luminance(modulation) * back);
-      // Nor is a pixel whose halves differ by far more than those around: a rare bright path would show as a speck.
+      // So is a pixel whose halves differ by far more than those around: a rare bright path would show as a speck.
       float doubt_own = own.of[c].w > k_outlier * noise[c] ? own.of[c].w : 0.0;
       float relative = max(noise[c], doubt_own) / max(max(smooth_luminance, own_luminance), k_luminance_floor);
-      // Two of few paths that brought far more than is around may agree by chance. Lamps' own light has such borders.
+      // If few paths are far brighter than the surroundings, two may agree by chance. Borders of emitters look the same.
       bool far_above = k_preview_by_way[c] > 0.0 && own_luminance > 2.0 * smooth_luminance + k_outlier * noise[c];
       float unlikely = far_above ? few * smoothstep(k_clean, k_noisy, noise[c] / max(smooth_luminance, k_luminance_floor)) : 0.0;
-      // How far its own samples are not to be shown alone.
+      // Share of filtered light.
       float rough = here.samples > 0.0 ? max(smoothstep(k_clean, k_noisy, relative), max(unlikely, alone)) : 1.0;
       if (mostly_lamp && c == 0u) rough = 0.0;
       float amount = push.filtering != 0u || here.samples <= 0.0 ? rough : 0.0;
@@ -304,7 +304,7 @@ void main() {
       float error = mix(noise[c], smooth_error, amount);
       vec3 before = has_old ? old.of[c].rgb * push.history_scale : vec3(0.0);
       float u = has_old ? square(old.of[c].w) : 0.0, v = square(error) + 1e-8;
-      // Paths that have brought nothing yet seem to be without noise: what was there says how much may come.
+      // Paths that have found no light yet seem noise-free: older light shows how much to expect.
       float unsure = rough;
       if (push.same_light != 0u) {
         float n = max(here.samples, 1.0), least = k_least_noise * luminance(before);
@@ -312,7 +312,7 @@ void main() {
         unsure = max(rough, smoothstep(k_clean, k_noisy, least / (n * max(max(smooth_luminance, own_luminance), k_luminance_floor))));
       }
       float difference = luminance(modulation) * before_smooth[c] * inverse - smooth_luminance;
-      // What noise alone brings now and then is no change: it would show as specks.
+      // Chance alone must not count as change: it would show as specks.
       float change = max(square(difference) - by_chance * (u + v), 0.0);
       float keep = has_old ? unsure * v / (v + u + change) : 0.0;
       bool nothing = weights <= 1e-5 && here.samples <= 0.0;

@@ -1,5 +1,5 @@
-// Where the pixels of what was shown before are in the picture of another camera: every pixel goes where its surface now
-// is, as wide as it is seen there, and the nearest stays (preview_gather.comp takes them over).
+// Moves the pixels of the previous picture into the picture of another camera: each covers the projection of its surface, in
+// its projected width, and the nearest one stays (preview_gather.comp reads them).
 #include "lib/invocation.glsl"
 #include "film/preview.glsl"
 layout(local_size_x = 64) in;
@@ -12,7 +12,7 @@ const float k_far = 1e8;  // where there is no surface
 
 const float k_widest = 4.0;   // pixels
 
-// Of a pixel before: where its middle is now, in pixels, and its depth (0: nowhere) and width [pixels].
+// Projection of a previous pixel: its centre [pixels], depth (0: outside) and width [pixels].
 vec2 moved(uint pixel, out float depth, out float width) {
   float from = texelFetch(from_surfaces, int(pixel)).x;
   if (from <= k_preview_about) from = k_preview_about - from;
@@ -45,7 +45,7 @@ void main() {
   vec2 middle = moved(pixel, depth, width);
   ivec2 size = ivec2(push.width, push.height), at = ivec2(floor(middle));
   if (depth <= 0.0 || any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) return;
-  // The pixels whose middles it covers, and the one that it lies in.
+  // The pixels whose centres it covers, and the one that contains its centre.
   ivec2 first = clamp(min(ivec2(ceil(middle - 0.5 * width - 0.5)), at), ivec2(0), size - 1);
   ivec2 last = clamp(max(ivec2(floor(middle + 0.5 * width - 0.5)), at), ivec2(0), size - 1);
   for (int y = first.y; y <= last.y; ++y)

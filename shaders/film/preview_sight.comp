@@ -1,4 +1,4 @@
-// Keeps of what the rays of film/preview_look.comp have met what the preview knows of a pixel's surface.
+// Stores the surfaces found by film/preview_look.comp as the preview's surfaces of pixels.
 #include "shaders/shared/sight.h"
 #include "lib/invocation.glsl"
 #include "film/preview.glsl"

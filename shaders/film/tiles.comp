@@ -26,7 +26,7 @@ void main() {
     // Before the minimum of samples an error decides nothing: it is shown, but not in full strength.
     float strength = !known ? 0.25 : state == k_tile_waiting ? 0.55 : 0.85;
     color = mix(color, ink, known ? 0.25 * strength : 0.0);
-    // Neighbours at work share a line: each draws its left and upper one, and the others where nobody else does.
+    // Active neighbours share a line: each tile draws its left and upper line, and the others next to inactive tiles.
     bool right = to.x < push.line && (at.x + 1u == push.across || !at_work(marks[tile + 1u].bits));
     bool below = to.y < push.line && (last.y + 1u == push.height || !at_work(marks[tile + push.across].bits));
     bool line = from.x < push.line || from.y < push.line || right || below;

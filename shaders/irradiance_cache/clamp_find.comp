@@ -1,13 +1,13 @@
 // Neighbour clamping (Krivanek, Bouatouch, Pattanaik and Zara, "Making Radiance and Irradiance Caching Practical: Adaptive
-// Caching and Neighbor Clamping", 2006): rays of one record miss narrow things near it that those of another meet. What is
-// nearest to a record j is no farther from i than d_j + |x_i - x_j|, by the triangle inequality. One invocation for each j,
-// at whose place the octree knows every i that would serve there, and so may serve across that thing; j is one of them, and
-// has had more rays since its radius was set.
+// Caching and Neighbor Clamping", 2006). The rays of one record miss narrow geometry that a neighbour's rays hit. By the
+// triangle inequality, the geometry nearest to record j, at distance d_j, is at most d_j + |x_i - x_j| away from record i.
+// One invocation for each j that has had more rays since its radius was set; the octree lists every i that would serve at
+// its place, including j itself.
 #include "irradiance_cache/lookup.glsl"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { ClampPush push; };
-layout(scalar) buffer Bounds { uint bounds[]; };  // of lesser radii: floats, which are in the order of their bits
+layout(scalar) buffer Bounds { uint bounds[]; };  // minimum of the radii, as bits: positive floats sort like their bits
 
 void main() {
   uint index = global_index();

@@ -1,4 +1,4 @@
-// Radii as clamp_find.comp bounds them; what it reads is made ready for the next time.
+// Applies the bounds of clamp_find.comp to the radii and resets them.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/shrink.glsl"
 layout(local_size_x = 64) in;

@@ -1,5 +1,4 @@
-// Appends candidates to those there are, in the order of slot_of() or, with LUCERNA_FROM_SCREEN, of the points of the
-// screen-space stage.
+// Appends candidates, in the order of slot_of() or, with LUCERNA_FROM_SCREEN, of the points of the screen-space stage.
 #include "lib/variants.glsl"
 #include "shaders/shared/irradiance_cache/placement.h"
 #include "shaders/shared/irradiance_cache/records.h"

@@ -1,11 +1,10 @@
-// Which path slots hold a candidate that is to be collected, in the order of collecting, and how many ask, by block and
-// origin.
+// Marks the path slots that hold a candidate to collect, and counts the candidates by block and origin.
 #include "shaders/shared/irradiance_cache/placement.h"
 #include "shaders/shared/irradiance_cache/records.h"
 #include "irradiance_cache/collect.glsl"
 uniform samplerBuffer candidate_texels;
 layout(scalar) writeonly buffer Taken { uint taken[]; };
-layout(scalar) buffer CandidateCounts { uint counts[]; };  // three of each block, by k_origin_*
+layout(scalar) buffer CandidateCounts { uint counts[]; };  // three for each block, by k_origin_*
 
 void main() {
   uint index = global_index();

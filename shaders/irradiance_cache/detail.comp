@@ -1,12 +1,11 @@
-// One level of the pyramid of detail: in every cell the mean of what the finer level found in it, and what changes from it
-// to its neighbours.
+// One level of the detail pyramid: for every cell the mean of the finer level, and the change towards its neighbours.
 //
-// A cell's own detail is seen at one point, the one in its middle, so that cells of a flat wall agree to rounding at every
-// level, where means of positions would see a wall bent at every silhouette. What falls between the points the mean of the
-// finer levels tells. Geometry: how far a neighbour lies out of the cell's plane, over the cell's width, or how far its
-// normal is turned; either is full where a record in one could not stand for the other. So a step a hundredth of a cell
-// high counts at the level of its height and not for whole walls, and an edge counts at every level. Irradiance: relative
-// difference beyond the noise, between points of one surface that records serve.
+// A cell's own detail is evaluated at its middle point, so that cells of a flat wall agree up to rounding at every level;
+// mean positions would show a bent wall at every silhouette. The mean of the finer levels covers the rest of the cell.
+// Geometric detail: distance of a neighbour from the cell's plane over the cell's width, or the turn of its normal; 1 where
+// a record in one cell cannot serve the other. A step of a hundredth of a cell therefore counts at the level of its own
+// height, not for the whole wall, and an edge counts at every level. Irradiance detail: relative difference beyond noise
+// between points of one surface that records serve.
 #include "lib/invocation.glsl"
 #include "lib/math.glsl"
 #include "shaders/shared/irradiance_cache/discontinuity.h"
@@ -18,7 +17,7 @@ layout(scalar) buffer Details { float details[]; };
 
 uvec2 cells_of(uint level) { return (uvec2(push.across, push.down) + (1u << level) - 1u) >> level; }
 
-// The point in the middle of a cell.
+// Middle point of a cell.
 uint middle(uvec2 cell) {
   uvec2 xy = min((cell << push.level) + ((1u << push.level) >> 1u), uvec2(push.across, push.down) - 1u);
   return xy.y * push.across + xy.x;
@@ -48,8 +47,8 @@ float change(Point p, Point q) {
   bool same = both && geometry < 1.0 && p.light >= 0.0 && q.light >= 0.0;
   float whole = max(max(p.light, q.light), push.least);
   float light = abs(p.light - q.light) / whole;
-  // A record that has met much light by chance is not to be surrounded by others for that: these would dilute what it has too
-  // much of, and nothing would make up for what others have missed.
+  // A record that is too bright by chance must not attract more records: they would dilute its excess, and nothing would
+  // make up for the light that the others missed.
   float noise = max(push.irradiance_noise, 2.0 * length(vec2(p.error, q.error)) / whole);
   return same ? clamp(push.irradiance_weight * (light - noise), 0.0, 1.0) : 0.0;
 }

@@ -1,5 +1,5 @@
-// Lays a level of the pyramid of detail over the picture where candidates may be drawn; the rest, which is not diffuse
-// or whose normal map is too steep for records, is dimmed.
+// Draws one level of the detail pyramid over the picture, where candidates are possible. Dims surfaces that are not diffuse
+// or whose normal map is too steep for records.
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "shaders/shared/irradiance_cache/discontinuity.h"

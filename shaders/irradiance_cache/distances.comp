@@ -1,4 +1,4 @@
-// Harmonic mean and least distance of what the rays of a batch of records met; one invocation a record.
+// Harmonic mean and minimum of the ray distances, for a batch of records. One invocation a record.
 #define LUCERNA_PUSH RecordPush
 #include "shaders/shared/irradiance_cache/records.h"
 #include "lib/wavefront.glsl"

@@ -1,14 +1,14 @@
-// Which points of the screen-space stage become candidates, and for which level.
+// Selects the points of the screen-space stage that become candidates, and their level.
 //
-// A point's probability is density * falloff^k * detail at level k, summed over the levels. With a falloff of 1/4 every
-// cell in which detail is full asks for as many, at every scale; cells about an edge are full up to the distance of their
-// own width, so that the density of candidates falls with the square of the distance from the edge, as the density of
-// records does whose radii grow with the distances that they see. What is flat has a density of its own on top.
+// The probability of a point at level k is density * falloff^k * detail. With a falloff of 1/4, cells of full detail get the
+// same number of candidates at every scale. Cells around an edge have full detail up to their own width away from it, so the
+// candidate density falls with the squared distance from the edge, like the density of records whose radii are proportional
+// to that distance. Flat regions have a separate base density.
 //
-// One threshold a point decides for all levels: they have intervals of 0..1, one after the other, as long as their
-// probabilities. Thresholds are the radical inverse of the points' Morton codes, in which every block of 2^j x 2^j has its
-// parts shuffled by itself (after A. Ahmed and P. Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error
-// via Hierarchical Ordering of Pixels", 2020): of a block's 4^j points one has its threshold in each 4^-j of 0..1.
+// One threshold per point decides all levels: each level owns an interval of [0, 1), as long as its probability. Thresholds
+// are the radical inverses of the points' Morton codes, with the quadrants of every 2^j x 2^j block shuffled separately
+// (after A. Ahmed and P. Wonka, "Screen-Space Blue-Noise Diffusion of Monte Carlo Sampling Error via Hierarchical Ordering
+// of Pixels", 2020): the 4^j points of a block have one threshold in each interval of length 4^-j.
 #include "lib/invocation.glsl"
 #include "lib/math.glsl"
 #include "lib/sampler.glsl"
@@ -21,7 +21,7 @@ layout(scalar) readonly buffer Details { float details[]; };
 layout(scalar) writeonly buffer Taken { uint taken[]; };            // 0 or 1
 layout(scalar) writeonly buffer TakenLevels { uint taken_levels[]; };
 
-uint spread(uint x) {  // a zero bit after each of 16
+uint spread(uint x) {  // inserts a zero bit after each of 16
   x = (x | x << 8) & 0x00ff00ffu;
   x = (x | x << 4) & 0x0f0f0f0fu;
   x = (x | x << 2) & 0x33333333u;
@@ -37,7 +37,7 @@ void main() {
   float depth = texelFetch(surface_texels, int(point * k_surface_texels)).w;
   vec3 light = lit[point];
 
-  float width = push.pixel * (push.parallel != 0u ? 1.0 : depth);  // of what a point stands for [m]
+  float width = push.pixel * (push.parallel != 0u ? 1.0 : depth);  // of the cell that a point represents [m]
   float sum = 0.0, probability = push.density;
   uint drawn = push.levels, first = 0u;
   for (uint k = 0u; k < push.levels; ++k) {
@@ -49,7 +49,7 @@ void main() {
     first += cells.x * cells.y;
     probability *= push.falloff;
   }
-  // Where nothing changes too, or records would be few and far between there, each alone with its noise.
+  // Base density: without it flat regions would have few records, each noisy on its own.
   float side = width / max(push.flat_side, width);
   uint flat_level = uint(max(ceil(-log2(side)), 0.0));
   bool flat_draws = push.flat_side > 0.0 && drawn == push.levels && threshold < sum + push.density * side * side;

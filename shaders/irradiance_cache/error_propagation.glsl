@@ -1,12 +1,12 @@
-// How records' errors are propagated into the picture: what paths note where they read records (k_probe_errors), and the signs
-// by which every record errs.
+// Propagation of record errors into the picture: format of the path notes at lookups (k_probe_errors), and the random signs
+// of the records' errors.
 #ifndef LUCERNA_IRRADIANCE_CACHE_ERROR_PROPAGATION
 #define LUCERNA_IRRADIANCE_CACHE_ERROR_PROPAGATION
 #include "shaders/shared/irradiance_cache/records.h"
 #include "lib/hash.glsl"
 #include "lib/math.glsl"
 
-// A colour, of any size, in eight bits a channel of its greatest and eight for that one's power of 2.
+// Packed colour of any magnitude: 8 bits for each channel relative to the largest, 8 bits for a shared power of 2.
 uint throughput_pack(vec3 color) {
   float most = max3(color);
   float power = clamp(ceil(log2(max(most, 1e-30))), -127.0, 127.0);
@@ -17,8 +17,8 @@ vec3 throughput_unpack(uint bits) {
   return bits == 0u ? vec3(0.0) : c.rgb * exp2(round(c.a * 255.0) - 127.0);
 }
 
-// +1 or -1 for each of four lanes, 4 group on, as likely and independent of those of other records and lanes: bits of the
-// record's number, mixed.
+// Random signs +1 or -1 for lanes 4 group .. 4 group + 3, independent between records and lanes: a hash of the record's
+// number.
 vec4 record_signs(uint record, uint group) {
   uint x = hash_mix(record + 0x9e3779b9u) >> (4u * group);
   return 1.0 - 2.0 * vec4(uvec4(x, x >> 1, x >> 2, x >> 3) & 1u);

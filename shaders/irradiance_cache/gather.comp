@@ -1,5 +1,6 @@
-// What the paths of a batch of records brought, summed in a fixed order: irradiance, its gradients, distances and noise.
-// One invocation a record. With cells (j, k) of M elevations and N azimuths, radiance L and distance r in each:
+// Sums the paths of a batch of records in a fixed order: irradiance, gradients, distances and noise. One invocation a
+// record.
+// For cells (j, k) of M elevations and N azimuths, with radiance L and distance r:
 //
 //   E        = pi/(MN) sum L
 //   grad_r E = pi/(MN) sum_k v_k sum_j T_j (L_jk - mean)           T_j: mean of the tangent over cell j
@@ -29,11 +30,12 @@ float tangent_integral(uint j) {
   return asin(sqrt(u)) - sqrt(u * (1.0 - u));
 }
 
-// Inverse distances of the first level, over the mean of those that are not 0, that gradients are made of at most.
+// Bound on the first level's inverse distances in gradients, over the mean of the nonzero ones.
 const float k_steepest = 10.0;
 
-// Of the distance of the nearest thing: how far off a record its slopes of translation hold. They say how what is around shifts
-// and hides; beyond, along edges, they are noise of the rays that met that thing, which made half of the error of records there.
+// Range of validity of translational gradients, as a fraction of the nearest distance. They describe how the near geometry
+// shifts and occludes; beyond this range, along edges, they are noise of the rays that hit that geometry, and made half of
+// the records' error there.
 const float k_of_nearest = 0.5;
 
 void main() {
@@ -48,7 +50,7 @@ void main() {
   float inverse_sum = 0.0, inverse_most = 0.0, hits = 0.0, scatter = 0.0;
   for (uint j = 0u; j < m; ++j) {
     float before = 0.0;
-    for (uint k = 0u; k <= n; ++k) {  // round to the first again, for the difference between last and first
+    for (uint k = 0u; k <= n; ++k) {  // one step further than n, for the difference between the last azimuth and the first
       uint slot = cell_slot(j, k == n ? 0u : k, index);
       float counts = k < n ? 1.0 : 0.0, bright = 0.0;
       for (uint p = 0u; p < k_part_count; ++p) {
@@ -67,12 +69,12 @@ void main() {
   }
   for (uint p = 0u; p < k_part_count; ++p) mean[p] /= cells;
 
-  // Earlier levels weigh by their rays.
+  // Weighted mean with earlier levels, by ray counts.
   int at = int(record * k_record_texels);
   vec4 place = texelFetch(record_texels, at), facing = texelFetch(record_texels, at + 1), texel = texelFetch(record_texels, at + 2);
   float rays = float(push.rays_before) + cells;
   float now = cells / rays, then = push.rays_before == 0u ? 0.0 : 1.0 - now;
-  // Within a cell the variance is at most that between neighbouring cells, of which half the squared difference tells.
+  // The variance within a cell is at most that between neighbouring cells: half the mean squared difference.
   float error = k_pi * sqrt(0.5 * scatter) / cells;
   float inverse = now * inverse_sum / cells + (then > 0.0 ? then / facing.w : 0.0);
   records[at + 1].w = inverse > 0.0 ? 1.0 / inverse : k_infinity;
@@ -81,9 +83,9 @@ void main() {
   records[at + 2].y = then > 0.0 ? min(texel.y, nearest) : nearest;
   records[at + 2].z = sqrt(square(now * error) + (then > 0.0 ? square(then * texel.z) : 0.0));
 
-  // What is nearer than the record reaches changes within its reach, not along all of it: its slope there is no slope for
-  // the whole disc, and one ray that meets a crack would else tilt the light of all. In the first level, which says how far
-  // the record reaches, a share of the mean distance of what is there stands for that.
+  // Geometry nearer than the record's reach changes within the reach, so its slope does not hold over the whole disc;
+  // without this bound one ray that hits a crack would tilt the light of the whole record. The first level does not know the
+  // reach yet and uses a multiple of the mean inverse distance.
   float steepest = push.rays_before > 0u ? 1.0 / place.w : k_steepest * inverse_sum / max(hits, 1.0);
   for (uint p = 0u; p < k_part_count; ++p) {
     if ((push.parts >> p & 1u) == 0u) continue;
@@ -116,7 +118,7 @@ void main() {
     int to = int((record * k_part_count + p) * k_part_texels);
     vec4 o0 = texelFetch(irradiance_texels, to), o1 = texelFetch(irradiance_texels, to + 1);
     vec4 o2 = texelFetch(irradiance_texels, to + 2), o3 = texelFetch(irradiance_texels, to + 3);
-    bool fresh = then == 0.0;  // what memory held before is not multiplied by 0: it may be no number
+    bool fresh = then == 0.0;  // old memory is not multiplied by 0: it may hold NaN
     irradiance[to] = now * vec4(e, rotation_t.x) + (fresh ? vec4(0.0) : then * o0);
     irradiance[to + 1] = now * vec4(rotation_t.yz, rotation_b.xy) + (fresh ? vec4(0.0) : then * o1);
     irradiance[to + 2] = now * vec4(rotation_b.z, translation_t) + (fresh ? vec4(0.0) : then * o2);

@@ -1,5 +1,5 @@
-// What share each group of lights has in what the paths of a batch of records brought (groups.glsl): an invocation for each
-// record and four groups, before gather.comp takes that up, while the irradiance is still that of the levels before.
+// Share of each light group in the light of a batch of records (groups.glsl). One invocation per record and four groups.
+// Runs before gather.comp, while the stored irradiance is still that of the levels before.
 #define LUCERNA_PUSH RecordPush
 #include "shaders/shared/irradiance_cache/records.h"
 #include "lib/wavefront.glsl"
@@ -25,7 +25,7 @@ void main() {
     for (uint p = k_part_direct + 1u; p < k_part_count; ++p)
       if (wanted(p)) all += light_of_part(slot, p);
     uint lit = groups_lit(slot);
-    // The sky's group has what comes straight from the sky as well.
+    // Direct sky light also belongs to the sky's group.
     vec3 direct = wanted(k_part_direct) ? light_of_part(slot, k_part_direct) : vec3(0.0);
     for (uint i = 0u; i < 4u; ++i) {
       uint group = first + i;
@@ -33,7 +33,7 @@ void main() {
       of_group[i] += group == frame.sky_group ? max(light - direct, vec3(0.0)) : light;
     }
   }
-  // Earlier levels weigh by their rays.
+  // Weighted mean with earlier levels, by ray counts.
   float cells = float(m * n), now = cells / (float(push.rays_before) + cells);
   vec3 before = vec3(0.0);
   uvec4 shares = uvec4(0u);

@@ -1,6 +1,6 @@
-// Of records that crowd: the luminance that the rays of their last level have brought, over the cells that guide.glsl reads
-// them in, in place of the irradiance that they do not hold. A little of each cell's light is given to those around it,
-// because what one ray meets, one beside it may. One invocation a record.
+// Guide tables of crowded records: the luminance of the last level's rays over the cells of guide.glsl, stored in place of
+// irradiance. Each cell shares some light with its neighbours, because rays next to each other meet similar things. One
+// invocation a record.
 #define LUCERNA_PUSH RecordPush
 #include "shaders/shared/irradiance_cache/records.h"
 #include "lib/wavefront.glsl"
@@ -17,7 +17,7 @@ float ray_luminance(uint slot) {
 
 float cells[k_guide_azimuths * k_guide_elevations];
 
-// Over three cells upwards, of which the lowest and the highest have two.
+// Over three cells in elevation; two at the lowest and the highest.
 float along_elevation(uint azimuth, uint elevation) {
   uint at = azimuth * k_guide_elevations + elevation;
   float below = cells[elevation > 0u ? at - 1u : at], above = cells[elevation + 1u < k_guide_elevations ? at + 1u : at];
@@ -39,7 +39,7 @@ void main() {
   for (uint c = 0u; c < k_guide_azimuths * k_guide_elevations; ++c) cells[c] = 0.0;
   for (uint k = 0u; k < max(n, k_guide_azimuths); ++k)
     for (uint j = 0u; j < max(m, k_guide_elevations); ++j) {
-      // As many steps as there are of either, so that each ray and each cell has its turn.
+      // The larger of both counts, so that every ray and every cell is visited.
       uint steps_k = max(n, k_guide_azimuths), steps_j = max(m, k_guide_elevations);
       float l = ray_luminance(cell_slot(j * m / steps_j, k * n / steps_k, index));
       cells[k * k_guide_azimuths / steps_k * k_guide_elevations + j * k_guide_elevations / steps_j] += is_finite(vec3(l)) ? l : 0.0;

@@ -1,22 +1,22 @@
-// Where the light comes from that paths gather along edges themselves. A record that crowds holds no irradiance; in its
-// place stand the luminances that its first rays brought, over k_guide_azimuths x k_guide_elevations cells of its
-// hemisphere. Paths that gather there draw half of their directions from these and half from the cosine's distribution, so
-// that light that comes from little of the hemisphere is found, and none is left out (a mixture, as in J. Vorba, O. Karlik,
-// M. Sik, T. Ritschel and J. Krivanek, "On-line Learning of Parametric Mixture Models for Light Transport Simulation",
-// 2014; the table is that of H. W. Jensen, "Importance Driven Path Tracing using the Photon Map", 1995).
+// Path guiding near edges, where paths gather. A crowded record stores no irradiance but the luminances of its first rays
+// over k_guide_azimuths x k_guide_elevations cells of its hemisphere. Gathering paths draw half of their directions from
+// this table and half from the cosine distribution: light from a small part of the hemisphere is found, and no direction has
+// density 0. (Mixture as in J. Vorba, O. Karlik, M. Sik, T. Ritschel and J. Krivanek, "On-line Learning of Parametric
+// Mixture Models for Light Transport Simulation", 2014; table of H. W. Jensen, "Importance Driven Path Tracing using the
+// Photon Map", 1995.)
 //
-// All densities here are over the cosine's, which is 1: cells have equal shares of it.
+// Densities are relative to the cosine density; all cells have the same cosine probability.
 #ifndef LUCERNA_IRRADIANCE_CACHE_GUIDE
 #define LUCERNA_IRRADIANCE_CACHE_GUIDE
 #include "shaders/shared/irradiance_cache/records.h"
 #include "lib/math.glsl"
 
-const float k_guided_share = 0.5;  // of directions
+const float k_guided_share = 0.5;  // of the directions
 
 struct Guide {
   uint record;
-  float total;      // of its cells; 0: nothing is known, and nothing is guided
-  mat3 frame;       // tangent, bitangent and normal of the vertex, turned as the record's
+  float total;      // sum over the cells; 0: no data, cosine sampling
+  mat3 frame;       // tangent, bitangent, normal of the vertex, aligned with the record's
 };
 
 uvec4 guide_texel(uint record, uint texel) {
@@ -29,7 +29,7 @@ uint sum_of_bytes(uvec4 words) {
 }
 uint guide_cell(uvec4 words, uint cell) { return words[cell >> 2u & 3u] >> 8u * (cell & 3u) & 255u; }
 
-// For a vertex with that shading normal. `record`: k_no_guide where there is none.
+// Guide at a vertex with that shading normal. `record`: k_no_guide: none.
 Guide make_guide(uint record, vec3 normal) {
   Guide guide;
   guide.record = record;
@@ -48,7 +48,7 @@ Guide make_guide(uint record, vec3 normal) {
   return guide;
 }
 
-// A direction of the mixture, in world space.
+// Samples the mixture; a direction in world space.
 vec3 guide_sample(Guide guide, vec2 u) {
   if (guide.total <= 0.0) return guide.frame * sample_cosine(u);
   if (u.x >= k_guided_share) return guide.frame * sample_cosine(vec2((u.x - k_guided_share) / (1.0 - k_guided_share), u.y));
@@ -70,11 +70,11 @@ vec3 guide_sample(Guide guide, vec2 u) {
   cell += 16u * texel;
   float elevation = (float(cell % k_guide_elevations) + min(rest / max(share, 1.0), 1.0)) / float(k_guide_elevations);
   float phi = 2.0 * k_pi * (float(cell / k_guide_elevations) + u.y) / float(k_guide_azimuths);
-  // The cosine never 0.
+  // Keeps the cosine above 0.
   return guide.frame * vec3(sqrt(elevation) * cos(phi), sqrt(elevation) * sin(phi), sqrt(max(1.0 - elevation, 1e-7)));
 }
 
-// Density of the mixture in a world direction above the vertex, over the cosine's.
+// Density of the mixture over the cosine density, for a world direction above the vertex.
 float guide_density(Guide guide, vec3 direction) {
   if (guide.total <= 0.0) return 1.0;
   vec3 local = direction * guide.frame;  // transposed

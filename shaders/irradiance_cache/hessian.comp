@@ -1,14 +1,13 @@
 // Second derivatives of a record's irradiance along its surface, occlusion included: J. Schwarzhaupt, H. W. Jensen and
 // W. Jarosz, "Practical Hessian-Based Error Control for Irradiance Caching", 2012. One invocation a record.
 //
-// The places that the rays of the hemisphere met are joined to a mesh: two triangles between the rays of four neighbouring
-// cells, a fan around the normal, and a strip down to the horizon that repeats what the lowest rays met. As seen from the
-// record it hides nothing from itself, so that its irradiance is a sum of form factors, and derivatives are sums of theirs
-// (form_factor.glsl). A triangle has the radiance of its furthest vertex: where it joins two surfaces at different
-// distances it is what comes into view, or goes out of it, behind the nearer one. The mean radiance is taken off first: as
-// the mesh is closed that changes nothing but what rounding does.
+// The ray hits form a mesh: two triangles for each four neighbouring cells, a fan around the normal, and a strip down to the
+// horizon that repeats the lowest rays. Seen from the record the mesh does not occlude itself, so irradiance is a sum of
+// form factors, and its derivatives are sums of theirs (form_factor.glsl). A triangle has the radiance of its farthest
+// vertex: where it joins two surfaces, this is the radiance that becomes visible or hidden behind the nearer one. The mean
+// radiance is subtracted first, which reduces rounding errors; for a closed mesh it changes nothing else.
 //
-// Leaves the Hessian of the luminance of all parts together, and that luminance: see k_record_texels, texel 4.
+// Output: Hessian of the luminance of all parts together, and that luminance (k_record_texels, texel 4).
 #define LUCERNA_PUSH RecordPush
 #include "shaders/shared/irradiance_cache/records.h"
 #include "lib/wavefront.glsl"
@@ -28,11 +27,11 @@ float part_luminance(uint slot, uint part) {
   return (push.parts >> part & 1u) != 0u ? luminance(texelFetch(radiance_texels, int(radiance_texel(slot, lane_of(0u, part)))).rgb)
                                          : 0.0;
 }
-// Loops are counted (Evaluator::k_most_rays): none here.
+// Unrolled: iterations of loops are counted (Evaluator::k_most_rays).
 float cell_luminance(uint slot) {
   return part_luminance(slot, 0u) + part_luminance(slot, 1u) + part_luminance(slot, 2u) + part_luminance(slot, 3u);
 }
-// Bounded, so that its square is finite.
+// Bounded so that its square is finite.
 float cell_near(uint slot) { return min(inverse_distance(texelFetch(first_hit_texels, int(slot))), 1e9); }
 
 vec3 cell_direction(uint j, uint k, uint record) {
@@ -64,7 +63,7 @@ void main() {
   vec3 hessian = vec3(0.0);
   for (uint k = 0u; k < n; ++k) {
     uint next = k + 1u < n ? k + 1u : 0u;
-    // A and B at this azimuth, D and C at the next: A and D above.
+    // A and B at this azimuth, D and C at the next; A and D are the upper ones.
     Vertex a = pole, d = pole, b = pole, c = pole;
     vec3 da = vec3(0.0);
     for (uint j = 0u; j <= m; ++j) {

@@ -1,4 +1,4 @@
-// Keeps where paths look up (k_probe_reads): the two of a pixel side by side, in the order of the blocks.
+// Stores the positions of lookups (k_probe_reads), the two of each pixel side by side, in block order.
 #include "shaders/shared/irradiance_cache/records.h"
 #include "shaders/shared/facet.h"
 #include "lib/invocation.glsl"

@@ -1,15 +1,15 @@
-// The shares that every record has in the two lookups of a pixel, multiplied, and added up over the pixels; and the shares in
-// the lookups that the paths go on to, by how much of the irradiance at the first they are to bring. One invocation a pixel.
-// In whole steps, so that no order matters.
+// Importance of records: for the two lookups of a pixel the product of each record's shares, summed over the pixels. The
+// next lookups along the paths count too, scaled by their part of the irradiance at the first. One invocation a pixel. Sums
+// are integers, so the order does not matter.
 #include "irradiance_cache/reading.glsl"
 #include "lib/invocation.glsl"
 #include "lib/wide_sum.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { ImportancePush push; };
 uniform samplerBuffer place_texels, next_place_texels;  // position; bits: normal, k_importance_place
-layout(scalar) buffer Sums { WideSum sums[]; };  // of each record
+layout(scalar) buffer Sums { WideSum sums[]; };  // per record
 
-// Of the light that falls on what a record's ray meets, how much comes back: a wall's albedo.
+// Assumed albedo of the surfaces that a record's rays hit.
 const float k_returned = 0.5;
 
 struct Reader {
@@ -21,7 +21,7 @@ Reader reader(vec4 place) {
   return Reader(place.xyz, facet_unpack(bits), (bits & k_importance_place) != 0u);
 }
 
-// Of the record in place i of the octree's lists; 0: it does not serve there.
+// Weight of the record at place i of the octree's lists; 0: it does not serve.
 float weight_at(Reader r, uint i) {
   uint record = octree_sphere(i);
   vec4 place = octree_copy(i), facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
@@ -30,8 +30,8 @@ float weight_at(Reader r, uint i) {
   return within ? record_weight(r.x, r.n, place, facing, record_shape(record, place)) : 0.0;
 }
 struct Read {
-  float weights;  // of all that serve there; 0: none does
-  float light;    // irradiance, luminance
+  float weights;  // sum over the records that serve; 0: none
+  float light;    // luminance of the irradiance
 };
 Read read_at(Reader r, OctreeRange range) {
   Read all = Read(0.0, 0.0);
@@ -44,7 +44,7 @@ Read read_at(Reader r, OctreeRange range) {
   return all;
 }
 
-// `scale`: of each record's share in either.
+// `scale`: multiplies the product of the two shares.
 void add(Reader one, Read all_one, OctreeRange range, Reader other, Read all_other, float scale) {
   for (uint i = range.first; i < range.last; ++i) {
     float product = weight_at(one, i) * weight_at(other, i);

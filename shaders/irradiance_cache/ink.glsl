@@ -1,10 +1,10 @@
-// What a record is coloured by in overlays.
+// Colour of a record in overlays.
 #ifndef LUCERNA_IRRADIANCE_CACHE_INK
 #define LUCERNA_IRRADIANCE_CACHE_INK
 #include "shaders/shared/ramp.h"
 #include "shaders/shared/irradiance_cache/records.h"
 
-// `by`: k_record_by_*; `lo`, `hi`: ends of the value's scale (OverlayPush). Encoded, 0..1. Uses record_texels.
+// sRGB-encoded colour, 0..1. `by`: k_record_by_*. `lo`, `hi`: ends of the scale (OverlayPush). Reads record_texels.
 vec3 record_ink(uint record, uint by, float lo, float hi) {
   vec4 texel = texelFetch(record_texels, int(record * k_record_texels + 2u));
   uint flags = floatBitsToUint(texel.w);

@@ -1,5 +1,5 @@
-// Which records serve the surface that one pixel shows, with their weights, and whose disc lies there. One invocation, and
-// the very functions that lookups use, so that the answer is theirs.
+// Lists the records that serve the surface of one pixel with their weights, and the record whose disc is drawn there. One
+// invocation. Uses the lookup functions themselves, so it reports exactly what lookups use.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "irradiance_cache/seen.glsl"

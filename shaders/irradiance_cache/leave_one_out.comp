@@ -1,21 +1,21 @@
-// Leaves every record out in turn: what the others around would have said of the light at its place, less what it says
-// itself. Beyond their noise that is what interpolation is off by there, with its sign. What a record extrapolates with its
-// slopes is off by the light's second derivatives, so in proportion to the square of the distance q = 1 - w, w its weight;
-// the mean of those squares over the others here, by their weights, says what the residual would be at distance 1, where
-// the record ends. That is kept: propagate_errors.comp scales it back. And since the residual is a sum of records' light, their errors
-// are propagated through it lane by lane, so that over a region, where most of them cancel, what is left of the noise is known
-// too. (Leave-one-out residuals: D. M. Allen, "The relationship between variable selection and data
+// Leave-one-out residual of every record: what the other records predict at its place, minus its own value. Beyond noise
+// this is the interpolation error there, with its sign. (D. M. Allen, "The relationship between variable selection and data
 // augmentation and a method for prediction", 1974.) One invocation a record.
+//
+// Gradient extrapolation misses the second derivatives, so the error grows with the square of the distance q = 1 - w, w
+// being the weight. The residual is divided by the weighted mean of q^2 over the other records, which scales it to q = 1,
+// the border of validity; propagate_errors.comp scales it back. The residual is a linear combination of record values, so
+// record errors are propagated through it lane by lane; this estimates the noise that remains after averaging over a region.
 #include "irradiance_cache/reading.glsl"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PoolPush push; };
 layout(scalar) writeonly buffer Residuals { vec4 residuals[]; };
 
-// Where the others are as near as that (a third of the reach) they tell little of what is further off.
+// If the other records are nearer than this (a third of the reach), they contain little information about the border.
 const float k_least_square = 0.1;
 
-// What a record says of the luminance at a point with that normal, by its gradients.
+// Luminance that a record predicts at a point with normal `n`, extrapolated by its gradients.
 float extrapolated(uint record, vec3 facing, vec3 away, vec3 n) {
   Extrapolation by = extrapolation(facing, away, n);
   float light = 0.0;

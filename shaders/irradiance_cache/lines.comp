@@ -1,5 +1,5 @@
-// Draws lines over a rectangle of the picture, in their order, and below them the border of one record's disc where it lies
-// on what the camera sees.
+// Draws lines over a rectangle of the picture in their order, and below them the border of one record's disc on the visible
+// surface.
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "irradiance_cache/seen.glsl"

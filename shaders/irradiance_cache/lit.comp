@@ -1,12 +1,12 @@
-// Irradiance as the present records give it at the points of the screen-space stage, what its noise is, and how near the
-// nearest of those that serve is.
+// For every point of the screen-space stage: irradiance from the present records, its noise, and the distance of the nearest
+// record that serves.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "shaders/shared/irradiance_cache/discontinuity.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { LitPush push; };
 uniform samplerBuffer surface_texels;
-layout(scalar) writeonly buffer Lit { vec3 lit[]; };  // luminance, -1 where none serves, -2 where paths gather; distance of the nearest [m]; standard error
+layout(scalar) writeonly buffer Lit { vec3 lit[]; };  // luminance (-1: no record serves, -2: paths gather); distance of the nearest record [m]; standard error
 
 void main() {
   uint point = global_index();

@@ -1,7 +1,7 @@
-// Irradiance at a point from the records around it: the mean of what each extrapolates by its gradients,
-// with a weight that falls to 0 at the border of its validity (E. Tabellion and A. Lamorlette, 2004), so that no seam
-// shows. LUCERNA_CACHE_PARTS: bit p: part p is read. LUCERNA_CACHE_ELLIPSES: 1 where records may be ellipses;
-// LUCERNA_CACHE_GATHERS: 1 where some may say that paths gather.
+// Irradiance at a point, interpolated from records: the weighted mean of their gradient extrapolations. A record's weight
+// falls to 0 at the border of its validity, so no seam shows (E. Tabellion and A. Lamorlette, 2004).
+// LUCERNA_CACHE_PARTS: bit p: part p is read. LUCERNA_CACHE_ELLIPSES: 1: records may be ellipses.
+// LUCERNA_CACHE_GATHERS: 1: records may be crowded, so that paths gather (k_record_crowded).
 #ifndef LUCERNA_IRRADIANCE_CACHE_LOOKUP
 #define LUCERNA_IRRADIANCE_CACHE_LOOKUP
 #include "lib/variants.glsl"
@@ -29,14 +29,14 @@ const int k_cache_sides = 1;
 struct Cached {
   vec3 part[k_part_count];
   float weight;  // 0: no record serves here
-  uint guide;    // the nearest that says that paths gather themselves here; k_no_guide: none does
+  uint guide;    // nearest crowded record; k_no_guide: none, paths do not gather here
 #if LUCERNA_GROUP_SUMS
-  vec3 group[k_group_count];  // of all parts but k_part_direct, by group of lights; right in the mean over `u`
+  vec3 group[k_group_count];  // all parts except k_part_direct, by light group; unbiased over `u`
 #endif
 };
 
-// How near the nearest records are in whose discs a point lies: of those that hold light, of those that crowd. Where one that
-// crowds is nearer paths gather: wider records that reach there know nothing of what it is near to.
+// Distances to the nearest records whose discs contain the point: lit and crowded ones. Paths gather where the crowded one
+// is nearer: wider records that reach the point ignore the near geometry.
 struct Nearest {
   float lit, crowded;  // [m], k_infinity: none
 };
@@ -47,7 +47,7 @@ Nearest nearer(Nearest so_far, float weight, vec3 away, bool crowded) {
 }
 bool paths_gather(Nearest n) { return n.crowded < n.lit; }
 
-// A record's texel 3. Compiled in where records may be ellipses alone: of spheres `place` tells all.
+// Texel 3 of a record. Read only if records may be ellipses; spheres need only `place`.
 vec4 record_shape(uint record, vec4 place) {
 #if LUCERNA_CACHE_ELLIPSES
   return texelFetch(record_texels, int(record * k_record_texels + 3u));
@@ -62,12 +62,13 @@ bool record_crowded(uint record) {
   return record_flagged_crowded(texelFetch(record_texels, int(record * k_record_texels + 2u)).w);
 }
 
-// How far off the plane between its own and a record's tangent plane a point may lie and be served [m]. `radius`: the lesser.
+// Largest distance of a served point from the plane midway between its own and the record's tangent plane [m]. `radius`:
+// minor.
 float record_off_plane(vec3 position, float radius) {
   return radius * (radius <= 1.001 * least_radius(position) ? cache.off_plane_least : cache.off_plane);
 }
 
-// How far along a record's reach a point lies that is `away` from its centre: 0 there, 1 where it serves no more.
+// Normalized distance of a point at offset `away` from the record's centre: 0 at the centre, 1 at the border of validity.
 float record_far(vec3 away, vec4 place, vec4 shape) {
 #if LUCERNA_CACHE_ELLIPSES
   return record_distance(away, shape);
@@ -76,27 +77,28 @@ float record_far(vec3 away, vec4 place, vec4 shape) {
 #endif
 }
 
-// Weight of a record, 0..1, at a point with that geometric normal.
+// Weight of a record, 0..1, at a point x with geometric normal n.
 float record_weight(vec3 x, vec3 n, vec4 place, vec4 facing, vec4 shape) {
   vec3 away = x - place.xyz;
   float far = record_far(away, place, shape);
   float turned = sqrt(max(0.0, 1.0 - dot(n, facing.xyz)) / cache.normal_tolerance);
-  // Points of one smooth surface lie in the plane between their normals' planes; what lies off it, on either side, is another
-  // surface, or a step.
+  // Two points of one smooth surface lie near the plane midway between their tangent planes; points off that plane belong to
+  // another surface or to a step.
   bool level = abs(dot(away, n + facing.xyz)) <= 2.0 * record_off_plane(place.xyz, shape.w);
   return place.w > 0.0 && level ? max(0.0, 1.0 - max(far, turned)) : 0.0;
 }
 
-// Whether a record at a point with that geometric normal could serve that shading normal.
+// True if a record on geometric normal n can serve a shading normal: the angle is small enough for rotational gradients.
 bool cache_can_serve(vec3 n, vec3 shading) { return 1.0 - dot(n, shading) <= cache.normal_tolerance; }
 
 #if LUCERNA_GROUP_SUMS
-// One record for all that serve a point, whose groups' shares are read: on lavapipe reading those of all took a third of the
-// time of shading. A record is drawn with the probability of its luminance among all, and stands for that of all.
+// One record, drawn with a probability proportional to its weighted luminance, provides the group shares for the whole
+// lookup.
+// Reading the shares of all records took a third of shading time on lavapipe.
 struct RecordLot {
-  Reservoir drawing;  // by luminance, weighted
+  Reservoir drawing;  // by weighted luminance
   uint record;
-  vec3 light;   // the record's, of the luminance of all: weighted
+  vec3 light;   // the drawn record's light, scaled to the luminance of all
 };
 RecordLot draw_record(RecordLot lot, uint record, vec3 light) {
   float y = luminance(light), before = lot.drawing.total;
@@ -107,22 +109,22 @@ RecordLot draw_record(RecordLot lot, uint record, vec3 light) {
 }
 #endif
 
-// The records that may serve a point; none when nothing is asked, or while the cache holds none that are complete.
-OctreeRange cache_range(vec3 x, bool wanted) {
+// Octree range of the records near x; empty if `enabled` is false or the cache has no complete records.
+OctreeRange cache_range(vec3 x, bool enabled) {
   OctreeRange range = octree_find(x);
-  return OctreeRange(range.first, wanted && cache.record_count > 0u ? range.last : range.first);
+  return OctreeRange(range.first, enabled && cache.record_count > 0u ? range.last : range.first);
 }
 
-// A record on its own, as it stands in the octree's lists.
+// One entry of the octree's lists, evaluated at a point.
 struct Serving {
   uint record;
   vec4 place, facing;
-  float weight;   // 0: it serves the point not
-  bool crowded;   // ... and holds no light
+  float weight;   // 0: the record does not serve the point
+  bool crowded;   // it serves the point, but holds no light
 };
 
-// The next record of a range whose sphere holds the point; `i` goes behind it. Ten are listed for each, and lanes wait for the
-// longest list.
+// Advances `i` to the next record of the range whose sphere contains the point. About one record in ten does, and lanes wait
+// for the longest list.
 Serving next_serving(inout uint i, uint last, vec3 x, vec3 n, uint media) {
   Serving s;
   uint at = i;
@@ -148,18 +150,18 @@ Serving next_serving(inout uint i, uint last, vec3 x, vec3 n, uint media) {
   return s;
 }
 
-// ... and what it does to the nearest ones; `guide` is that of the nearest that crowds.
+// Updates the nearest distances; `guide` becomes the nearest crowded record.
 void meet(Serving s, vec3 x, inout Nearest nearest, inout uint guide) {
   float before = nearest.crowded;
   nearest = nearer(nearest, s.weight, x - s.place.xyz, s.crowded);
   guide = nearest.crowded < before ? s.record : guide;
 }
 
-// A record's light, extrapolated to a place that is `away` from it and where the light falls on `shading`.
+// Extrapolation of a record's light to a point at offset `away` with normal `shading`.
 struct Extrapolation {
-  vec2 r, t;  // turn and offset, along tangent and bitangent
+  vec2 r, t;  // rotation and translation along tangent and bitangent
 };
-// Of an offset, the part over which slopes are extrapolated that hold so far.
+// Clamps an offset to the distance up to which the translational gradient holds.
 vec2 slope_offset(vec2 t, float holds) { return t * min(1.0, holds / max(length(t), 1e-30)); }
 Extrapolation extrapolation(vec3 normal, vec3 away, vec3 shading) {
   vec3 tangent, bitangent;
@@ -171,7 +173,7 @@ vec3 record_part(uint record, uint part, Extrapolation by) {
   int from = int((record * k_part_count + part) * k_part_texels);
   vec4 a = texelFetch(irradiance_texels, from), b = texelFetch(irradiance_texels, from + 1);
   vec4 c = texelFetch(irradiance_texels, from + 2), d = texelFetch(irradiance_texels, from + 3);
-  // Not below 0; and no further up than down, because a limit on one side would make light of noisy gradients.
+  // Clamped to [0, 2 x record]: a clamp on one side alone would brighten noisy gradients.
   vec2 t = slope_offset(by.t, d.w);
   vec3 change = by.r.x * vec3(a.a, b.xy) + by.r.y * vec3(b.zw, c.x) + t.x * c.yzw + t.y * d.xyz;
   return a.rgb + clamp(change, -a.rgb, a.rgb);
@@ -189,7 +191,7 @@ Cached nothing_cached() {
   return found;
 }
 
-// What groups have in `light`, by their shares in a record's.
+// Splits `light` by the record's group shares.
 #if LUCERNA_GROUP_SUMS
 void share_out(inout Cached found, uint record, vec3 light) {
   [[unroll]] for (uint t = 0u; t < k_group_texels; ++t) {
@@ -199,23 +201,23 @@ void share_out(inout Cached found, uint record, vec3 light) {
 }
 #endif
 
-// `n`: geometric, on the side whose light is asked for; `shading`: the normal that the light falls on. They may differ by
-// what the gradient of rotation can bridge; beyond that nothing is served. `asks` false: an empty answer, without work.
-// `media`: that the point lies in, as PathState has them; records of others have other light. `u`: a number in [0, 1) by which
-// a record is drawn where groups of lights are kept apart.
-Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint media, bool wanted, float u) {
+// Irradiance from all records that serve x. `n`: geometric normal, on the side that is lit. `shading`: shading normal;
+// nothing is served if the rotational gradient cannot bridge the angle between the two. `media`: media around x, as in
+// PathState; records in other media do not serve. `enabled` false: an empty result at no cost. `u`: [0, 1), draws a record
+// for group shares.
+Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint media, bool enabled, float u) {
   Cached found = nothing_cached();
 #if LUCERNA_GROUP_SUMS
   RecordLot lot = RecordLot(Reservoir(u, 0.0), 0u, vec3(0.0));
 #endif
   Nearest nearest = nothing_near();
-  OctreeRange range = cache_range(x, wanted && cache_can_serve(n, shading));
+  OctreeRange range = cache_range(x, enabled && cache_can_serve(n, shading));
   for (uint i = range.first; i < range.last;) {
     Serving s = next_serving(i, range.last, x, n, media);
     meet(s, x, nearest, found.guide);
     float weight = s.crowded ? 0.0 : s.weight;
     Extrapolation by = extrapolation(s.facing.xyz, x - s.place.xyz, shading);
-    vec3 light = vec3(0.0);  // weighted, of all groups
+    vec3 light = vec3(0.0);  // weighted, all groups
     for (uint p = 0u; p < k_part_count; ++p) {
       if (!part_is_read(p)) continue;
       vec3 part = record_part(s.record, p, by);
@@ -236,15 +238,15 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint media, bool wanted, float
   return found;
 }
 
-// The same of one of the records that serve, each drawn with its share in the weight: right in the mean over `u`. Records that
-// serve a place differ by little, and of a drawn one alone the light is read, which takes a third of the time of a lookup away.
-Cached cache_draw(vec3 x, vec3 n, vec3 shading, uint media, bool wanted, float u) {
+// The same from one record, drawn in proportion to its weight: unbiased over `u`. Records that serve one place differ
+// little, and reading the light of one instead of all saves a third of the lookup's time.
+Cached cache_draw(vec3 x, vec3 n, vec3 shading, uint media, bool enabled, float u) {
   Cached found = nothing_cached();
   Reservoir drawing = Reservoir(u, 0.0);
   uint record = 0u;
   vec3 place = vec3(0.0), facing = vec3(0.0, 0.0, 1.0);
   Nearest nearest = nothing_near();
-  OctreeRange range = cache_range(x, wanted && cache_can_serve(n, shading));
+  OctreeRange range = cache_range(x, enabled && cache_can_serve(n, shading));
   for (uint i = range.first; i < range.last;) {
     Serving s = next_serving(i, range.last, x, n, media);
     meet(s, x, nearest, found.guide);
@@ -256,7 +258,7 @@ Cached cache_draw(vec3 x, vec3 n, vec3 shading, uint media, bool wanted, float u
   found.weight = paths_gather(nearest) ? 0.0 : drawing.total;
   Extrapolation by = extrapolation(facing, x - place, shading);
   vec3 light = vec3(0.0);
-  // A loop, because a branch saves no work on lavapipe: of vertices that look nothing up, nothing is read.
+  // A loop instead of a branch: on lavapipe a branch saves no reads for vertices without a lookup.
   for (uint once = 0u; once < (found.weight > 0.0 ? 1u : 0u); ++once) {
     for (uint p = 0u; p < k_part_count; ++p) {
       if (!part_is_read(p)) continue;

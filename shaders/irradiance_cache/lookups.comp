@@ -1,4 +1,4 @@
-// What a lookup costs: one at every surface that the camera sees, as paths make them. Only to be timed.
+// One lookup at every visible surface, as paths make it. For timing only.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "overlay/lookup_place.glsl"

@@ -1,5 +1,5 @@
-// How wide the ellipse of a record may be so that nothing that its rays met lies within it, and nothing stands between the
-// record and a point that it serves. One invocation a record.
+// Bounds the ellipse of a record so that no ray hit lies inside, and nothing stands between the record and a point that it
+// serves. One invocation a record.
 #define LUCERNA_PUSH RecordPush
 #include "shaders/shared/irradiance_cache/records.h"
 #include "lib/wavefront.glsl"

@@ -1,4 +1,4 @@
-// Records' normals as short lines from their centres, to be drawn over the picture: one invocation a record.
+// Draws the normals of records as short lines over the picture. One invocation a record.
 #include "lib/invocation.glsl"
 #include "overlay/seen.glsl"
 #include "shaders/shared/irradiance_cache/inspect.h"
@@ -9,7 +9,7 @@ uniform samplerBuffer record_texels;
 #include "irradiance_cache/ink.glsl"
 layout(scalar) writeonly buffer OverlaySegments { OverlaySegment segments[]; };
 
-// Pixels. Normals of small discs, which lie close together, fade out, so that the structure stays readable.
+// [pixels]. Normals of small discs fade out, because they lie close together and would hide the structure.
 const float k_longest = 13.0, k_half_width = 0.5, k_edge = 1.0;
 const float k_least_disc = 4.0, k_full_disc = 12.0;
 
@@ -25,7 +25,7 @@ void main() {
   vec3 tip = place.xyz + min(0.6 * place.w, k_longest * size) * facing.xyz;
   shown = shown && to_picture(tip, push.width, push.height).z > 0.0;
   float strength = shown ? clamp((place.w / size - k_least_disc) / (k_full_disc - k_least_disc), 0.0, 1.0) : 0.0;
-  // Lighter than the discs' ink, so that it parts from their rims.
+  // Lighter than the discs, to stand out from their rims.
   vec3 ink = mix(record_ink(record, push.color, push.lo, push.hi), vec3(1.0), 0.4);
   segments[record] = OverlaySegment(place.xyz, tip, k_half_width, k_edge, ink, 0.95, strength, 2.0 * size, k_rank_least);
 }

@@ -1,5 +1,5 @@
-// How many records serve the diffuse surfaces that the camera sees: pixels by their number. Integers are summed, in any
-// order.
+// Histogram of the number of records that serve a visible diffuse surface, over pixels. Integer sums: the order does not
+// matter.
 #include "lib/invocation.glsl"
 #include "irradiance_cache/lookup.glsl"
 #include "overlay/lookup_place.glsl"

@@ -1,6 +1,5 @@
-// Draws the records over the picture, where the surfaces that the camera sees are: each as the disc of its validity with
-// a mark at its centre, and how many serve a pixel as a heat map. Where discs are drawn the place on the surface comes from the
-// film's depth, so that what is hidden stays hidden.
+// Draws records on the visible surfaces: each record's disc of validity with a mark at its centre, and the number of records
+// that serve a pixel as a heat map. Discs use the film's depth, so that hidden ones stay hidden.
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "irradiance_cache/lookup.glsl"
@@ -32,7 +31,7 @@ void main() {
     overlap += weight > 0.0 && !crowds ? 1u : 0u;
     float from = distance(seen.position, place.xyz), reach = seen_reach(seen, place, shape);
     vec3 ink = crowds ? k_gathered_ink : record_ink(record, push.color, push.lo, push.hi);
-    // Discs of a few pixels fade, so that many of them far away do not become fog.
+    // Discs of a few pixels fade: many distant ones would look like fog.
     float strength = clamp((shape.w / seen.size - 2.0) / 8.0, 0.2, 1.0);
     float rim = clamp(1.25 - abs(reach - 0.5 * seen.size - from) / seen.size, 0.0, 1.0) * 0.8 * strength;
     float dot_ = clamp(2.0 - from / seen.size, 0.0, 1.0) * max(strength, 0.5);
@@ -42,7 +41,7 @@ void main() {
   }
   vec3 color = picture_color(picture[pixel]);
   if (push.overlap != 0u && a.diffuse) {
-    // One colour a count up to the scale's end, none served in red, none needed because paths gather in grey.
+    // One colour per count up to the end of the scale; red: none serves; grey: paths gather.
     vec3 ink = paths_gather(nearest) ? k_gathered_ink : overlap == 0u ? k_unserved_ink : ramp_color(k_ramp_viridis, float(overlap) / push.overlap_most);
     color = mix(color, ink, 0.8);
   }

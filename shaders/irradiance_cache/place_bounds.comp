@@ -1,4 +1,4 @@
-// Boxes around runs of candidates.
+// Bounding boxes of runs of candidates.
 #include "irradiance_cache/placement.glsl"
 layout(scalar) writeonly buffer RunBounds { vec4 run_bounds[]; };
 

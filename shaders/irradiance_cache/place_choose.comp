@@ -1,9 +1,9 @@
-// Of a cluster's candidates some, one by one in an order drawn for the seed, each dropping those that it stands for, until
-// none is left. One invocation a cluster.
+// Chooses candidates of a cluster, one by one in a random order from the seed. Each chosen one removes the candidates that
+// it covers, until none remains. One invocation a cluster.
 #include "irradiance_cache/placement.glsl"
 #include "lib/sampler.glsl"
 layout(scalar) readonly buffer Starts { uint starts[]; };
-layout(scalar) writeonly buffer Ranks { uint ranks[]; };  // by sorted candidate: 0 or its place in the order, from 1
+layout(scalar) writeonly buffer Ranks { uint ranks[]; };  // by sorted candidate: rank among the chosen ones, from 1; 0: not chosen
 layout(scalar) readonly buffer Total { uint total; };     // candidates
 
 uint priority(uint candidate) { return hash_combine(push.seed, candidate); }

@@ -1,4 +1,4 @@
-// Which sorted candidates are chosen.
+// Marks the chosen candidates in sorted order.
 #include "irradiance_cache/placement.glsl"
 layout(scalar) readonly buffer Ranks { uint ranks[]; };
 layout(scalar) writeonly buffer Heads { uint heads[]; };

@@ -1,5 +1,4 @@
-// The cells that candidates are sorted into: powers of two wide, so that scaling by them is exact and the same on every
-// device. One invocation.
+// Cell size for sorting candidates: a power of two, so that scaling is exact and equal on every device. One invocation.
 #include "irradiance_cache/placement.glsl"
 uniform samplerBuffer run_bound_texels;
 

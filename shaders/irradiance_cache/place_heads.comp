@@ -1,9 +1,9 @@
-// Where clusters begin among the sorted candidates: where two neighbours are not in one cell about four times as wide as the
-// lesser reach, and where a cluster would hold too many.
+// Marks where clusters begin among the sorted candidates: where two neighbours do not share a cell of about four times the
+// smaller reach, and where a cluster is full.
 #include "irradiance_cache/placement.glsl"
 layout(scalar) writeonly buffer Heads { uint heads[]; };
 
-// Bits of the code within a cell of a candidate's cluster.
+// Bits of the Morton code below the cell of a candidate's cluster.
 int cell_bits(float reach) {
   return 3 * clamp(exponent_of(4.0 * reach) - grid.exponent, 0, int(k_morton_bits));
 }

@@ -1,4 +1,4 @@
-// The chosen candidates' entries, in their order.
+// Copies the entries of the chosen candidates, in order.
 #include "irradiance_cache/placement.glsl"
 layout(scalar) readonly buffer Heads { uint heads[]; };
 layout(scalar) readonly buffer HeadsBefore { uint heads_before[]; };

@@ -1,8 +1,8 @@
-// The Morton code of every candidate's cell.
+// Morton code of every candidate's cell.
 #include "irradiance_cache/placement.glsl"
 layout(scalar) writeonly buffer Entries { SortEntry64 entries[]; };
 
-// Two zero bits after each of 10 or 11.
+// Inserts two zero bits after each of 10 or 11.
 uint spread(uint x) {
   x &= 0x3ffu;
   x = (x | x << 16) & 0x030000ffu;
@@ -16,7 +16,7 @@ void main() {
   if (index >= push.count) return;
   precise vec3 offset = texelFetch(place_texels, int(index)).xyz - grid.origin, scaled = offset * grid.scale;
   uvec3 cell = min(uvec3(scaled), uvec3((1u << k_morton_bits) - 1u));
-  // Bits 0-9 of each axis are bits 0-29 of the code; 10 on those from 30 on.
+  // Bits 0-9 of each axis become bits 0-29 of the code; bits 10-19 become bits 30-59.
   uint low = spread(cell.x) | spread(cell.y) << 1 | spread(cell.z) << 2;
   uvec3 upper = cell >> 10;
   uint high = spread(upper.x) | spread(upper.y) << 1 | spread(upper.z) << 2;

@@ -1,4 +1,4 @@
-// What the kernels share that choose among candidates.
+// Shared by the kernels that choose among candidates.
 #ifndef LUCERNA_IRRADIANCE_CACHE_PLACEMENT
 #define LUCERNA_IRRADIANCE_CACHE_PLACEMENT
 #include "shaders/shared/irradiance_cache/placement.h"
@@ -12,6 +12,6 @@ uniform samplerBuffer place_texels;
 uniform samplerBuffer facing_texels;
 uniform usamplerBuffer entry_texels;  // sorted: low and high word of the key, candidate
 
-// Exponent of the greatest power of two that is not above a normal x > 0.
+// Exponent of the largest power of two not above a normal x > 0.
 int exponent_of(float x) { return int(floatBitsToUint(x) >> 23 & 0xffu) - 127; }
 #endif

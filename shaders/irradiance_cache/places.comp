@@ -1,5 +1,5 @@
-// Places of records while they are being chosen, to be drawn over the picture: a dot each, and a ring in its plane as wide
-// as its record would be. One invocation a place.
+// Draws places of records while they are chosen: a dot each, and a ring in its plane with the radius that its record would
+// have. One invocation a place.
 #include "lib/invocation.glsl"
 #include "shaders/shared/irradiance_cache/placement_view.h"
 #include "shaders/shared/overlay.h"
@@ -9,11 +9,11 @@ layout(scalar) readonly buffer Places { PlacedPoint places[]; };
 layout(scalar) writeonly buffer OverlayPoints { OverlayPoint points[]; };
 layout(scalar) writeonly buffer OverlayDiscs { OverlayDisc discs[]; };
 
-// Pixels. Dots: of push.tried_dot.
+// [pixels]; dots: in units of push.tried_dot.
 const float k_rejected_dot = 0.6, k_tried_dot = 0.75, k_edge = 0.7, k_half_ring = 0.4;
-const float k_faint = 0.35;  // strength of rings of what is only tried
+const float k_faint = 0.35;  // strength of the rings of places that are only tried
 
-// One over the other.
+// Drawing order.
 const uint k_rank_faint_ring = k_rank_least, k_rank_rejected = k_rank_least + 1u, k_rank_ring = k_rank_least + 2u;
 const uint k_rank_tried = k_rank_least + 3u, k_rank_chosen = k_rank_most;
 

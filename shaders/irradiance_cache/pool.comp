@@ -1,6 +1,6 @@
-// What the pilot rays of a record and of those around it say of the light at its place: means of their Hessians and of their
-// irradiances, each weighing by how far it would serve there. A single pilot has few rays; what one of them meets by chance
-// would make its record's ellipse unlike those beside it. One invocation a record; what is around it is in the octree.
+// Averages the pilot Hessians and irradiances of the records around each record, weighted by how well each serves there. A
+// single pilot has few rays, and one chance hit would give its record an ellipse unlike its neighbours'. One invocation a
+// record; the octree provides the neighbours.
 #include "irradiance_cache/lookup.glsl"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;
@@ -22,7 +22,7 @@ void main() {
     vec4 place = octree_copy(i), facing = texelFetch(record_texels, int(other * k_record_texels + 1u));
     vec4 hessian = texelFetch(record_texels, int(other * k_record_texels + 4u));
     float weight = other == own ? 0.0 : record_weight(x, n, place, facing, record_shape(other, place));
-    // Its Hessian as a form on this record's plane.
+    // The neighbour's Hessian as a quadratic form on this record's plane.
     vec3 t, b;
     make_basis(facing.xyz, t, b);
     vec2 u = vec2(dot(tangent, t), dot(tangent, b)), v = vec2(dot(bitangent, t), dot(bitangent, b));

@@ -1,4 +1,4 @@
-// What pool.comp has found takes the place of what the records' own pilot rays told.
+// Replaces the records' own pilot results with those of pool.comp.
 #include "shaders/shared/irradiance_cache/records.h"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;

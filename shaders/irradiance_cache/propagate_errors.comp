@@ -1,20 +1,20 @@
-// Propagates the records' errors along the paths of a batch of pixels, two independent ones each: what is noted of a path
-// (k_probe_errors) says how much it reads there, lookup.glsl which records that is. One invocation a pixel, a block of 8x8 a
-// workgroup; sums in a fixed order.
+// Propagates record errors along the two independent paths of each pixel of a batch. Path notes (k_probe_errors) hold the
+// throughput of each read; lookup.glsl provides the records and their weights. One invocation a pixel, an 8x8 block a
+// workgroup. Sums run in a fixed order.
 #include "irradiance_cache/reading.glsl"
 #include "shaders/shared/transport.h"
 #include "lib/blocks.glsl"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PropagatePush push; };
-uniform samplerBuffer candidate_texels;  // of the paths' first lookups: k_probe_errors
-uniform samplerBuffer beyond_texels;     // ... and of those beyond: k_probe_errors_beyond
+uniform samplerBuffer candidate_texels;  // first lookups of the paths: k_probe_errors
+uniform samplerBuffer beyond_texels;     // lookups beyond: k_probe_errors_beyond
 uniform samplerBuffer residual_texels;       // leave_one_out.comp
 layout(scalar) writeonly buffer FilmRecords { vec2 film_records[]; };
 layout(scalar) writeonly buffer BlockRecordSums { BlockRecords block_records[]; };
 
 const uint k_groups = k_record_lanes / 4u;
-const uint k_values = 2u * k_record_lanes + 1u;  // of a path: noise, noise of interpolation, interpolation
+const uint k_values = 2u * k_record_lanes + 1u;  // per path: noise, noise of the interpolation error, interpolation error
 shared float sums[k_values * 64u];
 
 struct ErrorSums {
@@ -22,7 +22,7 @@ struct ErrorSums {
   float interpolation;
 };
 
-// Adds what a path reads where that was noted, `share` of it.
+// Adds the errors of one noted read, scaled by `share`.
 void propagate(inout ErrorSums sum, vec4 note, vec4 facing, float share) {
   uint bits = floatBitsToUint(note.w), state = (bits - 1u) % k_note_media, media = (bits - 1u) / k_note_media;
   bool there = bits != 0u && share > 0.0;
@@ -44,7 +44,7 @@ void propagate(inout ErrorSums sum, vec4 note, vec4 facing, float share) {
     light *= weight;
     float error = light * record_error(record) / max(record_luminance(record), 1e-30);
     int residual = int(record * k_residual_texels);
-    float bent = light * square(1.0 - weight);  // by the square of the distance, as leave_one_out.comp has it
+    float bent = light * square(1.0 - weight);  // grows with the squared distance, as in leave_one_out.comp
     here.interpolation += bent * texelFetch(residual_texels, residual).x;
     for (uint g = 0u; g < k_groups; ++g) {
       here.noise[g] += error * record_signs(record, g);
@@ -70,14 +70,14 @@ ErrorSums path_errors(uint slot, bool inside) {
   return sum;
 }
 
-// What lies within the picture of this kernel's pixel is given its squares.
+// Stores the squares for a pixel inside the picture.
 void keep_pixel(uvec2 xy, vec2 squares) {
   for (uint y = xy.y * push.step; y < min((xy.y + 1u) * push.step, push.height); ++y)
     for (uint x = xy.x * push.step; x < min((xy.x + 1u) * push.step, push.width); ++x)
       film_records[y * push.width + x] = squares;
 }
 
-// Sums over the pixels of each block of the film that lies in this workgroup's.
+// Sums over the pixels of each film block of this workgroup.
 void keep_sums(uint block, uint path, uint width) {
   uint side = k_block / push.step, film_across = (push.width + k_block - 1u) / k_block, lane = gl_LocalInvocationIndex;
   uvec2 size = uvec2(width, (push.height + push.step - 1u) / push.step);

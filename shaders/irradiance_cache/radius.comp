@@ -1,6 +1,6 @@
-// The radius within which a record serves: error bound times the harmonic mean of what its rays met (Ward 1988), at
-// least some pixels wide as the camera sees it, and no wider than the nearest thing that a ray met, so that nothing stands
-// between a record and a point that it serves.
+// Radius of validity of a record: error bound times the harmonic mean of its ray distances (Ward 1988). At least some pixels
+// as seen from the camera, and at most the nearest hit distance, so that nothing stands between a record and a point it
+// serves.
 #include "shaders/shared/irradiance_cache/records.h"
 #include "lib/invocation.glsl"
 #include "irradiance_cache/least_radius.glsl"
@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { RadiusPush push; };
 uniform samplerBuffer record_texels;
 layout(scalar) writeonly buffer Records { vec4 records[]; };
-layout(scalar) writeonly buffer Spheres { vec4 spheres[]; };  // of the octree
+layout(scalar) writeonly buffer Spheres { vec4 spheres[]; };  // bounds in the octree
 
 void main() {
   uint index = global_index();

@@ -1,10 +1,10 @@
-// Reads records one by one, each with the weight that it has in an interpolation.
+// Reads single records with their interpolation weights.
 #ifndef LUCERNA_IRRADIANCE_CACHE_READING
 #define LUCERNA_IRRADIANCE_CACHE_READING
 #include "irradiance_cache/lookup.glsl"
 #include "irradiance_cache/error_propagation.glsl"
 
-// The weight that cache_lookup() gives the record in place `at` of the octree's lists, 0: none.
+// Weight that cache_lookup() gives the record at place `at` of the octree's lists; 0: not used.
 float read_weight(vec3 x, vec3 n, uint media, uint at) {
   uint record = octree_sphere(at);
   vec4 place = octree_copy(at), facing = texelFetch(record_texels, int(record * k_record_texels + 1u));
@@ -19,12 +19,12 @@ float read_weight(vec3 x, vec3 n, uint media, uint at) {
 vec3 record_light(uint record, uint part) {
   return texelFetch(irradiance_texels, int((record * k_part_count + part) * k_part_texels)).rgb;
 }
-// Luminance of all parts.
+// Luminance of all parts of a record.
 float record_luminance(uint record) {
   float light = 0.0;
   for (uint p = 0u; p < k_part_count; ++p) light += luminance(record_light(record, p));
   return light;
 }
-// Standard error of that.
+// Standard error of that luminance.
 float record_error(uint record) { return texelFetch(record_texels, int(record * k_record_texels + 2u)).z; }
 #endif

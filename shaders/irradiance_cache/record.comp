@@ -1,7 +1,7 @@
-// Source `record`: a path for each cell of the hemispheres of a batch of records. They begin in the state after ED, so
-// that the components of what they gather are the parts of the irradiance. Density cos/pi per solid angle, whose
-// weight 1/pdf the sum's pi/(MN) stands for: throughput 1. What the first ray meets gets the full weight (pdf 0), because
-// no light sample competes with it here.
+// Path source `record`: one path for each hemisphere cell of a batch of records. Paths start in the state after ED, so the
+// components of their light are the parts of the irradiance. Directions have density cos/pi; the factor pi/(MN) is applied
+// when the paths are summed, so the throughput is 1. The first hit has full MIS weight (pdf 0): no light sample competes
+// with it.
 #define LUCERNA_PUSH RecordPush
 #include "shaders/shared/irradiance_cache/records.h"
 #include "lib/wavefront.glsl"
@@ -24,7 +24,7 @@ void main() {
   Ray ray;
   ray.origin = place.xyz;
   ray.direction = normalize(along.sine * (cos(along.phi) * tangent + sin(along.phi) * bitangent) + along.cosine * normal);
-  // Below the facet there is no light, and the facet itself is not what the record sees: as path tracing has it.
+  // No light comes from below the facet, and the record does not see the facet itself: as in path tracing.
   uint flags = floatBitsToUint(texelFetch(record_texels, int(record * k_record_texels + 2u)).w);
   bool above = dot(ray.direction, facet_unpack(flags >> k_record_facet_shift)) > 0.0;
   ray.tmax = above ? k_infinity : -1.0;
@@ -33,7 +33,7 @@ void main() {
   PathState p;
   p.throughput = vec3(above ? 1.0 : 0.0);
   p.pdf = 0.0;
-  p.pixel = (push.pilot != 0u ? 0xc0000000u : 0x80000000u) | record;  // sequences apart from the pixels', and from each other
+  p.pixel = (push.pilot != 0u ? 0xc0000000u : 0x80000000u) | record;  // random sequences separate from those of pixels, and of the pilot from the others
   p.sample_index = push.rays_before + cell;
   p.bits = push.state | k_path_sky_only | 1u << k_path_events_shift;
   p.media = floatBitsToUint(texelFetch(record_texels, int(record * k_record_texels + 5u)).x);

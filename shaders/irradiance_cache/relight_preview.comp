@@ -1,5 +1,5 @@
-// The light of records while they are relit, for display: that of before, times what an edit is known to do to the light of
-// each group of lights, or to all of it.
+// Preview of record light during relighting: the light before the edit, times the known factor of the edit for each light
+// group or for all light.
 #include "lib/variants.glsl"
 #include "shaders/shared/irradiance_cache/records.h"
 #include "lib/math.glsl"
@@ -12,11 +12,11 @@ layout(scalar) writeonly buffer Shown { vec4 shown[]; };
 #include "irradiance_cache/groups.glsl"
 uniform usamplerBuffer old_group_texels;
 layout(scalar) writeonly buffer ShownGroups { uvec4 shown_groups[]; };
-layout(scalar) readonly buffer GroupFactors { vec4 group_factors[]; };  // of the light before
+layout(scalar) readonly buffer GroupFactors { vec4 group_factors[]; };  // relative to the light before the edit
 
 vec3 group_factor(uint group) { return group < k_group_count ? group_factors[group].rgb : vec3(1.0); }
 
-// Of a record's light as it was: what all of it is multiplied by as its groups are.
+// Factor of a record's total light, from its group shares.
 vec3 factor_of_groups(uint record) {
   vec3 sum = vec3(0.0), all = vec3(0.0);
   for (uint t = 0u; t < k_group_texels; ++t) {
@@ -29,7 +29,7 @@ vec3 factor_of_groups(uint record) {
   return mix(vec3(1.0), sum / all, greaterThan(all, vec3(0.0)));
 }
 
-// Groups' shares of light that all of it has been multiplied by `factor`.
+// Group shares after the total has been multiplied by `factor`.
 void scale_shares(uint record, vec3 factor) {
   for (uint t = 0u; t < k_group_texels; ++t) {
     int at = int(record * k_group_texels + t);
@@ -53,7 +53,7 @@ void main() {
     int at = int((record * k_part_count + p) * k_part_texels);
     vec4 light = texelFetch(old_texels, at);
     vec3 scaled = (p == k_part_direct ? factor_direct : factor) * light.rgb;
-    // Slopes change as the luminance does.
+    // Gradients scale with the luminance.
     float ratio = luminance(scaled) / max(luminance(light.rgb), 1e-20);
     shown[at] = vec4(scaled, ratio * light.a);
     for (int k = 1; k + 1 < int(k_part_texels); ++k) shown[at + k] = ratio * texelFetch(old_texels, at + k);

@@ -1,18 +1,18 @@
-// Which records' discs could be drawn where a pixel shows a surface.
+// Tests whether a record's disc covers the surface that a pixel shows.
 #ifndef LUCERNA_IRRADIANCE_CACHE_SEEN
 #define LUCERNA_IRRADIANCE_CACHE_SEEN
 #include "overlay/seen.glsl"
 #include "irradiance_cache/ellipse.glsl"
 
-// How far a record serves towards there. `shape`: record_shape() of lookup.glsl.
+// Reach of a record in the direction of a point. `shape`: record_shape() of lookup.glsl.
 float seen_reach(Seen s, vec4 place, vec4 shape) {
   vec3 away = s.position - place.xyz;
   float of_reach = record_distance(away, shape);
   return of_reach > 1e-6 ? length(away) / of_reach : shape.w;
 }
 
-// Whether a record's disc could be drawn there, were it endless: discs follow the surface where it is curved, and a pixel's
-// depth is a mean over its samples, so off the record's plane too.
+// True if the surface is near the record's plane and parallel to it, at any distance. Tolerant: discs follow curved surfaces,
+// and a pixel's depth is a mean over its samples.
 bool seen_on_plane(Seen s, vec4 place, vec4 facing, vec4 shape) {
   return abs(dot(s.position - place.xyz, facing.xyz)) < 2.0 * s.size + 0.15 * shape.w && dot(s.normal, facing.xyz) > 0.7;
 }

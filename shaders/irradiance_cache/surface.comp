@@ -1,4 +1,4 @@
-// Keeps what the rays of overlay/centre.comp have met, as the kernels have noted it (k_probe_screen).
+// Stores the hits of the rays of overlay/centre.comp, as the kernels noted them (k_probe_screen).
 #include "shaders/shared/sight.h"
 #include "shaders/shared/irradiance_cache/records.h"
 #include "lib/frame.glsl"

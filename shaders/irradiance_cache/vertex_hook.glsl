@@ -1,5 +1,5 @@
-// The irradiance cache at the vertices of paths: what they read of records, the states in which they go on where they have
-// read or found none, and what they note for its building (k_probe_*).
+// The irradiance cache at path vertices: reads records, selects the automaton state in which the path continues after a
+// lookup or a miss, and writes what building the cache needs (k_probe_*).
 #ifndef LUCERNA_IRRADIANCE_CACHE_VERTEX_HOOK
 #define LUCERNA_IRRADIANCE_CACHE_VERTEX_HOOK
 #include "transport/vertex_hook.glsl"
@@ -11,34 +11,33 @@
 #endif
 
 struct cache_Vertex {
-  bool looks;             // records are asked for
-  bool alone;             // ... and a side finds none
-  bool gathers;           // all sides that find none are to gather
-  uint guiding;           // record that says where light comes from, k_no_guide: none
+  bool looks;             // records are looked up here
+  bool alone;             // ... and at least one side finds none
+  bool gathers;           // every side without records gathers
+  uint guiding;           // record that guides directions; k_no_guide: none
   Guide guide;
   vec3 smooth_side;
-  bool noted;             // what is noted here, k_candidate_texels of it
+  bool noted;             // a note was taken; k_candidate_texels texels
   vec4 note, note_facing;
 };
 
 bool cache_propagates() { return cache.probing == k_probe_errors || cache.probing == k_probe_errors_beyond; }
-// Beyond the lookup, where what records' rays read is noted.
-// The same states twice over: what records bring is nobody's choice but theirs.
+// State of the eye path. The delegated states repeat the same table: record light never depends on delegation.
 uint cache_state_of(VertexIn v) { return v.state % k_delegated_states; }
 bool cache_next_read(uint state) { return cache.probing == k_probe_next && state >= k_fallback_state; }
-// By which a record is drawn.
+// Random number that selects one of the records.
 float record_lot(VertexIn v) { return sample_2d(v.random, k_pad_record + v.depth).x; }
 bool cache_coin(VertexIn v) { return (sample_vertex_bits(v.random, v.depth, k_pad_light_choice).x & 1u) != 0u; }
 
-// What lies behind this vertex's diffuse lobe: from the records, or where there are none by going on in the states that leave
-// nothing out.
+// Light behind this vertex's diffuse lobe: from records; where there are none, the path continues in states that trace all
+// of it.
 cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
   cache_Vertex x;
   uint own_state = cache_state_of(v), routes = cache.routes[own_state];
   bool beyond = cache.probing == k_probe_beyond && own_state >= k_fallback_state;
   bool screen = cache.probing == k_probe_screen && v.depth == 0u;
   bool next_read = cache_next_read(own_state);
-  // What lights are chosen by is learned alike whoever computes what.
+  // Learned light sampling must not depend on which solver computes a component.
   x.looks = frame.learning == 0u && (routes != k_no_routes || beyond || next_read || screen) && v.bsdf.p_diffuse + v.bsdf.p_transmitted > 0.0;
   x.noted = false;
   x.note = vec4(0.0);
@@ -47,7 +46,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
   x.gathers = true;
   x.guiding = k_no_guide;
   bool notes_all = cache.probing == k_probe_screen || cache.probing == k_probe_reads || next_read;
-  // Records stand on the smooth surface, not on its facets nor its normal map.
+  // Records lie on the smooth surface: neither facets nor the normal map matter.
   x.smooth_side = dot(v.surface.normal_v, v.side) < 0.0 ? -v.surface.normal_v : v.surface.normal_v;
   vec3 cached[k_component_count];
   for (uint c = 0u; c < k_component_count; ++c) cached[c] = vec3(0.0);
@@ -58,17 +57,17 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
   for (int facing = 0; facing < k_cache_sides; ++facing) {
     vec3 albedo = v.path.throughput * (facing == 0 ? v.bsdf.diffuse_albedo : v.bsdf.transmitted_albedo) * k_inv_pi;
     bool looks_up = x.looks && max3(albedo) > 0.0;
-    // What lies on that side of the surface.
+    // Media on that side of the surface.
     uint media = 0u;
 #if LUCERNA_VOLUMES
     media = facing == 0 ? v.path.media : media_behind(v.surface, v.path.media);
 #endif
     float sign = facing == 0 ? 1.0 : -1.0;
-    // Records hold light of paths whose first event is theirs.
+    // Records hold light of paths that start at the record: with few events left that light is too long.
     bool too_long = v.depth > 0u && frame.max_depth < k_deep_paths;
     Cached found = cache_draw(v.surface.position, sign * x.smooth_side, sign * v.to_world[2], media, looks_up && !too_long, record_lot(v));
     bool missing = looks_up && found.weight <= 0.0;
-    // Of those beyond the lookup the last for which a coin says so: each as likely as all after it together.
+    // Beyond the lookup, the last note that a coin accepts stays: each is as likely as all later ones together.
     bool notes = !too_long && ((missing && found.guide == k_no_guide) || (looks_up && notes_all)) && cache.probing != k_probe_none && !cache_propagates() &&
                  (cache.probing != k_probe_next || next_read) && !(beyond && cache_coin(v));
     bool servable = cache_can_serve(sign * x.smooth_side, sign * v.to_world[2]);
@@ -85,7 +84,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
       for (uint c = 0u; c < k_component_count; ++c)
         if (found.weight > 0.0 && ((routes >> (4u * p)) & 15u) == c) cached[c] += albedo * found.part[p];
 #if LUCERNA_GROUP_SUMS
-    // Groups have the same share in those parts that are read here as in all.
+    // The parts read here have the same group shares as all parts together.
     vec3 all = vec3(0.0), read = vec3(0.0), sky = vec3(0.0);
     for (uint p = 0u; p < k_part_count; ++p) {
       vec3 part = found.weight > 0.0 && ((routes >> (4u * p)) & 15u) < k_component_count ? albedo * found.part[p] : vec3(0.0);
@@ -112,7 +111,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
 
 vec3 cache_cosine(VertexIn v, inout cache_Vertex x, vec2 u, vec3 cosine) {
 #if LUCERNA_CACHE_GATHERS
-  // Not while places are looked for: these are not to hang on the light.
+  // No guiding while places are chosen: places must not depend on the light.
   bool guided = x.alone && x.gathers && (cache.probing == k_probe_none || cache_propagates());
   x.guide = make_guide(guided ? x.guiding : k_no_guide, v.to_world[2]);
   return x.guide.total > 0.0 ? guide_sample(x.guide, u) * v.to_world : cosine;
@@ -121,7 +120,7 @@ vec3 cache_cosine(VertexIn v, inout cache_Vertex x, vec2 u, vec3 cosine) {
 #endif
 }
 
-// What is met is weighed against light samples by the density without the guide: these weights need but add up to 1.
+// MIS weight of a hit against light samples, from the unguided density. Any weights that sum to 1 are unbiased.
 void cache_weigh(VertexIn v, cache_Vertex x, vec3 direction, inout BsdfSample b) {
 #if LUCERNA_CACHE_GATHERS
   if (x.guide.total > 0.0 && !b.transmitted && b.pdf > 0.0)
@@ -129,7 +128,7 @@ void cache_weigh(VertexIn v, cache_Vertex x, vec3 direction, inout BsdfSample b)
 #endif
 }
 
-// Behind the vertex: in states that have passed this lookup over, or all, or that have done with them.
+// State behind the vertex: this lookup passed, all lookups passed, or all lookups done.
 uint cache_state(VertexIn v, cache_Vertex x, BsdfSample b, uint state) {
   bool passes_all = (x.alone && !x.gathers) || cache.probing == k_probe_beyond || cache.probing == k_probe_next ||
                     (cache.probing == k_probe_errors_beyond && !x.alone);
@@ -142,7 +141,7 @@ void cache_leave(VertexIn v, inout cache_Vertex x, Leaving l, inout vec3 through
   bool diffuse = l.b.event == k_event_diffuse, propagates = cache_propagates();
   bool ends_here = cache.probing == k_probe_lookups || cache.probing == k_probe_reads || cache_next_read(cache_state_of(v));
   go_on = go_on && cache.probing != k_probe_screen && !(ends_here && x.looks && diffuse);
-  // Of the lookups beyond the first a coin chooses one, and what it brings counts for those it passes over.
+  // Of the lookups beyond the first, a coin selects one; its light also counts for the lookups that it skips.
   bool reads = propagates && x.looks && !x.alone && diffuse, later = reads && cache_state_of(v) >= k_fallback_state;
   if (later) throughput *= 2.0;
   if (reads && l.finite && (later ? cache_coin(v) : cache.probing == k_probe_errors)) {
@@ -155,7 +154,7 @@ void cache_leave(VertexIn v, inout cache_Vertex x, Leaving l, inout vec3 through
     x.note_facing = vec4(l.b.transmitted ? -x.smooth_side : x.smooth_side, uintBitsToFloat(throughput_pack(throughput * k_inv_pi)));
     go_on = false;
   }
-  // What no record serves is path traced: nothing of it is read.
+  // A side without records is path traced and reads none: nothing to propagate.
   go_on = go_on && !(propagates && x.looks && diffuse && x.alone && !x.gathers);
 }
 

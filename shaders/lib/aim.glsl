@@ -1,12 +1,12 @@
-// Aiming at boxes. From a point: a face that looks at it, in proportion to the solid angle that its centre suggests, and a
-// point on it, evenly. From afar: evenly over what the box covers, as seen along the direction. Whoever is within the box
-// does not aim. Each direction enters a box through one face, so that its density is that of one point.
+// Aiming at boxes. From a point: selects a face that is visible from it, in proportion to the solid angle at its centre, and
+// a uniform point on it. From afar: uniform over the projection of the box along the direction. From inside a box there is
+// no aiming. Every direction enters a box through one face, so its density is that of one point.
 #ifndef LUCERNA_LIB_AIM
 #define LUCERNA_LIB_AIM
 
 struct Box { vec3 lo, hi; };
 
-// Of the three faces that may look at p, by axis: where they lie, and their share.
+// The three faces that may be visible from p, by axis: their position and share.
 void aim_faces(Box box, vec3 p, out vec3 plane, out vec3 share, out bool outside) {
   vec3 size = box.hi - box.lo, middle = 0.5 * (box.lo + box.hi);
   bvec3 below = lessThan(p, box.lo), above = greaterThan(p, box.hi);
@@ -21,7 +21,7 @@ void aim_faces(Box box, vec3 p, out vec3 plane, out vec3 share, out bool outside
   share = outside ? weight / sum : vec3(0.0);
 }
 
-// A face by u.x, of which the rest is left for the place on it.
+// Selects a face by u.x; the remainder of u.x is reused for the place on it.
 uint aim_choose(vec3 share, inout float u) {
   uint axis = u < share.x ? 0u : u < share.x + share.y ? 1u : 2u;
   axis = axis == 2u && share.z <= 0.0 ? (share.y > 0.0 ? 1u : 0u) : axis;
@@ -36,7 +36,7 @@ vec3 aim_on_face(Box box, vec3 plane, uint axis, vec2 u) {
   return axis == 0u ? vec3(plane.x, at.yz) : axis == 1u ? vec3(at.x, plane.y, at.z) : vec3(at.xy, plane.z);
 }
 
-// Unit direction from p into the box; false: p is within it.
+// Unit direction from p into the box; false if p is inside.
 bool aim_sample(Box box, vec3 p, vec2 u, inout vec3 direction) {
   vec3 plane, share;
   bool outside;
@@ -47,7 +47,7 @@ bool aim_sample(Box box, vec3 p, vec2 u, inout vec3 direction) {
   return true;
 }
 
-// Where a line enters and leaves the box, and by which axis.
+// Where a line enters and leaves the box, and through which axis.
 void aim_slabs(Box box, vec3 p, vec3 d, out float enter, out float leave, out uint axis) {
   vec3 inverse = 1.0 / mix(d, vec3(1e-25), lessThan(abs(d), vec3(1e-25)));
   vec3 a = (box.lo - p) * inverse, b = (box.hi - p) * inverse;
@@ -57,8 +57,8 @@ void aim_slabs(Box box, vec3 p, vec3 d, out float enter, out float leave, out ui
   axis = first.x >= enter ? 0u : first.y >= enter ? 1u : 2u;
 }
 
-// Density of that direction per solid angle; `own` from p where that is within the box. `drawn`: the direction has been drawn
-// for this box, whatever rounding says.
+// Density of that direction per solid angle; `own`: from p, if inside the box. `drawn`: the direction was sampled for this
+// box, so it hits despite rounding.
 float aim_pdf(Box box, vec3 p, vec3 direction, float own, bool drawn) {
   vec3 plane, share;
   bool outside;
@@ -72,7 +72,7 @@ float aim_pdf(Box box, vec3 p, vec3 direction, float own, bool drawn) {
   return meets ? share[axis] * enter * enter / max(area[axis] * abs(direction[axis]), 1e-37) : 0.0;
 }
 
-// A point of the box's faces that look against `direction`, evenly as seen along it.
+// A point on the faces of the box turned against `direction`, uniform in the projection along it.
 vec3 aim_sample_afar(Box box, vec3 direction, vec2 u) {
   vec3 size = box.hi - box.lo, seen = size.yzx * size.zxy * abs(direction);
   vec3 share = seen / max(seen.x + seen.y + seen.z, 1e-37);

@@ -29,7 +29,7 @@ uniform samplerBuffer bsdf_table;
 const uint k_event_diffuse = 0u;
 const uint k_event_glossy = 1u;
 const uint k_event_specular = 2u;
-const uint k_event_null = 3u;   // no letter: straight on through a smooth thin wall
+const uint k_event_null = 3u;   // no letter: undeflected through a smooth thin wall
 
 // Indices of refraction closer than this (relative) are the same medium: the half vector of refraction, wo + eta wi, has no
 // direction left there.
@@ -407,15 +407,15 @@ bool bsdf_glossy(Bsdf b) {
 #endif
 }
 
-// Straight transmission past shadow rays: of a smooth thin wall; 0 for everything else.
+// Undeflected transmission of a smooth thin wall, for shadow rays; 0 for everything else.
 vec3 bsdf_undeflected(Bsdf b, float mu) {
 #if LUCERNA_THIN_GLASS
   if (b.delta && !b.solid) return b.glass * b.tint * (1.0 - glass_fresnel(b, mu));
 #endif
   return vec3(0.0);
 }
-// Probability of that null event among a path's ways. Whether it happens is decided by a number of its own (null_sampler),
-// before bsdf_sample, which draws from the others alone.
+// Probability of that null event. A separate random number (null_sampler) decides it, before bsdf_sample, which samples the
+// other lobes only.
 float bsdf_undeflected_probability(Bsdf b, float mu) {
 #if LUCERNA_THIN_GLASS
   if (b.delta && !b.solid) return b.p_glass * (1.0 - glass_choice(glass_fresnel(b, mu)));
@@ -423,9 +423,9 @@ float bsdf_undeflected_probability(Bsdf b, float mu) {
   return 0.0;
 }
 
-// Draws a direction from the mixture of all lobes but straight transmission, then the label. u: direction; cosine: that of
-// diffuse reflection, and mirrored of transmission; lobe: which lobe, which label. Weight and density are those of the whole
-// mixture, of which the cosine's distribution is one. May return weight 0 (absorbed).
+// Samples a direction from the mixture of all lobes except undeflected transmission, then the label. u: direction; cosine:
+// direction of the diffuse lobe, mirrored for transmission; lobe: lobe and label. Weight and density are those of the whole
+// mixture, of which the cosine distribution is a part. May return weight 0 (absorbed).
 BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec3 cosine, vec2 lobe) {
   BsdfSample s;
   s.event = k_event_diffuse;

@@ -1,14 +1,13 @@
 // Traversal of the tree that renderer/bvh/layout.h describes.
 //
-// What a device likes is chosen here and nowhere else:
+// Device-dependent choices, all made here:
 //   LUCERNA_FETCH_STORAGE  nodes and triangles from storage buffers (default: texel buffers, LUCERNA_FETCH_TEXEL)
 //   LUCERNA_COUNT_BVH      bvh_visits counts nodes visited and triangles tested
 //   LUCERNA_STACK_LOCAL    a stack in registers or private memory (default: in shared memory, LUCERNA_STACK_SHARED)
 // The kernel must have declared its local_size_x, at most 64, before including this file.
 //
-// No hit is lost to rounding. The triangle test is watertight; the boxes are tested so that they hold all that the
-// triangle test accepts: see k_bvh_slack. And hits do not depend on the order of traversal: at equal distance the
-// lower primitive id wins.
+// No hit is lost to rounding. The triangle test is watertight; box tests include everything that the triangle test accepts
+// (k_bvh_slack). Hits do not depend on the order of traversal: at equal distance the lower primitive id wins.
 #ifndef LUCERNA_LIB_BVH
 #define LUCERNA_LIB_BVH
 #include "lib/variants.glsl"
@@ -30,7 +29,7 @@ vec4 bvh_triangle_texel(uint i) { return texelFetch(bvh_triangles, int(i)); }
 #endif
 
 // ---- stack ----
-// lucerna::bvh::k_stack: the layout sees to it that no traversal holds more.
+// lucerna::bvh::k_stack: the layout ensures that no traversal needs more.
 const uint k_bvh_stack = 48u;
 #if LUCERNA_STACK_LOCAL
 uint bvh_stack[k_bvh_stack];
@@ -50,19 +49,17 @@ const uint k_bvh_prim = 0x1fffffffu;  // of a triangle's word, its id
 const uint k_bvh_done = 0xffffffffu;  // no link: no leaf has 7 triangles
 
 // ---- boxes ----
-// The ray meets the faces of the boxes at origin * inverse + byte * (cell * inverse), a sum of two terms that may cancel.
-// Each is wrong by up to 5 roundings (2^-24) of its own size. The distance at which the test finds a triangle is held to
-// where the ray is within a box that lies in these (bvh_within_box()), but for up to 20 roundings of the distance. Faces are
-// moved towards and away from the ray's origin by 34 roundings of both terms. So what is allowed for grows with the box and
-// with its distance from the ray, never with the scene.
+// The ray hits the faces of the boxes at origin * inverse + byte * (cell * inverse), a sum of two terms that may cancel.
+// Each has an error of up to 5 roundings (2^-24) of its size. The distance of a triangle hit is clamped to the part of the
+// ray inside a box within these (bvh_within_box()), up to 20 roundings of the distance. Faces are therefore moved outwards
+// by 34 roundings of both terms. The tolerance grows with the box and its distance from the ray, never with the scene.
 const float k_bvh_slack = 2e-6;
 
 // The four bytes of a word, the lowest first.
 vec4 bvh_bytes(uint w) { return vec4(ivec4(uvec4(w, w >> 8, w >> 16, w >> 24) & 0xffu)); }
 
 // ---- order ----
-// A child that the ray enters is known by a key: the distance's bits, which order as it does, with the child's number in
-// the last two.
+// Sort key of a hit child: the bits of the distance, which sort like it, with the child's number in the last two bits.
 const int k_bvh_missed = 0x7fffffff;  // larger than the key of any distance
 
 uint bvh_child(uvec4 links, int key) {
@@ -74,7 +71,7 @@ uint bvh_child(uvec4 links, int key) {
 Hit bvh_trace(Ray ray, const uint query) {
   Hit hit;
   hit.t = ray.tmax;
-  hit.prim = 0u;  // until there is a hit: an equal distance does not count, for no id is lower
+  hit.prim = 0u;  // before the first hit: no id is lower, so an equal distance does not count
   hit.u = 0.0;
   hit.v = 0.0;
   bool found = false;
@@ -98,8 +95,8 @@ Hit bvh_trace(Ray ray, const uint query) {
       vec3 start = (origin - ray.origin) * inverse;
       vec3 near = start - k_bvh_slack * abs(start), far = start + k_bvh_slack * abs(start);
       vec3 step_near = step - k_bvh_slack * abs(step), step_far = step + k_bvh_slack * abs(step);
-      // Near and far planes by the direction's sign. Compared as integers, which order as floats do unless both are
-      // negative; then any of them says the same here, and no instruction is spent on NaNs, which cannot occur.
+      // Near and far planes by the sign of the direction. Compared as integers, which sort like floats unless both are
+      // negative; then the result is the same here, and no instruction is spent on NaNs, which cannot occur.
       ivec4 x0 = floatBitsToInt(bvh_bytes(back.x ? xy.y : xy.x) * step_near.x + near.x);
       ivec4 x1 = floatBitsToInt(bvh_bytes(back.x ? xy.x : xy.y) * step_far.x + far.x);
       ivec4 y0 = floatBitsToInt(bvh_bytes(back.y ? xy.w : xy.z) * step_near.y + near.y);

@@ -1,10 +1,10 @@
-// Of the picture's regions: the share of samples in which light that a solver brings elsewhere is left to paths from the eye.
+// Regions of the picture: share of samples whose light a solver delegates to eye paths.
 #ifndef LUCERNA_LIB_DELEGATED_REGIONS
 #define LUCERNA_LIB_DELEGATED_REGIONS
 
-uniform samplerBuffer delegated_regions;  // first texel: bits of their number across and down; then a texel each, row by row
+uniform samplerBuffer delegated_regions;  // first texel: bits of the number of regions across and down; then a texel each, row by row
 
-// place: 0..1 to the right and down. Between the middles of regions, so that they have no edges.
+// place: 0..1 to the right and down. Interpolated between the centres of regions, so that no edges show.
 float delegated_share(vec2 place) {
   uvec2 size = floatBitsToUint(texelFetch(delegated_regions, 0).xy);
   vec2 at = clamp(place * vec2(size) - 0.5, vec2(0.0), vec2(size - 1u));

@@ -1,13 +1,13 @@
-// Light paths begin here: one light in proportion to its power, a place on it, and a direction, each with the distribution of
-// the light's own emission, so that paths carry equal flux wherever the light has no texture. Densities: of places per area
-// (on the disk that covers the scene for what comes from afar; 1 of a point), of directions per solid angle (1 of a
-// directional light). flux = radiance cos / (pmf pdf_place pdf_direction), or what stands for the radiance of a point.
+// Emission of light paths: samples a light in proportion to its power, a place on it, and a direction, each by the light's
+// own emission, so that paths carry equal flux except for textures. Densities: of places per area (for distant light on the
+// disk that covers the scene; 1 for a point), of directions per solid angle (1 for a directional light). flux = radiance cos
+// / (pmf pdf_place pdf_direction), with the corresponding quantity for points.
 //
-// Where there are casters (lib/aim.glsl) a share of the paths is aimed at them, and the density is that of all ways together
-// in which a path could have come about (the balance heuristic of E. Veach and L. Guibas, "Optimally Combining Sampling
-// Techniques for Monte Carlo Rendering", 1995, for one sample):
+// With casters (lib/aim.glsl), a share of the paths is aimed at them, and the density is that of all strategies together
+// (balance heuristic of E. Veach and L. Guibas, "Optimally Combining Sampling Techniques for Monte Carlo Rendering", 1995,
+// for one sample):
 //   share_0 pmf pdf_place pdf_direction + sum over casters  share_c pmf_in_group pdf_place pdf_towards_c
-// in the same measure. No share, and no box, changes what paths bring on average.
+// in the same measure. Shares and boxes do not change the mean.
 #ifndef LUCERNA_LIB_EMISSION
 #define LUCERNA_LIB_EMISSION
 #include "lib/variants.glsl"
@@ -34,16 +34,15 @@ struct Emission {
   uint light;          // entry of emission_alias
   uint stratum;        // in which it was drawn
   float unaimed;       // share of its density that is not aimed, 0..1
-  uint group;          // of lights, where they are kept apart
+  uint group;          // light group, if groups are separate
   bool afar;           // begins on the disk of the scene
   float radiance;      // luminance of what a ray meets there; 0: none meets it (points, directions)
-  float sampling;      // how dense light samples are there: over the square of the distance, or of what comes from afar, the
-                       // luminance that one brings over the path's flux
+  float sampling;      // density of light samples there: over the squared distance, or for distant light, the luminance of
+                       // a sample over the flux of the path
 };
 
-// Random numbers of light path `index` of a round. All paths of a round share the sequences, so that each of their decisions
-// is stratified over the round; rounds are independent of each other. Pads: those of a vertex, of which depth 0 is the
-// emission.
+// Random numbers of light path `index` of a round. All paths of a round share the sequences, so each decision is stratified
+// over the round; rounds are independent. Pads as for vertices; depth 0 is the emission.
 Sampler make_light_sampler(uint index, uint round, uint seed) {
   Sampler s;
   s.key = hash_combine(hash_mix(seed + 0x7c3a1f45u), round);
@@ -54,8 +53,8 @@ Sampler make_light_sampler(uint index, uint round, uint seed) {
   return s;
 }
 
-// A point of the disk across `direction` that the whole scene can be seen through, before the scene. Where something
-// stands far away a share of the points lies on the disk of the rest, which would get next to none.
+// A point on the disk across `direction` in front of the scene, which covers the whole scene. If there are distant outliers,
+// a share of the points lies on the disk of the core, which would otherwise get few.
 vec3 emission_disk(vec3 direction, vec2 u) {
   vec3 t, b;
   make_basis(direction, t, b);
@@ -66,7 +65,7 @@ vec3 emission_disk(vec3 direction, vec2 u) {
   vec3 through = emission.core_centre + emission.core_radius * (d.x * t + d.y * b);
   return through - direction * (dot(through - emission.centre, direction) + emission.radius);
 }
-// Its density there, per area.
+// Density of that point per area.
 float emission_disk_pdf(vec3 direction, vec3 origin) {
   float pdf = (1.0 - emission.core_share) / (k_pi * emission.radius * emission.radius);
   vec3 off = origin - emission.core_centre, across = off - dot(off, direction) * direction;
@@ -74,7 +73,7 @@ float emission_disk_pdf(vec3 direction, vec3 origin) {
   return core ? pdf + emission.core_share / (k_pi * emission.core_radius * emission.core_radius) : pdf;
 }
 
-// The same where the path is to pass through a box.
+// The same for a path through a box.
 vec3 emission_from_afar(vec3 direction, vec2 u, bool aims, Box box) {
   vec3 through = aim_sample_afar(box, direction, u);
   vec3 aimed = through - direction * (dot(through - emission.centre, direction) + emission.radius);
@@ -82,12 +81,12 @@ vec3 emission_from_afar(vec3 direction, vec2 u, bool aims, Box box) {
 }
 
 #if LUCERNA_LIGHTS
-// A spot's direction in proportion to its intensity, by 1 - cosine from the axis, of which nothing cancels.
+// Direction of a spot in proportion to its intensity, in terms of 1 - cosine from the axis, which avoids cancellation.
 vec3 emission_spot(vec3 axis, float cos_inner, float cos_outer, vec2 u, float coin, out float solid_angle) {
   float width = max(cos_inner - cos_outer, 1e-4), reach = 1.0 - cos_outer;
   float ramp = min(1.0, reach / width), within = max(0.0, reach - width), beyond = width * ramp * ramp * ramp / 3.0;
   solid_angle = 2.0 * k_pi * (within + beyond);
-  // In the ramp the intensity is the square of (cos - cos_outer) / width.
+  // In the ramp, the intensity is the square of (cos - cos_outer) / width.
   float m = coin * (within + beyond) < within ? u.y * within : reach - width * ramp * pow(u.y, 1.0 / 3.0);
   float s = sqrt(max(0.0, m * (2.0 - m))), phi = 2.0 * k_pi * u.x;
   vec3 t, b;
@@ -121,7 +120,7 @@ Box emission_box(uint caster) {
   return Box(texelFetch(emission_boxes, int(2u * caster)).xyz, texelFetch(emission_boxes, int(2u * caster + 1u)).xyz);
 }
 
-// Chooses a light of a group, as alias_choose().
+// Samples a light of a group, as alias_choose().
 uint emission_choose_in(uint group, uvec2 bits) {
   uvec2 header = floatBitsToUint(texelFetch(emission_groups, int(group)).xy);
   uint i, fraction, more, lost, carry;
@@ -134,9 +133,9 @@ uint emission_choose_in(uint group, uvec2 bits) {
   return floatBitsToUint(texelFetch(emission_groups, int(emission.groups + emission.count + header.x + i)).x);
 }
 
-// Which stratum path `random` is drawn in, of a round of which `step` is 2^32 / paths: strata are intervals of 0 ... 2^32, and
-// paths lie evenly over these from somewhere on. So each stratum has its share of paths to the last one, and they follow
-// upon each other, as points do that are even together.
+// Stratum of path `random` in a round with `step` = 2^32 / paths. Strata are intervals of 0 ... 2^32, over which paths are
+// spaced evenly from a random offset. Each stratum thus gets its exact share of paths, and its paths are consecutive, like
+// well-distributed points.
 uint emission_stratum(Sampler random, uint step) {
   uint at = random.index * step + hash_combine(random.key, 0x5bd1e995u);
   uint low = 0u, high = emission.groups * emission.casters;
@@ -150,8 +149,8 @@ uint emission_stratum(Sampler random, uint step) {
 }
 float emission_share(uint stratum) { return texelFetch(emission_strata, int(stratum)).y; }
 
-// The density of the path over that which it has in its light's own distribution: share_0 + ..., see above. `place` is where a
-// local light emits from; what comes from afar goes through it in direction e.direction.
+// Density of the path over that of unaimed emission: share_0 + ..., see above. `place`: where a local light emits; distant
+// light passes through it in direction e.direction.
 float emission_density(Emission e, bool afar, vec3 place) {
   uvec2 member = floatBitsToUint(texelFetch(emission_groups, int(emission.groups + e.light)).xy);
   uint first = floatBitsToUint(texelFetch(emission_groups, int(member.x)).x);
@@ -188,16 +187,16 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
   e.group = group_of_light(at, sky);
 #endif
   uint kind = sky ? k_light_environment : floatBitsToUint(a.w);
-  // Point: evenly over the sphere.
+  // Point: uniform over the sphere.
   float z = 1.0 - 2.0 * u_direction.y, r = sqrt(max(0.0, 1.0 - z * z)), phi = 2.0 * k_pi * u_direction.x;
   e.origin = a.xyz;
   e.direction = normalize(vec3(r * cos(phi), r * sin(phi), z));
   e.pdf_place = 1.0;
   e.pdf_direction = 0.25 * k_inv_pi;
   e.radiance = 0.0;
-  vec3 emitted = b.xyz;   // over all densities but the selection's
+  vec3 emitted = b.xyz;   // over all densities except the selection's
   float spread = 4.0 * k_pi;
-  // Aimed: towards the caster, unless the light lies within its box.
+  // Aimed: towards the caster, unless the light is inside its box.
   vec3 aimed_direction = e.direction;
   bool aims = stratum > 0u && kind != k_light_triangle && aim_sample(box, a.xyz, u_direction, aimed_direction);
   vec3 place = a.xyz;
@@ -222,7 +221,7 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
     vec4 plain = texelFetch(scene_lights, at + 3);
     uint sides = floatBitsToUint(plain.w);
     bool both = (sides & k_light_both_sides) != 0u;
-    // Evenly over the triangle (Heitz 2019), by the cosine about the side's normal.
+    // Uniform over the triangle (Heitz 2019), cosine-distributed about the side's normal.
     vec2 m = 0.5 * u_place;
     float offset = m.y - m.x;
     m += offset > 0.0 ? vec2(0.0, offset) : vec2(-offset, 0.0);
@@ -276,12 +275,12 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
 #endif
   e.flux = emitted * (spread / max(e.pmf, 1e-30));
   e.unaimed = 1.0;
-  // A light sample brings f cos radiance cos / (pmf pdf_place distance^2), of points f cos intensity / (pmf distance^2), of what
-  // comes from afar f cos radiance / (pmf pdf_direction).
+  // A light sample contributes f cos radiance cos / (pmf pdf_place distance^2), for points f cos intensity / (pmf
+  // distance^2), for distant light f cos radiance / (pmf pdf_direction).
   e.sampling = afar ? e.pdf_place : e.pdf_direction;
   if (emission.casters > 0u) {
     float density = max(emission_density(e, afar, afar ? e.origin : place), 1e-30);
-    // What is aimed past the scene's disk is no light that anybody else would send.
+    // Paths aimed past the scene's disk are light that no unaimed path carries.
     vec3 off = e.origin - emission.centre;
     vec3 across = off - dot(off, e.direction) * e.direction;
     bool sent = e.pdf_direction > 0.0 && (!afar || dot(across, across) <= emission.radius * emission.radius);
@@ -292,7 +291,7 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
   return e;
 }
 
-// The beginning of path `random`; `step`: emission_stratum().
+// Start of path `random`; `step`: see emission_stratum().
 Emission sample_emission(Sampler random, uint step) {
   return sample_emission(sample_vertex_bits(random, 0u, k_pad_light_choice), sample_vertex(random, 0u, k_pad_light_uv),
                          sample_vertex(random, 0u, k_pad_direction), sample_vertex_bits(random, 0u, k_pad_light_detail),

@@ -1,11 +1,11 @@
 // The film: for each component two half sums (even and odd samples, independently scrambled), each with the compensation
 // of Neumaier's variant of Kahan's summation, so that a million samples of mixed magnitude add up without drift.
 //
-// It lies in texel buffers, of which the largest hold 16 times what a storage buffer may on lavapipe. A pixel's two halves
-// are three texels. Where light is kept apart by groups (LUCERNA_LIGHT_GROUPS) each group has such sums of its own, and the
-// picture's follow from them; or it has sums in short of all components (LUCERNA_GROUP_SUMS), by which those of the components
-// are weighed where they are read, half by half. In one dispatch a pixel is read before it is written, by one invocation. It is written as a storage
-// buffer where it fits into one, which is several times as fast on lavapipe, else through images (LUCERNA_FILM_IMAGES).
+// Stored in texel buffers, the largest of which hold 16 times as much as a storage buffer on lavapipe. A pixel's two halves
+// are three texels. With light groups (LUCERNA_LIGHT_GROUPS) each group has such sums, and the picture's derive from them;
+// or compact sums of all components (LUCERNA_GROUP_SUMS), which weight those of the components when they are read, half by
+// half. In one dispatch one invocation reads and then writes a pixel, as a storage buffer if it fits into one, which is
+// several times as fast on lavapipe, else through images (LUCERNA_FILM_IMAGES).
 #ifndef LUCERNA_LIB_FILM
 #define LUCERNA_LIB_FILM
 #include "lib/variants.glsl"
@@ -31,7 +31,7 @@ layout(scalar) writeonly buffer FilmNormal { vec4 film_normal_out[]; };
 #endif
 #include "film/mix.glsl"
 #if LUCERNA_FILM_LANES
-// The sums of one group of lights, like those above. These then are the picture's, of all groups as they are mixed.
+// Sums of one light group, like those above, which then hold the picture with the mix of all groups.
 uniform samplerBuffer group_primary, group_secondary, group_tertiary, group_caustic;
 #if LUCERNA_FILM_IMAGES
 layout(rgba32f) uniform writeonly imageBuffer group_primary_out, group_secondary_out, group_tertiary_out, group_caustic_out;
@@ -59,7 +59,7 @@ FilmPixel film_pixel(vec4 a, vec4 b, vec4 c) {
   LUCERNA_FILM_WRITE(buffer, int(3u * (pixel)) + 1, vec4((value).even.compensation.yz, (value).odd.sum.xy));  \
   LUCERNA_FILM_WRITE(buffer, int(3u * (pixel)) + 2, vec4((value).odd.sum.z, (value).odd.compensation));
 
-// A component's sums at a pixel, as samples have brought them.
+// Sums of a component at a pixel, before the mix.
 FilmPixel film_load(uint component, uint pixel) {
   if (component == 0u) return LUCERNA_FILM_LOAD(film_primary, pixel);
   if (component == 1u) return LUCERNA_FILM_LOAD(film_secondary, pixel);
@@ -67,15 +67,14 @@ FilmPixel film_load(uint component, uint pixel) {
   return LUCERNA_FILM_LOAD(film_caustic, pixel);
 }
 
-// What the halves of a pixel's components are multiplied by so that they are of the mix that is shown: 1 where their groups
-// are not kept in short, and where each is taken as it is.
+// Factors of the halves of a pixel's components for the shown mix; 1 without compact groups, and where each is read unmixed.
 struct FilmRatio {
   vec3 even, odd;
 };
 FilmRatio film_ratio(uint pixel) {
   vec3 even = vec3(0.0), odd = vec3(0.0), even_mixed = vec3(0.0), odd_mixed = vec3(0.0);
   uvec2 groups_pixels = light_mix_size();
-  // lavapipe runs the loop once even where it is to run not at all: then all pixels read one texel.
+  // lavapipe runs a loop once even with zero iterations: then all pixels read one texel.
   for (uint group = 0u; group < groups_pixels.x; ++group) {
     uvec4 sums = texelFetch(group_sums, int(groups_pixels.x > 0u ? group * groups_pixels.y + pixel : 0u));
     vec3 a = group_sum_value(GroupSum(sums.x, sums.y)), b = group_sum_value(GroupSum(sums.z, sums.w)), w = light_weight(group);
@@ -90,7 +89,7 @@ FilmRatio film_ratio(uint pixel) {
 }
 
 FilmHalf film_mixed(FilmHalf h, vec3 ratio) { return FilmHalf(ratio * h.sum, ratio * h.compensation); }
-// A component's sums at a pixel, as its groups of lights are mixed.
+// Sums of a component at a pixel, with the mix of light groups.
 FilmPixel film_load(uint component, uint pixel, FilmRatio ratio) {
   FilmPixel p = film_load(component, pixel);
   return FilmPixel(film_mixed(p.even, ratio.even), film_mixed(p.odd, ratio.odd));

@@ -24,7 +24,7 @@ uint automaton_after(uint state, uint event) { return (frame.automaton[state] >>
 uint automaton_component(uint state) { return (frame.automaton[state] >> 24) & 7u; }
 bool automaton_live(uint state) { return (frame.automaton[state] & (1u << 27)) != 0u; }
 bool automaton_no_diffuse(uint state) { return (frame.automaton[state] & (1u << 28)) != 0u; }
-// Whether there is anything behind a further event that the scene's surfaces can bring about.
+// True if the scene's surfaces can cause a further event with light behind it.
 bool automaton_goes_on(uint state) {
   bool on = automaton_live(automaton_after(state, 0u));
 #if LUCERNA_SCENE_GLOSSY

@@ -1,11 +1,11 @@
-// Light sampling: one light by its probability mass (alias method, Walker 1977; Vose 1991), then a point on it.
-// Densities are per solid angle at the shaded point, selection included.
+// Light sampling: selects a light by its probability mass (alias method, Walker 1977; Vose 1991), then a point on it.
+// Densities are per solid angle at the shaded point and include the selection.
 //
-// Of many lamps few light a place, and power does not tell which. Where a lamp is chosen it is drawn again from several
-// candidates, by what each would send to the place were nothing between (resampled importance sampling, J. Talbot, D. Cline and
-// P. Egbert 2005): with candidates x_i of density p and q what they send, x_i is taken in proportion to q(x_i) / p(x_i), and
-// stands for the density q(x) M / sum q(x_i) / p(x_i). The estimate is right whatever q is, as long as it is above 0 where
-// light arrives; that candidates are evenly apart in the table instead of independent does not change its mean.
+// Of many lamps only few light a given place, and power does not identify them. A selected lamp is therefore resampled from
+// several candidates, by their unoccluded contribution (resampled importance sampling, J. Talbot, D. Cline and P. Egbert
+// 2005): for candidates x_i of density p and contributions q, x_i is selected in proportion to q(x_i) / p(x_i), with the
+// effective density q(x) M / sum q(x_i) / p(x_i). Unbiased for any q > 0 where light arrives; evenly spaced instead of
+// independent candidates do not change the mean.
 #ifndef LUCERNA_LIB_LIGHTS
 #define LUCERNA_LIB_LIGHTS
 #include "lib/variants.glsl"
@@ -39,25 +39,25 @@ uint emissive_group(uint primitive) {
 struct LightSample {
   vec3 direction;    // unit, towards the light
   float distance;    // metres; infinite for directional lights and the environment
-  vec3 radiance;     // of point and directional lights: irradiance on a facing plane; of triangles: without textures
-  float pdf;         // per solid angle with selection; of delta lights: the selection's probability, or what stands for that
+  vec3 radiance;     // for point and directional lights: irradiance on a facing plane; for triangles: without textures
+  float pdf;         // per solid angle, including the selection; for delta lights: (effective) probability of the selection
   bool delta;
   uint primitive;    // emissive triangle, or k_no_hit
   vec2 uv;           // barycentrics there
   vec3 target;       // point on the triangle
-  vec3 normal;       // of the triangle, unit, on our side
+  vec3 normal;       // of the triangle, unit, towards the shaded point
   vec3 offset;       // error bound of target, as Surface::offset
-  bool sky;          // of the sky, where that is apart
-  uint group;        // of lights
+  bool sky;          // of a separate sky
+  uint group;        // light group
 #if LUCERNA_LEARNED
-  uint cluster;      // of lights
+  uint cluster;      // light cluster
   float chosen;      // probability of that
-  float factor;      // of what the sample brings: pdf over the density that it stands for, being drawn from candidates
+  float factor;      // weight of the sample: pdf over its effective density after resampling
 #endif
 };
 
-// `bits`: 64 uniform random bits, the higher ones first. They choose the entry, and what is left of them within it flips its
-// coin: 32 bits would leave a table of 10^7 entries 8 of them, and what many coins round away is a sun's.
+// `bits`: 64 uniform random bits, higher ones first. They select the entry, and the remainder decides between it and its
+// alias: 32 bits would leave only 8 for a table of 10^7 entries, and the rounding would affect a sun's probability.
 uint alias_choose(samplerBuffer table, uint begin, uint count, uvec2 bits, out float pmf) {
   uint i, fraction, more, lost, carry;
   umulExtended(bits.x, count, i, fraction);
@@ -72,7 +72,7 @@ uint alias_choose(samplerBuffer table, uint begin, uint count, uvec2 bits, out f
 uint alias_choose(samplerBuffer table, uint count, uvec2 bits, out float pmf) { return alias_choose(table, 0u, count, bits, pmf); }
 
 #if LUCERNA_ENVIRONMENT_MAP
-// u = 0.5 + atan2(z, x) / 2pi, v = acos(y) / pi from the top; the map turned counter-clockwise seen from above, which
+// u = 0.5 + atan2(z, x) / 2pi, v = acos(y) / pi from the top; the map is rotated counter-clockwise seen from above, which
 // takes a direction at azimuth phi = atan2(z, x) to phi - rotation.
 vec2 environment_uv(vec3 d) {
   float phi = atan(d.z, d.x) + frame.environment_rotation;
@@ -85,12 +85,12 @@ vec3 environment_direction(vec2 uv) {
 #endif
 
 #if LUCERNA_ENVIRONMENT_MAP
-// What the map says of a direction: the four texels that it lies between and the one that it lies in.
+// The map in a direction: the four texels around it, and the texel that contains it.
 struct EnvironmentTexels {
   vec4 a, b, c, d;  // upper left and right, lower left and right
   vec2 f;           // from a to d
   int texel;
-  float density;    // with which its directions are chosen, per solid angle
+  float density;    // sampling density of its directions, per solid angle
   float u;          // across the map
 };
 EnvironmentTexels environment_texels_at(vec3 direction) {
@@ -106,7 +106,7 @@ EnvironmentTexels environment_texels_at(vec3 direction) {
   t.c = texelFetch(environment_texels, y1 * size.x + x0), t.d = texelFetch(environment_texels, y1 * size.x + x1);
   ivec2 cell = clamp(ivec2(uv * vec2(size)), ivec2(0), size - 1);
   t.texel = cell.y * size.x + cell.x;
-  // The cell is one of the four.
+  // The containing texel is one of the four.
   vec2 column = cell.x == x0 ? vec2(t.a.w, t.c.w) : vec2(t.b.w, t.d.w);
   t.density = cell.y == y0 ? column.x : column.y;
   t.u = uv.x;
@@ -115,13 +115,13 @@ EnvironmentTexels environment_texels_at(vec3 direction) {
 vec3 environment_mix(vec3 a, vec3 b, vec3 c, vec3 d, vec2 f) {
   return frame.environment_radiance * mix(mix(a, b, f.x), mix(c, d, f.x), f.y);
 }
-// Sine of 0..pi/2 by its series: the device's own may be wrong by as much as a small angle.
+// Sine of 0..pi/2 by its series: the device's function may be wrong by as much as a small angle.
 float sine(float x) {
   float q = x * x;
   return x * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0 * (1.0 - q / 110.0)))));
 }
-// A direction through a cell of the map, evenly by solid angle: by sin^2 of half the angle to the nearer pole, because
-// beside a pole all cosines round to 1.
+// A uniform direction within a texel of the map, by sin^2 of half the angle to the nearer pole: near a pole all cosines
+// round to 1.
 vec3 environment_in_cell(uint cell, vec2 u) {
   uint column = cell % frame.environment_width, row = cell / frame.environment_width;
   bool lower = 2u * row >= frame.environment_height;
@@ -138,7 +138,7 @@ vec3 environment_in_cell(uint cell, vec2 u) {
 #if LUCERNA_SEPARATE_SKY
 #include "lib/sky.glsl"
 #else
-// Radiance that arrives from direction -d, and the density with which sample_light chooses d.
+// Radiance arriving from direction -d, and the density with which sample_light samples d.
 vec3 environment_radiance(vec3 d, out float pdf) {
   pdf = 0.0;
 #if LUCERNA_ENVIRONMENT_MAP
@@ -150,7 +150,7 @@ vec3 environment_radiance(vec3 d, out float pdf) {
 #endif
 }
 #if LUCERNA_LEARNED && LUCERNA_ENVIRONMENT_MAP
-// ... where lights are chosen by the row of a place.
+// ... with light selection by the row of a place.
 vec3 environment_radiance(vec3 d, uint row, out float pdf) {
   EnvironmentTexels t = environment_texels_at(d);
   pdf = frame.environment_light_pmf * t.density * learned_ratio(row, sky_cluster(d, uint(t.texel), t.u));
@@ -160,28 +160,28 @@ vec3 environment_radiance(vec3 d, uint row, out float pdf) {
 #endif
 
 #if LUCERNA_EMISSIVE
-// Density with which sample_light chooses the direction to a point on an emissive triangle.
+// Density with which sample_light samples the direction to a point on an emissive triangle.
 float emissive_pdf(uint primitive, float distance2, float cos_light) {
   return primitive_light_pmf[primitive] * distance2 / max(cos_light, 1e-30);
 }
 #endif
 
 #if LUCERNA_LIGHTS
-// Of a spot's intensity, towards a direction at that cosine to its axis: glTF's recommended falloff between the cones.
+// Falloff of a spot at that cosine to its axis: glTF's recommended one between the cones.
 float spot_share(float cosine, float cos_inner, float cos_outer) {
   float fade = clamp((cosine - cos_outer) / max(cos_inner - cos_outer, 1e-4), 0.0, 1.0);
   return fade * fade;
 }
 
 #if LUCERNA_LIGHT_GROUPS > 1
-// The group of the light whose texels begin at `at`, or of the sky.
+// Group of the light whose texels begin at `at`, or of the sky.
 uint group_of_light(int at, bool sky) {
   return sky ? frame.sky_group : floatBitsToUint(texelFetch(scene_lights, at + 3).w) >> k_light_group_shift;
 }
 #endif
 
-// What a lamp would send to a place if nothing were between, by luminance, onto a surface with that normal: a little even from
-// behind, where surfaces may let light through.
+// Unoccluded luminance that a lamp sends onto a surface with that normal; a little even from behind, where surfaces may
+// transmit light.
 float lamp_sends(uint lamp, vec3 position, vec3 normal) {
   int at = int(lamp * k_light_texels);
   vec4 a = texelFetch(scene_lights, at), b = texelFetch(scene_lights, at + 1), c = texelFetch(scene_lights, at + 2);
@@ -194,8 +194,8 @@ float lamp_sends(uint lamp, vec3 position, vec3 normal) {
   return luminance(b.xyz) * fall * max(dot(direction, normal), 0.05);
 }
 
-// In place of a light that is a lamp, a lamp from candidates evenly apart in the table of lamps, beginning at `choice`; u: in
-// [0, 1). pmf: the light's probability, or what stands for it.
+// Replaces a lamp by one resampled from candidates evenly spaced in the table of lamps, from `choice` on; u: in [0, 1). pmf:
+// (effective) probability of the light.
 uint draw_lamp(uint light, vec3 position, vec3 normal, uint choice, float u, inout float pmf) {
   const uint candidates = uint(LUCERNA_LAMP_CANDIDATES);
   bool is_lamp = light - frame.first_lamp < frame.lamp_count;
@@ -208,7 +208,7 @@ uint draw_lamp(uint light, vec3 position, vec3 normal, uint choice, float u, ino
     uint lamp = frame.first_lamp + alias_choose(light_alias, frame.light_count, frame.lamp_count, uvec2(bits, hash_mix(bits)), p);
     float sends = lamp_sends(lamp, position, normal);
     bool taken = reservoir_draw(drawing, sends / max(p, 1e-30));
-    // Where none sends anything it is one of these that does not: another one might.
+    // If no candidate contributes, one of these is used: another draw might find one that does.
     drawn = taken || drawing.total <= 0.0 ? lamp : drawn;
     sends_drawn = taken ? sends : sends_drawn;
   }
@@ -217,7 +217,8 @@ uint draw_lamp(uint light, vec3 position, vec3 normal, uint choice, float u, ino
 }
 
 #if LUCERNA_LEARNED
-// The same within a cluster, in which no light is likelier than without learning; a lamp's pmf is that times the cluster's ratio.
+// The same within a cluster, in which probabilities are those without learning; a lamp's pmf is that times the cluster's
+// ratio.
 uint draw_lamp_of(LightCluster cluster, uint light, vec3 position, vec3 normal, uint choice, float u, float ratio, inout float pmf) {
   const uint candidates = uint(LUCERNA_LAMP_CANDIDATES);
   bool is_lamp = light - frame.first_lamp < frame.lamp_count;
@@ -240,8 +241,8 @@ uint draw_lamp_of(LightCluster cluster, uint light, vec3 position, vec3 normal, 
 #if LUCERNA_LEARNED && LUCERNA_TRIANGLE_CANDIDATES
 uniform samplerBuffer light_facets;
 
-// What a small emissive triangle of power 1 would send to a place if nothing were between, but for a factor; 0 only where its
-// side that emits cannot be seen from there: its normal is known to a thousandth.
+// Unoccluded contribution of a small emissive triangle of power 1, up to a factor; 0 only if its emitting side is not
+// visible from there: its normal is accurate to a thousandth.
 float facet_sends(uint triangle, vec3 position, vec3 normal) {
   vec4 f = texelFetch(light_facets, int(triangle));
   uint bits = floatBitsToUint(f.w);
@@ -258,8 +259,8 @@ float facet_sends(uint triangle, vec3 position, vec3 normal) {
   return faces * max(dot(normal, to) * scale, 0.05) / (d2 + area);
 }
 
-// In place of a triangle of a cluster of several one of candidates, as draw_lamp_of() does. A ray may meet it, and is weighted
-// against the density without candidates; `factor`: that over the density that the choice stands for.
+// Replaces a triangle of a cluster by one resampled from candidates, like draw_lamp_of(). Rays may hit it too, and MIS uses
+// the density without candidates; `factor`: that over the effective density.
 uint draw_triangle_of(LightCluster cluster, uint light, vec3 position, vec3 normal, uvec2 choice, float ratio, inout float pmf, out float factor) {
   const uint candidates = uint(LUCERNA_TRIANGLE_CANDIDATES);
   bool small = cluster.of_triangles && cluster.count > 1u;
@@ -281,9 +282,9 @@ uint draw_triangle_of(LightCluster cluster, uint light, vec3 position, vec3 norm
 }
 #endif
 
-// Chooses by `choice` (32 bits), places by u; detail: 64 further bits (environment). Where the sky is apart its
-// probability is sky_share, and the other lights share what is left. `normal`: of the surface, unit, on the side that is seen.
-// Needs lib/surface.glsl before it.
+// Selects by `choice` (32 bits), places by u; detail: 64 further bits (environment). A separate sky has probability
+// sky_share; the other lights share the rest. `normal`: of the surface, unit, on the visible side. Requires lib/surface.glsl
+// before it.
 #if LUCERNA_LEARNED
 // `row`: learned_row() of the place.
 LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 detail, uint row) {
@@ -307,7 +308,7 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   LightCluster cluster = light_cluster(s.cluster);
   s.chosen = ratio * cluster.plain;
   uint member = cluster_member(cluster, detail);
-  // The environment is the last of the lights.
+  // The environment is the last light.
   uint light = s.cluster < frame.sky_clusters ? frame.light_count - 1u : member;
   pmf = ratio * texelFetch(light_alias, int(light)).z;
 #if LUCERNA_LAMP_CANDIDATES
@@ -322,13 +323,13 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   uint light = alias_choose(light_alias, frame.light_count, uvec2(choice, hash_mix(choice)), pmf);
 #endif
 #if LUCERNA_LAMP_CANDIDATES && !LUCERNA_LEARNED
-  // By numbers that lamps have no other use for, so that these are as even.
+  // Uses random numbers that lamps do not need otherwise, so they are equally well distributed.
   light = draw_lamp(light, position, normal, detail.x, u.x, pmf);
 #endif
 #if LUCERNA_SEPARATE_SKY
   uint sky_end = uint(sky_share * 4294967040.0);
   s.sky = detail.y < sky_end || sky_share >= 1.0;
-  // What is left of the number is even again.
+  // The remainder of the number is uniform again.
   float rest = s.sky ? float(detail.y) / float(sky_end) : float(detail.y - sky_end) / float(0xffffffffu - sky_end);
   detail.y = uint(min(rest, 1.0) * 4294967040.0);
   pmf *= 1.0 - sky_share;

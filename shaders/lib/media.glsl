@@ -1,6 +1,6 @@
-// The media that a path is in: a stack of those that it has entered and not left, as one number with the base 1 + the number of
-// media, whose lowest digit is the medium that absorbs, the last one entered. Where the stack is full the outermost is forgotten.
-// Leaving a medium takes its topmost entry away, wherever that is, so that overlapping volumes come apart in any order.
+// The media around a path: a stack of entered media, as one number with base 1 + the number of media; the lowest digit is
+// the last one entered, which absorbs. A full stack drops the outermost medium. Leaving a medium removes its topmost entry,
+// wherever it is, so overlapping volumes may be left in any order.
 #ifndef LUCERNA_LIB_MEDIA
 #define LUCERNA_LIB_MEDIA
 #include "lib/variants.glsl"
@@ -40,9 +40,9 @@ vec3 media_transmittance(uint stack, float distance) {
   return stack == 0u ? vec3(1.0) : exp(-texelFetch(scene_media, int(stack % k_media_base)).rgb * distance);
 }
 
-// The stack at a place: what a ray from outside would have entered on its way there. A shell encloses the place if a ray from it
-// leaves the shell more often than it enters; those whose surface is near lie within those whose surface is far.
-// `lot`: anything; the ray's direction is drawn by it, so that no place lies badly to all paths that start there.
+// The media around a place: those that a ray from outside has entered on its way there. A shell encloses the place if a ray
+// from it leaves the shell more often than it enters; near shells lie within far ones. `lot`: selects the ray's direction,
+// so that no place is bad for all paths that start there.
 uint media_at(vec3 place, uint lot) {
   const uint k_most = 6u;  // shells around a place: the nearest
   uvec4 header = floatBitsToUint(texelFetch(scene_media, 0));
@@ -52,9 +52,9 @@ uint media_at(vec3 place, uint lot) {
   ShearedRay sheared = bvh_shear(ray);
   vec3 inverse = bvh_inverse(ray.direction);
   float far[k_most];
-  uint entered[k_most];  // 2 * medium, + 1 where it has been left there: a hollow in it
+  uint entered[k_most];  // 2 * medium, + 1 if it has been left there: a hollow
   [[unroll]] for (uint k = 0u; k < k_most; ++k) far[k] = k_infinity, entered[k] = 0u;
-  int around = 0;  // times that the ray leaves the present shell, less those that it enters it
+  int around = 0;  // number of exits from the current shell minus entries
   float nearest = k_infinity;
   uint medium = 0u;
   for (uint node = 0u; node <= header.y && header.y > 0u;) {
@@ -63,7 +63,7 @@ uint media_at(vec3 place, uint lot) {
     vec4 a = texelFetch(scene_media, at), b = texelFetch(scene_media, at + 1);
     uint next = floatBitsToUint(a.w), word = floatBitsToUint(b.w);
     if (last || (next & k_media_around) != 0u) {
-      // The shell before is complete.
+      // The former shell is complete.
       float t = around != 0 ? nearest : k_infinity;
       uint what = 2u * medium + (around < 0 ? 1u : 0u);
       [[unroll]] for (uint k = 0u; k < k_most; ++k) {

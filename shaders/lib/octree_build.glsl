@@ -37,6 +37,6 @@ bool finite(float x) { return abs(x) <= 3.4e38; }
 // Spheres without extent or place are left out.
 bool usable(vec4 s) { return s.w >= 0.0 && finite(s.x) && finite(s.y) && finite(s.z) && finite(s.w); }
 
-// Whoever finds dot(x - c, x - c) <= r * r in float may be up to about 4 units of float's last place beyond r.
+// Points that pass dot(x - c, x - c) <= r * r in float may be up to about 4 ulps beyond r.
 float safe_radius(float r) { return r * (1.0 + 1.0 / 1048576.0); }
 #endif

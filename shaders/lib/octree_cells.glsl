@@ -10,8 +10,8 @@
 // The outermost cells of an open root have no outer faces: nothing is known there of where in a row's square, or in a
 // cell, a point lies, only that it lies in the sphere's box.
 //
-// LUCERNA_OCTREE_DISCS: 1 where spheres are asked for only near the plane through their centre, within `disc_thickness` of
-// their radius on either side: only the cells are visited that this slab passes through, some of each row.
+// LUCERNA_OCTREE_DISCS: 1: spheres are looked up only near the plane through their centre, within `disc_thickness` of their
+// radius on either side; only cells that this slab intersects are visited, a part of each row.
 #ifndef LUCERNA_LIB_OCTREE_CELLS
 #define LUCERNA_LIB_OCTREE_CELLS
 #include "lib/variants.glsl"

@@ -1,13 +1,13 @@
-// One of many that come one after the other, each as likely as its weight among all (M. Chao 1982), by a single number.
+// Weighted reservoir sampling of one item from a stream (M. Chao 1982), with a single random number.
 #ifndef LUCERNA_LIB_RESERVOIR
 #define LUCERNA_LIB_RESERVOIR
 
 struct Reservoir {
-  float u;      // in [0, 1), independent of what has been drawn
-  float total;  // of the weights that have come
+  float u;      // in [0, 1), independent of the items drawn so far
+  float total;  // sum of the weights so far
 };
 
-// Whether the one that comes takes the place of the one drawn before. What is left of the number within its part is even again.
+// True if the new item replaces the former one. The remainder of the random number is uniform again.
 bool reservoir_draw(inout Reservoir r, float weight) {
   float before = r.total, at = r.u * (before + weight);
   r.total = before + weight;

@@ -1,7 +1,7 @@
 // Padded Owen-scrambled Sobol points: B. Burley, "Practical Hash-based Owen Scrambling", JCGT 9(4), 2020.
-// Each pad is a two-dimensional (0,2)-sequence (Sobol dimensions 0 and 1) with an index shuffle and scrambles of its own,
-// all derived by hashing (pixel, seed, half, pad). Even and odd samples of a pixel are two independently scrambled
-// sequences: the two halves from which the error is estimated.
+// Each pad is a two-dimensional (0,2)-sequence (Sobol dimensions 0 and 1) with its own index shuffle and scrambles, derived
+// by hashing (pixel, seed, half, pad). Even and odd samples of a pixel are two independently scrambled sequences: the two
+// halves for the error estimate.
 #ifndef LUCERNA_LIB_SAMPLER
 #define LUCERNA_LIB_SAMPLER
 #include "lib/variants.glsl"
@@ -16,16 +16,16 @@ const uint k_pad_light_uv = 1u;
 const uint k_pad_lobe = 2u;          // x: lobe, y: label; of a null event's stream: x by alpha, y through a pane
 const uint k_pad_direction = 3u;
 const uint k_pad_light_detail = 4u;  // which texel of the environment
-// From here on one for each vertex: which record of an irradiance cache is read there.
+// From here on one for each vertex: selects the record of an irradiance cache.
 const uint k_pad_record = 0x8000u;
-// From here on no pads: the streams of null events.
+// From here on no pads but the streams of null events.
 const uint k_pad_null = 0x10000u;
 
 //
-// Coherent sampling (LUCERNA_COHERENT: log2 of the side of a tile in pixels): all pixels of a tile share the
-// sequences, so that neighbouring paths go nearly the same way; each has a digital shift of its own below the first
-// k_shared_bits binary digits, so that they do not repeat each other. A pixel's points are still uniform and its halves
-// independent; the pixels of a tile are not, so that the noise of a tile's mean is not what theirs adds up to.
+// Coherent sampling (LUCERNA_COHERENT: log2 of the side of a tile in pixels): all pixels of a tile share the sequences, so
+// that neighbouring paths are nearly parallel; each pixel has a separate digital shift below the first k_shared_bits binary
+// digits, so that they do not repeat each other. A pixel's points are still uniform and its halves independent; the pixels
+// of a tile are correlated, so the noise of a tile's mean is not the sum of theirs.
 
 struct Sampler {
   uint key;    // of pixel (or tile), seed and half
@@ -53,7 +53,7 @@ Sampler make_sampler(uint pixel, uint width, uint sample_index, uint seed) {
   return s;
 }
 
-// Number of a branch's sample: of the same half, and those of all samples go on in one sequence.
+// Sample number of a branch: in the same half; the branches of all samples form one sequence.
 uint branch_sample(uint sample_index, uint branches, uint branch) {
   return ((sample_index >> 1) * branches + branch) << 1 | (sample_index & 1u);
 }
@@ -93,8 +93,8 @@ uvec2 sample_2d_bits(Sampler s, uint pad) {
   return bits;
 }
 
-// True with probability p: of 32 random bits, for p below 1/2 to 2^-32, above to 2^-24, where no float lies between. Tables are
-// made of such p (upload/alias_table.cpp).
+// True with probability p: from 32 random bits, exact to 2^-32 for p below 1/2 and to 2^-24 above, where floats are that far
+// apart. Tables use such p (upload/alias_table.cpp).
 bool coin_below(uint bits, float p) {
   return p < 0.5 ? float(bits) * (1.0 / 4294967296.0) < p : float(bits >> 8) * (1.0 / 16777216.0) < p;
 }
@@ -102,9 +102,9 @@ bool coin_below(uint bits, float p) {
 vec2 to_unit(uvec2 bits) { return vec2(bits >> 8) * (1.0 / 16777216.0); }
 vec2 sample_2d(Sampler s, uint pad) { return to_unit(sample_2d_bits(s, pad)); }
 
-// The stream of the next null event (alpha, straight through a pane) after `nulls` of them since the last scattering event:
-// what is decided there shares no number with another null event nor with the vertex that ends the row, whose dimensions
-// are the same whatever was passed before.
+// Random numbers of the next null event (alpha, undeflected through a pane), after `nulls` of them since the last scattering
+// event. Separate from those of other null events and of the scattering vertex behind, whose dimensions do not depend on
+// null events.
 Sampler null_sampler(Sampler s, uint nulls) {
   s.key = hash_combine(s.key, k_pad_null + nulls);
 #if LUCERNA_COHERENT

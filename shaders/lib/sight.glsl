@@ -1,15 +1,15 @@
-// How a ray goes on that shows what is seen through glass and in mirrors: the way of most of the light.
+// Continuation of rays that find the surfaces visible through glass and in mirrors: they follow the strongest lobe.
 #ifndef LUCERNA_LIB_SIGHT
 #define LUCERNA_LIB_SIGHT
 #include "lib/surface.glsl"
 
 struct SightStep {
-  bool undeflected;   // on as it came: the surface is cut out there, or a thin wall of smooth glass
-  bool cut_out;    // the former
-  bool turned;     // mirrored or refracted; neither: what is met there is what is seen, or it is rough and shows no surface
+  bool undeflected;   // continues undeflected: the surface is cut out there, or is a thin smooth glass wall
+  bool cut_out;    // ... the former
+  bool turned;     // mirrored or refracted. Neither: the hit surface is the visible one, or it is rough and shows none
   bool mirrored;   // if turned
   bool diffuse;    // the surface scatters light diffusely
-  vec3 direction;  // of the ray that goes on
+  vec3 direction;  // of the continued ray
 };
 
 SightStep sight_step(Surface surface, vec3 direction) {

@@ -1,5 +1,5 @@
-// The environment as two emitters, where records hold the sky's light (shared/scene.h): each texel belongs to the sky or to
-// the sun. For lib/lights.glsl.
+// The environment as two emitters, for records with sky light (shared/scene.h): each texel belongs to the sky or the sun.
+// For lib/lights.glsl.
 #ifndef LUCERNA_LIB_SKY
 #define LUCERNA_LIB_SKY
 #include "lib/variants.glsl"
@@ -9,8 +9,8 @@ uniform samplerBuffer sun_cells;
 uniform samplerBuffer sun_density;
 #endif
 
-// Radiance that arrives from a direction. Densities per solid angle: of the sky's samples, without the sky's probability
-// among the lights, which is the vertex's choice; of the sun's, with its probability among the lights that are not the sky.
+// Radiance arriving from a direction. Densities per solid angle: of the sky's samples, without the selection probability of
+// the sky, which depends on the vertex; of the sun's, including its probability among the lights other than the sky.
 struct Environment {
   vec3 sky, sun;
   float pdf_sky, pdf_sun;

@@ -1,4 +1,4 @@
-// From a hit to what the material says there.
+// Evaluates the surface at a hit: position, normals and material.
 //
 // Position and its error bound: interpolated with barycentrics recomputed here from ray and triangle, so that the image
 // does not depend on which tracer found the primitive.
@@ -35,8 +35,8 @@ struct Surface {
   SurfaceParameters parameters;
 };
 
-// Barycentrics (u, v) of the ray's intersection with a triangle it is known to hit: signed volumes, as the watertight
-// test uses them, clamped to the triangle.
+// Barycentrics (u, v) of a ray's intersection with a triangle that it hits: signed volumes as in the watertight test,
+// clamped to the triangle.
 vec2 barycentrics(vec3 o, vec3 d, vec3 p0, vec3 p1, vec3 p2) {
   vec3 a = p0 - o, b = p1 - o, c = p2 - o;
   float w0 = dot(d, cross(b, c)), w1 = dot(d, cross(c, a)), w2 = dot(d, cross(a, b));
@@ -49,8 +49,8 @@ vec2 barycentrics(vec3 o, vec3 d, vec3 p0, vec3 p1, vec3 p2) {
   return s > 0.0 ? vec2(w1, w2) / s : vec2(1.0 / 3.0);
 }
 
-// Texture of a use, or `neutral` where there is none. `material` is the first texel of the material, `buckets` the set
-// (a constant) of texture arrays in which the scene keeps textures for this use.
+// Texture of a use, or `neutral` without one. `material`: first texel of the material; `buckets`: constant set of the
+// texture arrays in which the scene keeps textures for this use.
 vec4 read_use(int material, uint use, uint buckets, vec2 uv0, vec2 uv1, vec4 neutral) {
   int at = material + int(k_material_textures + k_texture_texels * use);
   vec4 rect = texelFetch(scene_materials, at);
@@ -192,16 +192,16 @@ mat3 shading_frame(Surface s, vec3 wo) {
   return mat3(t, b, n);
 }
 
-// Radiance that a diffuse lobe makes of flux F which arrived from wi on an area dA of a facet with normal n_g, while paths from the
-// eye weigh light by the shading normal: L_i dw = F / (dA |wi.n_g|), so L = f_D |wi.n_s| / |wi.n_g| F / dA, without F / dA.
-// `to_world`: the shading frame on the viewer's side; `reflected`: wi is on that side.
+// Radiance of a diffuse lobe from flux F that arrived from wi on an area dA of a facet with normal n_g, while eye paths
+// weight light by the shading normal: L_i dw = F / (dA |wi.n_g|), so L = f_D |wi.n_s| / |wi.n_g| F / dA; returned without F
+// / dA. `to_world`: shading frame on the viewer's side; `reflected`: wi is on that side.
 vec3 diffuse_of_flux(Bsdf bsdf, mat3 to_world, vec3 normal_g, vec3 wi_world, bool reflected) {
   vec3 wi = wi_world * to_world;
   vec3 f = bsdf_diffuse(bsdf, wi);
   return reflected == (wi.z > 0.0) ? f / max(abs(dot(wi_world, normal_g)), 1e-4) : vec3(0.0);
 }
 
-// Origin for a ray that leaves along `direction`: moved off the surface, on that side, by the error bound.
+// Origin of a ray that leaves along `direction`: moved off the surface, to that side, by the error bound.
 vec3 offset_origin(Surface s, vec3 direction) {
   vec3 n = dot(direction, s.normal_g) < 0.0 ? -s.normal_g : s.normal_g;
   float d = dot(abs(n), s.offset);
@@ -213,7 +213,7 @@ vec3 offset_origin(Surface s, vec3 direction) {
 }
 
 #if LUCERNA_VOLUMES
-// The media behind the surface, of a ray that goes through it.
+// Media behind the surface, for a ray that passes it.
 uint media_behind(Surface s, uint stack) {
   uint medium = uint(texelFetch(scene_materials, int(s.material * k_material_texels + k_material_detail)).z);
   if (medium == 0u) return stack;

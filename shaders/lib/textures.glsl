@@ -1,7 +1,7 @@
-// Textures on the pages of a few texture arrays, one a format (renderer/upload/textures.h). A device without dynamic
-// indexing of sampler arrays needs one call site an array. Where the scene keeps a use's textures in one array, as nearly
-// all do, the read is unconditional; otherwise each call stands in a loop that runs once or not at all, because on lavapipe
-// a loop whose lanes are all done is skipped and an `if` is not.
+// Textures on the pages of a few texture arrays, one per format (renderer/upload/textures.h). A device without dynamic
+// indexing of sampler arrays needs one call site per array. If the scene keeps a use's textures in one array, as nearly all
+// do, the read is unconditional; otherwise each call is in a loop of at most one iteration, because lavapipe skips a loop
+// whose lanes are all done, but not an `if`.
 #ifndef LUCERNA_LIB_TEXTURES
 #define LUCERNA_LIB_TEXTURES
 #include "lib/variants.glsl"
@@ -26,7 +26,7 @@ uniform sampler2DArray texture_bucket_4;
 uniform sampler2DArray texture_bucket_5;
 #endif
 
-// Into [0, 1]; the borders on the page do the rest. fract keeps precision for large coordinates.
+// Wraps into [0, 1]; the borders on the page do the rest. fract keeps precision for large coordinates.
 float wrap_coordinate(float x, uint mode) {
 #if LUCERNA_TEX_WRAPS
   float mirror = abs(x - 2.0 * floor(0.5 * x + 0.5));   // triangle wave
@@ -52,7 +52,7 @@ vec4 texture_fetch(sampler2DArray bucket, uint bits, vec4 rect, vec2 uv) {
     for (uint go = bucket == number ? 1u : 0u; go > 0u; --go) texel = texture_fetch(array, bits, rect, uv); \
   }
 
-// `buckets` is a constant: after inlining, only the reads that it names are left.
+// `buckets` is a constant: after inlining, only the reads in it remain.
 vec4 texture_read(uint bits, uint buckets, vec4 rect, vec2 uv) {
   vec4 texel = vec4(1.0);
   uint bucket = (bits & k_texture_present) != 0u ? (bits >> 11) & 31u : 31u;

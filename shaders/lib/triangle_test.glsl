@@ -1,4 +1,4 @@
-// Whether a ray's line passes through a triangle, without losing any between two triangles.
+// Watertight test of a ray's line against a triangle: no ray passes between adjacent triangles.
 #ifndef LUCERNA_LIB_TRIANGLE_TEST
 #define LUCERNA_LIB_TRIANGLE_TEST
 #include "lib/variants.glsl"
@@ -65,10 +65,11 @@ float bvh_difference(float a, float b, float c, float d) {
   return r;
 }
 
-// `t` held to where the ray is within the box around the triangle, whose corners as seen from the ray's origin are `lo`
-// and `hi`. In a sliver, t by the edge functions is wrong by much more than the ray's place beside the triangle: by the
-// cube of its length over its area, in roundings. Then a triangle just behind the ray's origin would lie in front of it, or
-// not, as its leaf's box has room. The box has half the margin of those in the tree (margin_of(), renderer/bvh/tree.h).
+// Clamps `t` to the part of the ray inside the triangle's box, whose corners relative to the ray's origin are `lo` and `hi`.
+// For slivers, t from the edge functions is much less accurate than the ray's position relative to the triangle: by the cube
+// of its length over its area, in roundings. Then a triangle just behind the ray's origin might count as in front of it,
+// depending on the size of its leaf's box. This box has half the margin of those in the tree (margin_of(),
+// renderer/bvh/tree.h).
 float bvh_within_box(float t, vec3 lo, vec3 hi, vec3 inverse) {
   precise vec3 size = hi - lo;
   precise float margin = 4.76837158203125e-7 * max(size.x, max(size.y, size.z));  // 2^-21
@@ -80,7 +81,7 @@ float bvh_within_box(float t, vec3 lo, vec3 hi, vec3 inverse) {
   return min(max(t, enter), leave);
 }
 
-// Whether the ray's line passes through the triangle; if so, where: distance t (of any sign), weights u of p1, v of p2.
+// True if the ray's line hits the triangle; then distance t (of any sign), weights u of p1, v of p2.
 bool bvh_test(ShearedRay s, vec3 p0, vec3 p1, vec3 p2, out float t, out float u, out float v) {
   precise vec3 a = bvh_permute(p0, s.along) - s.origin;
   precise vec3 b = bvh_permute(p1, s.along) - s.origin;

@@ -1,5 +1,5 @@
-// The macros by which the host asks for a variant of a kernel, in one place, 0 where it asks for nothing. To be included
-// before the first #if that tests one of them: a macro tested before it is defined is an error (renderer/gpu/kernel.h).
+// All macros that select kernel variants, with default 0. Include it before the first #if that tests one of them: testing an
+// undefined macro is an error (renderer/gpu/kernel.h).
 #ifndef LUCERNA_LIB_VARIANTS
 #define LUCERNA_LIB_VARIANTS
 
@@ -105,8 +105,8 @@
 #define LUCERNA_BUCKETS 0
 #endif
 
-// What hits a kernel shades, where they are told apart (renderer/transport/hit_classes.h): paths that leave the scene, surfaces,
-// those that emit, those that light samples reach; and what others are like that paths go on to.
+// Classes of hits that a kernel shades (renderer/transport/hit_classes.h): paths that leave the scene, surfaces, emitters,
+// emitters that light samples reach; and properties of the other hits.
 #ifndef LUCERNA_HITS_SKY
 #define LUCERNA_HITS_SKY 1
 #endif
@@ -131,7 +131,7 @@
 #define LUCERNA_SUBGROUPS 0
 #endif
 
-// What the settings ask for, and what tests do.
+// Set by settings and tests.
 #ifndef LUCERNA_PHOTON_IRRADIANCE
 #define LUCERNA_PHOTON_IRRADIANCE 0
 #endif
@@ -177,7 +177,7 @@
 #define LUCERNA_STOPPING_ONLY 0
 #endif
 
-// Light tracing: what the camera's paths begin with, and where light goes that is joined to it.
+// Light tracing: splats read by camera paths, and targets of connected light.
 #ifndef LUCERNA_SPLATS
 #define LUCERNA_SPLATS 0
 #endif
@@ -188,7 +188,7 @@
 #define LUCERNA_SPLATS_WEIGHED 0
 #endif
 
-// Photons: where they are not worth their time paths from the eye bring the light instead.
+// Photons: regions whose light is delegated to eye paths.
 #ifndef LUCERNA_DELEGATED_REGIONS
 #define LUCERNA_DELEGATED_REGIONS 0
 #endif
@@ -238,10 +238,10 @@
 #define LUCERNA_COPIES 0
 #endif
 
-// What follows from these.
+// Derived from these.
 #define LUCERNA_GLASS (LUCERNA_SOLID_GLASS || LUCERNA_THIN_GLASS)
 #define LUCERNA_TRANSPARENT (LUCERNA_ALPHA || LUCERNA_THIN_GLASS)
-// Light samples of emissive triangles look at their surface, for textures of it and holes in it.
+// Light samples of emissive triangles read their surface, for textures and holes.
 #define LUCERNA_LIGHT_SURFACE \
   (LUCERNA_EMISSIVE && !LUCERNA_PLAIN_EMITTERS && (LUCERNA_TEX_EMISSION || LUCERNA_ALPHA || LUCERNA_VERTEX_EXTRA))
 

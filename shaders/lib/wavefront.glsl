@@ -1,9 +1,9 @@
-// What the wavefront's kernels share: queues, counters, and the state of the paths in flight.
+// Shared by the wavefront's kernels: queues, counters, and the state of the paths in flight.
 //
-// State is read through texel buffers (RGBA32F; integers as bit patterns) and written as storage buffers of four words: on
-// lavapipe a storage-buffer access under a mask is a scalar loop over the lanes, one for every store whatever its width, and
-// these loops were half of the shading time of a plain scene; a texel fetch is a vector operation (and an image store slower
-// than either). Within one dispatch a slot is touched by one invocation, which reads it before it writes it.
+// State is read through texel buffers (RGBA32F; integers as bit patterns) and written as storage buffers of four words. On
+// lavapipe a masked storage-buffer access is a scalar loop over the lanes, one per store of any width, and these loops took
+// half of the shading time of a plain scene; a texel fetch is a vector operation (an image store is slower than either).
+// Within one dispatch one invocation accesses a slot, and reads it before it writes it.
 #ifndef LUCERNA_LIB_WAVEFRONT
 #define LUCERNA_LIB_WAVEFRONT
 #include "lib/variants.glsl"
@@ -12,7 +12,7 @@
 #include "lib/radiance.glsl"
 
 layout(local_size_x = 64) in;
-// Kernels that begin or end paths define LUCERNA_PUSH first, as the name of a structure of their own.
+// Kernels that begin or end paths define LUCERNA_PUSH first, as the name of their push structure.
 #ifndef LUCERNA_PUSH
 #define LUCERNA_PUSH TransportPush
 #endif
@@ -74,9 +74,9 @@ void store_shadow_state(uint slot, ShadowState s) {
   shadow_states[2u * slot + 1u] = words(s.glossy, s.tag);
 }
 
-// A place of its own in a queue, of which counters[length] is the length, for every invocation that gets here; counted by
-// `component` in counters[by_component ...]. Invocations that run together add to the counters at once: an atomic operation
-// each was a tenth of the shading time.
+// A separate place in a queue of length counters[length] for every invocation that gets here; counted by `component` in
+// counters[by_component ...]. Invocations that run together share one atomic addition: one each took a tenth of the shading
+// time.
 uint queue_place(uint length, uint by_component, uint component) {
 #if LUCERNA_SUBGROUPS
   uint mine = 1u << 8u * component;  // a byte a component
@@ -84,7 +84,7 @@ uint queue_place(uint length, uint by_component, uint component) {
   uvec4 each = uvec4(all, all >> 8, all >> 16, all >> 24) & 0xffu, each_before = uvec4(before, before >> 8, before >> 16, before >> 24) & 0xffu;
   uint first = 0u;
   if (subgroupElect()) first = atomicAdd(counters[length], each.x + each.y + each.z + each.w);
-  // The first of each component adds for all of it.
+  // The first invocation of each component adds for all of them.
   if ((before >> 8u * component & 0xffu) == 0u) atomicAdd(counters[by_component + component], all >> 8u * component & 0xffu);
   return subgroupBroadcastFirst(first) + each_before.x + each_before.y + each_before.z + each_before.w;
 #else
@@ -135,7 +135,7 @@ void add_to_radiance(uint slot, uint lane, bool wanted, vec3 value) {
   }
 }
 
-// Whether a lane's light is to be added. What is not finite is refused and counted.
+// True if a lane's light is to be added. Non-finite light is refused and counted.
 bool radiance_wanted(uint lane, vec3 value) {
   bool wanted = lane < k_no_lane, finite = is_finite(value);
   if (wanted && !finite) atomicAdd(counters[k_counter_dropped], 1u);
@@ -184,7 +184,7 @@ void add_radiance_of_component(uint slot, uint lane_a, vec3 a, uint lane_b, vec3
   add_to_radiance(slot, (wanted_a ? lane_a : lane_b) % k_component_count, wanted_a || wanted_b, a + b);
   add_to_groups(slot, lane_a / k_component_count, a, lane_b / k_component_count, b);
 }
-// ... of two lanes, and what is found by component and by group.
+// ... of two lanes, and looked-up light by component and by group.
 void add_radiance_found(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b, vec3 found[k_component_count],
                         vec3 found_by_group[k_group_count]) {
   bool wanted_a = radiance_wanted(lane_a, a), wanted_b = radiance_wanted(lane_b, b);
@@ -201,7 +201,7 @@ void add_radiance_found(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b, vec
   [[unroll]] for (uint g = 0u; g < k_group_count; ++g) all += abs(found_by_group[g]);
   bool any_found = any(notEqual(all, vec3(0.0)));
   uint lit = groups_lit(slot), bits = 0u;
-  // A loop, because a branch saves no work on lavapipe, and few vertices look anything up.
+  // A loop instead of a branch: on lavapipe a branch saves no work, and few vertices have lookups.
   for (uint once = 0u; once < (any_found ? 1u : 0u); ++once) {
     [[unroll]] for (uint g = 0u; g < k_group_count; ++g) {
       vec3 value = found_by_group[g] + (group_a == g ? a : vec3(0.0)) + (group_b == g ? b : vec3(0.0));
@@ -239,7 +239,7 @@ void add_radiance_of_component(uint slot, uint lane_a, vec3 a, uint lane_b, vec3
 #endif
 
 #if LUCERNA_LOOKUP_BIAS
-// VertexOut.bias; at most once a slot and dispatch. What is not finite is left out, and the light that it is of is refused.
+// Adds VertexOut.bias; at most once a slot and dispatch. Non-finite values are left out, with their light.
 void add_lookup_bias(uint slot, float value) {
   int at = int(radiance_texel(slot, 1u));
   if (value != 0.0 && is_finite(vec3(value))) radiance[at].a = texelFetch(radiance_texels, at).a + value;

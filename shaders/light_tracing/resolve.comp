@@ -1,5 +1,5 @@
-// A round's picture of its sums, which begin again at nothing. Alpha: as bits, the groups of lights that they are of, four for
-// each colour.
+// Converts the sums of a round to its picture and clears them. Alpha: bits of the light groups of the channels, four bits
+// each.
 #include "lib/variants.glsl"
 #include "lib/invocation.glsl"
 #include "shaders/shared/splat.h"

@@ -1,5 +1,5 @@
-// One vertex of every live light path: joined to the camera where it has met mirrors and glass alone and falls on a diffuse
-// surface, as a shadow ray that brings its light to the pixel through which the surface is seen; and how the path goes on.
+// One vertex of every live light path. A vertex on a diffuse surface, reached by mirrors and glass alone, is connected to
+// the camera: a shadow ray carries its light to the pixel that shows the surface. Then the path continues.
 //
 // A pixel is the mean of radiance over its area on the plane at distance 1 before the eye. A light path that carries flux F to
 // x stands for irradiance F / dA there, so that the pixel gets
@@ -20,11 +20,11 @@ layout(scalar) buffer SplatCounts { uint splat_counts[]; };
 layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
 
 struct Seen {
-  vec3 towards;     // the eye, unit
+  vec3 towards;     // to the eye, unit
   float distance;
-  uint pixel;       // of the band that is summed
+  uint pixel;       // in the band that is summed
   float per_cosine; // d / (z^3 A), or 1 / A
-  bool inside;      // the band
+  bool inside;      // the pixel is in the band
 };
 
 Seen camera_sees(vec3 x) {
@@ -46,7 +46,7 @@ Seen camera_sees(vec3 x) {
   return s;
 }
 
-// f_D |wi.ns| / |wi.ng| towards the eye, wi: whence the light comes.
+// f_D |wi.ns| / |wi.ng| towards the eye; wi points to where the light comes from.
 vec3 reflected_to_eye(Surface surface, vec3 towards, vec3 wi_world) {
   surface.front = dot(surface.normal_g, towards) > 0.0;
   surface.parameters.inside = surface.parameters.solid && !surface.front;
@@ -72,11 +72,11 @@ void main() {
   Sampler random = make_light_sampler(path.pixel, path.sample_index, frame.seed);
   LightVertex v = light_vertex(path, ray, hit, random);
   bool diffuse = max3(v.bsdf.diffuse_albedo + v.bsdf.transmitted_albedo) > 0.0;
-  // Events of the word that this makes, the surface's own with them, are as many as a path from the eye may have.
+  // The number of events of the whole path, including this surface's, is within the limit of eye paths.
   bool wanted = v.lit && diffuse && automaton_component(state) < k_component_count && depth <= frame.max_depth;
   Seen seen = camera_sees(v.surface.position);
   wanted = wanted && seen.inside;
-  // Of a surface that is there in part so much is seen.
+  // Alpha coverage: the visible share of the surface.
   vec3 light = v.coverage * v.arriving * reflected_to_eye(v.surface, seen.towards, -ray.direction) *
                (abs(dot(seen.towards, v.surface.normal_g)) * seen.per_cosine);
 #if LUCERNA_VOLUMES
@@ -92,7 +92,7 @@ void main() {
     store_shadow_ray(slot, Ray(origin, distance, seen.towards, slot));
     uint stratum = 0u;
 #if LUCERNA_SPLATS_WEIGHED && LUCERNA_LIGHTS
-    // What is not aimed has brought by itself only what no aimed path would have brought as well.
+    // An unaimed path counts only with the light that no aimed path could contribute.
     Emission e = sample_emission(random, light_round.step);
     stratum = e.stratum;
     light *= stratum == 0u ? e.unaimed : 1.0;

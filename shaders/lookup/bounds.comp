@@ -1,19 +1,19 @@
-// Octree, step 1: box, number and summed diameter of every run's spheres.
+// Octree, step 1: bounding box, count and summed diameter of the spheres of every run.
 #include "lib/octree_build.glsl"
 layout(local_size_x = LUCERNA_OCTREE_GROUP) in;
-layout(scalar) writeonly buffer RunBounds { vec4 run_bounds[]; };   // low, sum of diameters; high, spheres; (x) of how many the sum is
+layout(scalar) writeonly buffer RunBounds { vec4 run_bounds[]; };   // low, sum of diameters; high, count; (x) spheres in the sum
 
 void main() {
   if (global_index() >= LUCERNA_OCTREE_RUNS) return;
   Run run = own_run(global_index(), sphere_count());
   vec3 low = vec3(3.4e38), high = vec3(-3.4e38);
   float sum = 0.0, n = 0.0, summed = 0.0;
-  // What stands far away does not say how large leaves must be where points are.
+  // Distant spheres must not determine the leaf size near the points.
   bool core = all(lessThanEqual(push.core_low, push.core_high));
   for (uint i = run.first; i < run.end; ++i) {
     vec4 s = texelFetch(spheres, int(i));
     bool used = usable(s);
-    // One more unit on each side for the rounding of these differences themselves.
+    // One unit in the last place more on each side, for the rounding of these differences.
     vec3 r = vec3(safe_radius(s.w)), slack = (abs(s.xyz) + r) * (1.0 / 4194304.0) + 1e-30;
     low = used ? min(low, s.xyz - r - slack) : low;
     high = used ? max(high, s.xyz + r + slack) : high;

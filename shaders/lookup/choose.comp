@@ -1,4 +1,4 @@
-// Octree, step 4, one workgroup: the finest level, from the one wanted on, whose references there is memory for.
+// Octree, step 4, one workgroup: chooses the finest level, at most the requested one, whose references fit into memory.
 #include "lib/octree_build.glsl"
 layout(local_size_x = 256) in;   // 16 invocations a level
 layout(scalar) readonly buffer RunNeeds { uint run_needs[]; };

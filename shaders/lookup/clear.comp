@@ -1,4 +1,4 @@
-// Octree, step 9: an empty hash table of the size that the leaves need.
+// Octree, step 9: clears the hash table, sized for the leaves.
 #include "lib/octree_leaves.glsl"
 layout(local_size_x = LUCERNA_OCTREE_GROUP) in;
 layout(scalar) writeonly buffer SlotLeaves { uint slot_leaves[]; };

@@ -1,4 +1,4 @@
-// Octree, step 5: the references of every sphere.
+// Octree, step 5: counts the references of every sphere.
 #include "lib/octree_cells.glsl"
 layout(local_size_x = 64) in;
 layout(scalar) writeonly buffer SphereReferences { uint sphere_references[]; };

@@ -1,10 +1,10 @@
-// Octree, splitting 1: by how many levels every leaf is to be split, one invocation each: so that its cells are no larger
-// than the mean diameter of the spheres that it lists, if it lists many. Where small spheres crowd among large ones, the leaves
-// that all of them together call for are too large.
+// Octree, splitting 1: number of levels by which each leaf is split. A leaf with many spheres is split until its cells are
+// at most as wide as the mean diameter of its spheres: where small spheres lie among large ones, the common leaf size is too
+// large.
 #include "lib/octree_leaves.glsl"
 layout(local_size_x = 64) in;
 layout(scalar) writeonly buffer LeafSplits { uint leaf_splits[]; };   // levels
-layout(scalar) writeonly buffer LeafCells { uint leaf_cells[]; };     // that each is split into; 0: it is not
+layout(scalar) writeonly buffer LeafCells { uint leaf_cells[]; };     // cells of each split leaf; 0: not split
 const uint k_sampled = 64u;
 
 void main() {

@@ -1,5 +1,5 @@
-// Octree, step 11: into every slot of the hash table what a query asks for: code, first, last, and how the leaf is split. Of
-// those that are about to be split LeafSplits and LeafCells say it, of those that are the only reference that they have.
+// Octree, step 11: fills every slot of the hash table with what lookups read: code, first, last, and the split of the leaf.
+// For leaves about to be split, LeafSplits and LeafCells provide it; for split ones, their only reference.
 #include "lib/octree_leaves.glsl"
 layout(local_size_x = LUCERNA_OCTREE_GROUP) in;
 uniform usamplerBuffer slot_leaf_texels;

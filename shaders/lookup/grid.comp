@@ -1,5 +1,4 @@
-// Octree, step 2, one workgroup: the root, and the level of the leaves that the spheres' size calls for. Sums are taken in
-// a fixed order.
+// Octree, step 2, one workgroup: root box, and the leaf level that fits the size of the spheres. Sums run in a fixed order.
 #include "lib/octree_build.glsl"
 layout(local_size_x = 64) in;
 layout(scalar) readonly buffer RunBounds { vec4 run_bounds[]; };
@@ -30,7 +29,7 @@ void main() {
     summed += counts[i];
   }
   float n = high.w;
-  // What stands far away would make all leaves as large.
+  // Distant spheres are left out: they would enlarge all leaves.
   vec3 core_low = max(low.xyz, push.core_low), core_high = min(high.xyz, push.core_high);
   bool held = all(lessThanEqual(push.core_low, push.core_high)) && all(lessThan(core_low, core_high)) &&
               (any(lessThan(low.xyz, core_low)) || any(lessThan(core_high, high.xyz)));
@@ -42,14 +41,14 @@ void main() {
   precise vec3 extent = n > 0.0 ? high.xyz - o.origin : vec3(0.0);
   float longest = max(max(extent.x, extent.y), extent.z);
   o.mean_diameter = summed > 0.0 ? low.w / summed : 0.0;
-  // The largest power of two not above the size wanted; at most k_octree_levels levels; one root over everything.
+  // Largest power of two not above the wanted size; at most k_octree_levels levels; one root contains everything.
   float wanted = max(push.scale * o.mean_diameter, longest * (0.5 / float(1u << k_octree_levels)));
   int exponent;
   frexp(clamp(wanted, 1e-30, 1e30), exponent);   // wanted = [0.5, 1) * 2^exponent
   o.leaf = ldexp(1.0, exponent - 1);
   o.level = 0u;
   o.edge = o.leaf;
-  // `longest` itself must lie inside: a point there is in the last cell, not behind it.
+  // `longest` itself lies inside: a point there is in the last cell, not behind it.
   for (uint i = 0u; i < 300u && o.edge <= longest; ++i) {
     o.edge *= 2.0;
     if (o.level < k_octree_levels) o.level++; else o.leaf *= 2.0;

@@ -1,4 +1,4 @@
-// Octree, step 7: how many leaves begin in every run of the sorted references.
+// Octree, step 7: counts the leaves that begin in every run of the sorted references.
 #include "lib/octree_leaves.glsl"
 layout(local_size_x = LUCERNA_OCTREE_GROUP) in;
 layout(scalar) writeonly buffer RunLeaves { uint run_leaves[]; };

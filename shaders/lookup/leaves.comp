@@ -1,4 +1,5 @@
-// Octree, step 8: the leaves, in the order of their codes: code and first reference. They end where the next begins.
+// Octree, step 8: writes the leaves in the order of their codes: code and first reference. A leaf ends where the next
+// begins.
 #include "lib/octree_leaves.glsl"
 layout(local_size_x = LUCERNA_OCTREE_GROUP) in;
 layout(scalar) readonly buffer RunLeaves { uint run_leaves[]; };   // prefix sum

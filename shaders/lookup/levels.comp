@@ -1,9 +1,9 @@
-// Octree, step 3: the references that every run takes at the level wanted and at all coarser ones, at most (most_cells).
-// Sums stay at 2^32 - 1 once they are there, and a level is as good as unaffordable where one sphere
-// overlaps more leaves than an invocation may visit (see lib/runs.glsl).
+// Octree, step 3: references of every run at the requested level and all coarser ones, at most (most_cells). Sums saturate
+// at 2^32 - 1. A level counts as unaffordable if one sphere overlaps more leaves than an invocation may visit (see
+// lib/runs.glsl).
 #include "lib/octree_cells.glsl"
 layout(local_size_x = LUCERNA_OCTREE_GROUP) in;
-layout(scalar) writeonly buffer RunNeeds { uint run_needs[]; };   // k_octree_levels + 1 a run
+layout(scalar) writeonly buffer RunNeeds { uint run_needs[]; };   // k_octree_levels + 1 for each run
 
 void main() {
   if (global_index() >= LUCERNA_OCTREE_RUNS) return;

@@ -1,5 +1,5 @@
-// Octree, splitting 2: the references that come of every reference: of a leaf that is split those of its cells that the
-// sphere overlaps, and with the leaf's first one that says so.
+// Octree, splitting 2: counts the new references of every reference: for a split leaf, the cells that the sphere overlaps;
+// the leaf's first reference also adds the mark of the split.
 #include "lib/octree_cells.glsl"
 layout(local_size_x = 64) in;
 layout(scalar) writeonly buffer SplitReferences { uint split_references[]; };

@@ -1,7 +1,7 @@
-// Octree, splitting 3: these references, from the place on that those of each have.
+// Octree, splitting 3: writes these references.
 #include "lib/octree_cells.glsl"
 layout(local_size_x = 64) in;
-uniform usamplerBuffer split_places;   // prefix sum of what splitting 2 counted
+uniform usamplerBuffer split_places;   // prefix sum of the counts of splitting 2
 layout(scalar) writeonly buffer References { SortPair references[]; };
 
 void main() {

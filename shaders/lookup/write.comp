@@ -1,7 +1,7 @@
-// Octree, step 6: the references themselves, each sphere's from its place on.
+// Octree, step 6: writes the references of every sphere.
 #include "lib/octree_cells.glsl"
 layout(local_size_x = 64) in;
-uniform usamplerBuffer sphere_places;   // prefix sum of the spheres' references
+uniform usamplerBuffer sphere_places;   // prefix sum of the spheres' reference counts
 layout(scalar) writeonly buffer References { SortPair references[]; };
 
 void main() {

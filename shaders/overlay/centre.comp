@@ -1,4 +1,4 @@
-// Source of paths that look at the picture: a ray through the centre of every pixel, or of every point of a grid.
+// Source of paths that find visible surfaces: a ray through the centre of every pixel, or of every point of a grid.
 #define LUCERNA_PUSH SeePush
 #include "shaders/shared/sight.h"
 #include "lib/wavefront.glsl"

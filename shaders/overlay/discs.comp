@@ -1,11 +1,11 @@
-// Marks the pixels of discs' rims: one invocation a straight piece of one.
+// Marks the pixels of discs' rims: one invocation for each segment of one.
 #include "overlay/mark.glsl"
 layout(scalar) readonly buffer OverlayDiscs { OverlayDisc discs[]; };
 
-const float k_least_width = 4.0, k_full_width = 30.0;  // pixels from the middle to the rim as it is seen
+const float k_least_width = 4.0, k_full_width = 30.0;  // apparent width [pixels] at which a rim starts to show, and shows fully
 
 vec3 from, to, normal;
-float size, radius;  // of a pixel there, of the disc
+float size, radius;  // of a pixel there; of the disc
 
 bool shows(Seen seen, float t, float depth) {
   float below = dot(seen.position - mix(from, to, t), seen.normal);
@@ -30,7 +30,7 @@ void main() {
   to = d.position + radius * (cos(angle + step) * tangent + sin(angle + step) * bitangent);
   vec3 a = to_picture(from, push.width, push.height), b = to_picture(to, push.width, push.height);
   size = pixel_size(a.z, push.height);
-  // By how wide it is seen: many lie one behind the other on surfaces seen at a grazing angle.
+  // Narrow discs fade: on surfaces seen at a grazing angle many lie one behind the other.
   vec3 away = frame.orthographic != 0u ? frame.camera_forward : normalize(d.position - frame.camera_origin);
   float wide = radius / size * abs(dot(normal, away));
   float strength = clamp((wide - k_least_width) / (k_full_width - k_least_width), 0.0, 1.0);

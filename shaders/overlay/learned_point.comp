@@ -1,4 +1,4 @@
-// Which row of learned lights serves what one pixel shows, by one invocation.
+// Finds the surface of one pixel and its row of learned lights. One invocation.
 #include "lib/variants.glsl"
 #include "lib/invocation.glsl"
 #include "lib/learned_lights.glsl"

@@ -1,5 +1,5 @@
-// Lays over the picture, as a heat map, the share of shadow rays that arrive where a pixel's surface lies; where it is not
-// known, and where nothing is seen, the picture is dimmed.
+// Heat map over the picture: share of unblocked shadow rays at a pixel's surface. Where it is unknown or there is no surface,
+// the picture is dimmed.
 #include "lib/variants.glsl"
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"

@@ -1,4 +1,4 @@
-// One vertex of every live light path, as segments from vertex to vertex that a person sees.
+// One vertex of every live light path: the segment from the vertex before, for display.
 #include "shaders/shared/emission.h"
 #include "transport/light_vertex.glsl"
 #include "lib/emission.glsl"
@@ -22,7 +22,7 @@ void main() {
   if (view.light != k_all_lights && sample_emission(random, view.step).light != view.light) return;
 #endif
   bool missed = hit.prim == k_no_hit;
-  // What leaves the scene is drawn for as long as a tenth of it; what comes from afar from where it comes near.
+  // A ray that leaves the scene is drawn for a tenth of the radius; one from a distant light from two radii before its hit.
   float length = missed ? 0.1 * view.radius : hit.t;
   float begin = depth == 1u ? max(0.0, length - 2.0 * view.radius) : 0.0;
   vec3 light = sqrt(path.throughput / max(max3(path.throughput), 1e-37));  // encoded
@@ -33,7 +33,7 @@ void main() {
     s.half_width = depth == 1u ? 0.5 : 0.8;
     s.edge_width = 0.0;
     s.color = light;
-    // Light on its way to what bundles it is only hinted at; what has met that stands out.
+    // Segments before the first vertex are faint; those after it are prominent.
     s.alpha = missed ? 0.15 : depth == 1u ? 0.3 : 0.85;
     s.strength = 1.0;
     s.slack = 0.0;

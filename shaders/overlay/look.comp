@@ -1,6 +1,6 @@
-// What rays through the picture's pixels show through glass and in mirrors: they go straight on, are refracted or mirrored,
-// whichever is most of the light, until they meet a surface that scatters light diffusely. In place of transport/shade.comp
-// (transport/wavefront.h, PathEnds::vertex), from overlay/centre.comp to overlay/look_keep.comp.
+// Finds the surfaces that the picture's pixels show through glass and in mirrors: rays pass undeflected, are refracted or
+// mirrored, whichever lobe is strongest, until they hit a diffuse surface. Replaces transport/shade.comp
+// (transport/wavefront.h, PathEnds::vertex), between overlay/centre.comp and overlay/look_keep.comp.
 #include "lib/variants.glsl"
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
@@ -22,7 +22,7 @@ void main() {
     return;
   }
   if (path_depth(path) >= frame.max_depth) return;
-  if (!on.undeflected) path.nulls = 1u;  // not straight any more
+  if (!on.undeflected) path.nulls = 1u;  // deflected
   path.bits += 1u << k_path_events_shift;
   if (!on.undeflected && !on.turned) return;
   queue_ray(slot, path, offset_origin(surface, on.direction), on.direction);

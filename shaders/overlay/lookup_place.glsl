@@ -1,8 +1,7 @@
-// Where a pixel's paths ask for light that is stored, in records for example, and with which normal: the surface that is
-// seen through the pixel's centre, as rays have met it (shaders/shared/sight.h), so that an answer here is what paths are
-// answered. The film cannot say: its depths are means over a pixel, which lie off the plane of a floor seen at a slant, and
-// its normals are those of normal maps, while light is stored for the smooth surface. It stands in where nobody has looked
-// yet.
+// Place and normal of a pixel's lookups of stored light (records, photons): the surface at the pixel's centre, as traced by
+// rays (shaders/shared/sight.h), so that results equal those of paths. The film is not exact: its depths are means over a
+// pixel, which lie off the plane of a slanted floor, and its normals include normal maps, while light is stored for the
+// smooth surface. It is used only before rays have been traced.
 #ifndef LUCERNA_OVERLAY_LOOKUP_PLACE
 #define LUCERNA_OVERLAY_LOOKUP_PLACE
 #include "overlay/seen.glsl"
@@ -11,8 +10,8 @@
 uniform samplerBuffer surface_texels;
 
 struct LookupPlace {
-  bool diffuse;       // something diffuse is seen
-  bool answerable;  // ... whose normal map does not lead away from what can be answered
+  bool diffuse;       // a diffuse surface is visible
+  bool answerable;  // ... and its normal map is not too steep for a lookup
   vec3 position, normal;
 };
 

@@ -1,5 +1,5 @@
-// Strokes leave marks at the pixels that they go over; lay.comp lays these over the picture (shaders/shared/overlay.h).
-// Whoever includes this says in shows() what hides a stroke, and in stroke_at() where a share of it lies.
+// Strokes mark the pixels they cover; lay.comp draws the marks over the picture (shaders/shared/overlay.h). The including
+// file defines shows(), the visibility of a stroke, and stroke_at(), the position of a part of it.
 #ifndef LUCERNA_OVERLAY_MARK
 #define LUCERNA_OVERLAY_MARK
 #include "lib/invocation.glsl"
@@ -9,27 +9,27 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { OverlayMarkPush push; };
 layout(scalar) buffer OverlayMarks { uint marks[]; };
-layout(scalar) writeonly buffer OverlayInks { vec4 inks[]; };  // of all strokes: color, alpha
+layout(scalar) writeonly buffer OverlayInks { vec4 inks[]; };  // color, alpha of all strokes
 
 struct Stroke {
   float half_width, edge_width, strength;
   uint rank, number;
 };
 
-// Whether what lies at a share t of the way, and at that depth, is seen where a pixel shows that surface.
+// Whether the part of the stroke at parameter t (0..1), at that depth, is visible in a pixel that shows the surface `seen`.
 bool shows(Seen seen, float t, float depth);
-// In the picture, between its ends.
+// Its position in the picture, between the ends a and b.
 vec2 stroke_at(vec2 a, vec2 b, float t);
 
-const float k_most_away = 1e7;  // pixels; beyond there is no drawing, and no number either
+const float k_most_away = 1e7;  // pixels; farther strokes are not drawn (out of the range of int)
 
 void draw_mark(uint pixel, uint rank, float cover, uint number) {
   uint share = uint(clamp(cover, 0.0, 1.0) * 127.0 + 0.5);
   if (share > 0u) atomicMax(marks[pixel], rank << k_mark_rank_shift | share << k_mark_cover_shift | (k_mark_number - number));
 }
 
-// From a to b in the picture, as to_picture() has them. Goes along the longer of the two axes, over the few pixels that are
-// near the line on the other, so that a long line costs no more than its length. The share of one invocation of `pieces`.
+// Marks part `piece` of `pieces` of the stroke from a to b, both from to_picture(). Iterates along the longer axis over the few
+// pixels near the line on the other, so that the cost is proportional to the length.
 void draw_stroke(vec3 a, vec3 b, Stroke s, uint piece, uint pieces) {
   bool there = a.z > 0.0 && b.z > 0.0 && s.strength > 0.0 && all(lessThan(abs(vec4(a.xy, b.xy)), vec4(k_most_away)));
   if (!there) return;
@@ -58,17 +58,17 @@ void draw_stroke(vec3 a, vec3 b, Stroke s, uint piece, uint pieces) {
     if (edge <= 0.0) continue;
     uint pixel = xy.y * push.width + xy.x;
     if (!shows(seen_at(pixel, push.width, push.height), t, depth_between(a.z, b.z, t))) continue;
-    // A stroke wins over all edges, and of its equals over those that cover less.
+    // A stroke covers all edges, and strokes of equal rank with a smaller coverage.
     bool drawn = core > 0.2 || s.edge_width == 0.0;
     draw_mark(pixel, drawn ? s.rank : k_rank_edge, s.strength * (drawn ? core : edge), s.number);
   }
 }
 
-// Behind the surface that a pixel shows, by its depth and by more than `slack`.
+// Whether a depth is behind the pixel's surface by more than `slack` and 0.5 % of the depth.
 bool behind(Seen seen, float depth, float slack) { return seen.solid && depth > 1.005 * seen.depth + slack; }
 
-// The same of what may lie on a surface: depth alone would hide what lies on one that is seen at a grazing angle, where it
-// changes much within a pixel, so that it must lie below the surface's plane, too, by `below`.
+// Likewise, for points that may lie on a surface. At grazing angles depth varies much within a pixel, so the point must also be
+// below the surface's plane, by the distance `below`.
 bool buried(Seen seen, float depth, float slack, float below) {
   return behind(seen, depth, slack) && below > 1.2 * seen.size;
 }

@@ -1,5 +1,5 @@
-// Where in the scene a pixel's surface lies, from the film's features, and where in the picture a place of the scene.
-// Where a pixel has no samples yet the coarse film tells, so that overlays show before there is a picture.
+// Position of a pixel's surface in the scene, from the film's features, and of a place of the scene in the picture. Pixels
+// without samples use the coarse film, so that overlays show before there is a picture.
 #ifndef LUCERNA_OVERLAY_SEEN
 #define LUCERNA_OVERLAY_SEEN
 #include "lib/frame.glsl"

@@ -1,8 +1,8 @@
-// Marks the pixels of segments: some invocations a segment, each a part of its length.
+// Marks the pixels of segments: push.pieces invocations per segment, each for a part of its length.
 #include "overlay/mark.glsl"
 layout(scalar) readonly buffer OverlaySegments { OverlaySegment segments[]; };
 
-const float k_near = 1e-3;  // of the depth of the farther end: what is nearer to the eye is cut off
+const float k_near = 1e-3;  // clip depth over the depth of the farther end
 
 float slack;
 

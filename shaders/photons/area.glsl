@@ -1,9 +1,10 @@
-// How much surface there is around a place, as the kernel of the photons there weighs it: 1 within a surface, less along its
-// borders and creases. Photons that count at x lie on what counts here (k_photon_normals, k_photon_slab), so that even light
-// divided by this is even up to the border (H. Hey and W. Purgathofer, "Advanced Radiance Estimation for Photon Map Global
-// Illumination", 2002, with Epanechnikov's kernel in place of a constant one).
+// Surface area around a point, weighted by the photons' kernel: 1 within a surface, less near its borders and creases.
+// Photons that count at x lie on the surfaces that count here (k_photon_normals, k_photon_slab), so dividing by this area
+// makes uniform light uniform up to the border (H. Hey and W. Purgathofer, "Advanced Radiance Estimation for Photon Map
+// Global Illumination", 2002; with Epanechnikov's kernel instead of a constant one).
 //
-// Over a polygon in a plane at distance c from x the kernel's integral is one over the angle as seen from the foot of x,
+// Over a polygon in a plane at distance c from x, the integral of the kernel is an integral over the angle seen from the
+// foot of x:
 //   sum over edges  integral G(min(rho(phi), R)) dphi,  R^2 = r^2 - c^2,  G(rho) = integral_0^rho K(t) t dt
 //                                                     = 2 / (pi r^4) (R^2 rho^2 / 2 - rho^4 / 4),
 // which along a straight edge at distance h, rho^2 = h^2 + t^2 and dphi = h dt / rho^2, is a polynomial in t within the disc,
@@ -15,14 +16,14 @@
 uniform samplerBuffer photon_surface_nodes;
 uniform samplerBuffer photon_surface_triangles;
 
-// Angle from t0 to t1 on a line at distance h.
+// Angle between t0 and t1 on a line at distance h.
 float photon_angle(float h, float t0, float t1) {
   float along = h * h + t0 * t1, across = h * (t1 - t0);
   return across == 0.0 && along == 0.0 ? 0.0 : atan(across, along);
 }
 
-// The edge from a to b, from the foot of x; n: the plane's normal, big2: R^2. By Epanechnikov's kernel, times pi r^4 / 2, and by
-// the flat one, times pi r^2.
+// Contribution of the edge from a to b, relative to the foot of x; n: normal of the plane, big2: R^2. x: Epanechnikov's
+// kernel, times pi r^4 / 2; y: constant kernel, times pi r^2.
 vec2 photon_edge(vec3 a, vec3 b, vec3 n, float big2) {
   vec3 e = b - a;
   float l = length(e);
@@ -35,12 +36,12 @@ vec2 photon_edge(vec3 a, vec3 b, vec3 n, float big2) {
   return vec2(within + 0.25 * big2 * big2 * angle, 0.5 * (h * (u1 - u0) + big2 * angle));
 }
 
-// The part of a triangle, its vertices seen from x, that lies within `slab` of the plane through x with that normal.
+// Contribution of a triangle, vertices relative to x, clipped to the slab around the plane through x with that normal.
 vec2 photon_triangle(vec3 p0, vec3 p1, vec3 p2, vec3 normal, float slab, float r2) {
   vec3 n = cross(p1 - p0, p2 - p0);
   n = normalize(n / max(max3(abs(n)), 1e-37));
   float agree = dot(n, normal);
-  // What faces the other way counts only where it is this surface, wound the other way round; not as the far side of a plate.
+  // A back-facing triangle counts only as the same surface with opposite winding, not as the far side of a plate.
   bool turned = agree < 0.0;
   slab *= turned ? k_photon_turned_slab : 1.0;
   vec3 foot = dot(n, p0) * n;
@@ -63,14 +64,14 @@ vec2 photon_triangle(vec3 p0, vec3 p1, vec3 p2, vec3 normal, float slab, float r
     vec3 from = za > slab ? at_top : za < -slab ? at_low : a, to = zb > slab ? at_top : zb < -slab ? at_low : b;
     sum += photon_edge(from - foot, to - foot, n, big2);
   }
-  // Along the slab's faces, from where the outline leaves it to where it comes back.
+  // Edges on the faces of the slab, between the points where the outline leaves and re-enters it.
   if (crosses_top) sum += photon_edge(top_up - foot, top_down - foot, n, big2);
   if (crosses_low) sum += photon_edge(low_down - foot, low_up - foot, n, big2);
   return abs(sum);
 }
 
-// At x on a surface with that normal, by Epanechnikov's kernel and by the flat one; 1 as well where very many triangles lie
-// around. Surfaces that lie on each other are counted twice, so that it is then rather too large than too small: light is never
+// Area at x on a surface with that normal, by Epanechnikov's and by the constant kernel; 1 if very many triangles are near.
+// Overlapping surfaces count twice, so errors are towards a larger area: the correction never adds light.
 // made more than it is.
 vec2 photon_areas(vec3 x, vec3 normal, float radius) {
   float r2 = radius * radius;
@@ -79,7 +80,7 @@ vec2 photon_areas(vec3 x, vec3 normal, float radius) {
   for (; node < nodes && visits < photons.most_visits; ++visits) {
     vec4 a = texelFetch(photon_surface_nodes, int(2u * node)), b = texelFetch(photon_surface_nodes, int(2u * node + 1u));
     vec3 away = max(max(a.xyz - x, x - b.xyz), vec3(0.0));
-    // Within the radius, and not all of it above or below the slab.
+    // Within the radius, and not entirely above or below the slab.
     float height = dot(0.5 * (a.xyz + b.xyz) - x, normal), extent = dot(0.5 * (b.xyz - a.xyz), abs(normal));
     bool meets = dot(away, away) < r2 && abs(height) <= extent + k_photon_slab * radius;
     uint leaf = floatBitsToUint(b.w), first = leaf >> 3, count = meets ? leaf & 7u : 0u;
@@ -91,6 +92,6 @@ vec2 photon_areas(vec3 x, vec3 normal, float radius) {
   vec2 area = k_inv_pi * sum / vec2(0.5 * r2 * r2, r2);
   return node < nodes || nodes == 0u ? vec2(1.0) : clamp(area, k_photon_least_area, 1.0);
 }
-// By Epanechnikov's kernel alone.
+// By Epanechnikov's kernel only.
 float photon_area(vec3 x, vec3 normal, float radius) { return photon_areas(x, normal, radius).x; }
 #endif

@@ -1,5 +1,5 @@
-// The photons around a place that a pixel shows; each is told to photon_met(), which whoever includes this defines. Where more
-// than k_photons_around lie together every so-manyth counts for all.
+// Visits the photons around the place that a pixel shows: calls photon_met(), which the including file defines, for each. If
+// there are more than k_photons_around, every n-th counts n times.
 #ifndef LUCERNA_PHOTONS_AROUND
 #define LUCERNA_PHOTONS_AROUND
 #include "photons/photon.glsl"

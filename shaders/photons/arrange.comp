@@ -1,4 +1,4 @@
-// Puts the photons into the order of their entries, and tells each entry where its photons lie.
+// Sorts the photons by table entry and writes each entry's range.
 #include "shaders/shared/photons/photons.h"
 #include "shaders/shared/sort.h"
 #include "lib/invocation.glsl"
@@ -8,7 +8,7 @@ layout(push_constant, scalar) uniform Push { PhotonListPush push; };
 uniform usamplerBuffer photon_sorted;  // SortEntry64
 uniform samplerBuffer photon_list_texels;
 layout(scalar) writeonly buffer PhotonMap { vec4 photon_map[]; };
-layout(scalar) writeonly buffer PhotonTable { uint photon_table_words[]; };  // two an entry: first, behind the last
+layout(scalar) writeonly buffer PhotonTable { uint photon_table_words[]; };  // two for each entry: first photon, one past the last
 
 void main() {
   uint i = global_index();

@@ -1,4 +1,4 @@
-// What the photons of the pilot bring to the picture, in the order of the map: flux, times what hangs on the lookups around.
+// Contribution of each pilot photon to the picture, in map order: flux times the importance around it.
 #include "shaders/shared/photons/photons.h"
 #include "shaders/shared/sort.h"
 #include "lib/invocation.glsl"
@@ -23,7 +23,7 @@ void main() {
   uint stratum = 0u, light = 0u;
   float own = 1.0;
 #if LUCERNA_LIGHTS
-  // What is not aimed has brought by itself only what no aimed path would have brought as well.
+  // An unaimed path counts only with the light that no aimed path could contribute.
   Emission e = sample_emission(make_light_sampler(id >> k_photon_id_events, photons.round, frame.seed), push.step);
   stratum = e.stratum;
   light = e.light;

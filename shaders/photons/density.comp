@@ -1,4 +1,4 @@
-// How dense photons lie on what each pixel shows, or what they bring there; and the greatest of it, as bits of a float.
+// Value of the density view (k_density_of_*) at every pixel, and its maximum as the bits of a float.
 #include "lib/invocation.glsl"
 #include "overlay/lookup_place.glsl"
 const uint k_photons_around = 192u;

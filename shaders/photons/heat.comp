@@ -1,4 +1,4 @@
-// Lays the densities over the picture as a heat map; where there is none the picture is dimmed.
+// Draws the density view over the picture as a heat map; dims pixels without a value.
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "shaders/shared/photons/inspect.h"

@@ -1,4 +1,4 @@
-// How much of the picture hangs on lookups around a place (shared/photons/photons.h).
+// Importance of lookups around a place: how much they contribute to the picture (shared/photons/photons.h).
 #ifndef LUCERNA_PHOTONS_IMPORTANCE
 #define LUCERNA_PHOTONS_IMPORTANCE
 #include "photons/photon.glsl"

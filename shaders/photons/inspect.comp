@@ -1,4 +1,4 @@
-// The photons that count at what one pixel shows, by one invocation.
+// Lists the photons that count at one pixel's surface. One invocation.
 #include "lib/invocation.glsl"
 #include "overlay/lookup_place.glsl"
 #include "photons/photon.glsl"

@@ -1,6 +1,5 @@
-// Irradiance on the piece of surface on which a vertex lies (solvers/photons/irradiance_cells.h). Samples of even and of odd number
-// read one of two maps each, which are made of different photons: what the halves of the picture differ by so tells the noise of
-// the maps as well.
+// Irradiance of the surface cell on which a vertex lies (solvers/photons/irradiance_cells.h). Even and odd samples read two
+// maps made of different photons, so the difference of the picture's halves includes the noise of the maps.
 #ifndef LUCERNA_PHOTONS_IRRADIANCE
 #define LUCERNA_PHOTONS_IRRADIANCE
 #include "transport/vertex_hook.glsl"
@@ -8,7 +7,7 @@
 #include "shaders/shared/photons/irradiance.h"
 
 layout(scalar) readonly buffer IrradianceBlock { IrradianceFrame irradiance; };
-uniform usamplerBuffer irradiance_roots;  // a triangle's nodes: front and back of the first map, of the second
+uniform usamplerBuffer irradiance_roots;  // nodes of a triangle: front and back in the first map, front and back in the second
 uniform samplerBuffer irradiance_nodes;
 #if LUCERNA_GROUP_SUMS
 const uint k_irradiance_texels = 1u + k_group_count;
@@ -18,8 +17,7 @@ const uint k_irradiance_texels = 1u;
 
 bool reads_irradiance(uint state) { return (irradiance.states[state >> 5] >> (state & 31u) & 1u) != 0u; }
 
-// Brings what is known here of the diffuse lobe's tertiary light; whether anything is. What light brings that comes through the
-// surface is not known.
+// Adds the tertiary light of the diffuse lobe; true if the cell has data. Light transmitted through the surface has no data.
 bool irradiance_read(VertexIn v, inout VertexOut o) {
   if (irradiance.triangles == 0u || max3(v.bsdf.transmitted) > 0.0) return false;
   if (v.depth != k_irradiance_events && frame.max_depth < k_deep_paths) return false;

@@ -1,4 +1,4 @@
-// Each photon's entry of the table, and its number, by which photons of one entry are put in order.
+// Sort key of each photon: its table entry, then its number, which orders the photons of one entry.
 #include "photons/photon.glsl"
 #include "shaders/shared/sort.h"
 #include "lib/invocation.glsl"

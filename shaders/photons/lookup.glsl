@@ -1,4 +1,4 @@
-// Where the photons around a place lie in the map, and what each counts.
+// Finds the photons around a place, and their kernel weights.
 #ifndef LUCERNA_PHOTONS_LOOKUP
 #define LUCERNA_PHOTONS_LOOKUP
 #include "photons/photon.glsl"
@@ -6,17 +6,17 @@
 uniform samplerBuffer photon_texels;
 uniform usamplerBuffer photon_table;  // two entries a texel
 
-// The photons of a table's entry: first, and one past the last.
+// Photons of a table entry: first, and one past the last.
 uvec2 photon_range(uint entry) {
   uvec4 two = texelFetch(photon_table, int(entry >> 1));
   return (entry & 1u) != 0u ? two.zw : two.xy;
 }
 
-// Photons that reach a place of that radius lie in cells of these levels, because the radius changes slowly.
+// Levels of the cells that may contain photons reaching a place of that radius; few, because the radius changes slowly.
 int photon_lowest_level(float radius) { return photon_level(radius / (1.0 + photons.slope) * (2.0 - k_photon_slack)); }
 int photon_highest_level(float radius) { return photon_level(radius / (1.0 - photons.slope) * k_photon_slack); }
 
-// How many lie in the cells of these levels around a place.
+// Number of photons in the cells of these levels around a place.
 uint photon_candidates(vec3 x, int lowest, int highest) {
   uint candidates = 0u;
   for (int level = lowest; level <= highest; ++level) {
@@ -29,8 +29,8 @@ uint photon_candidates(vec3 x, int lowest, int highest) {
   return candidates;
 }
 
-// Epanechnikov's, over the disc of radius r, at the square of a distance below r [1/m^2].
+// Epanechnikov's kernel over the disc of radius r, at a squared distance below r^2 [1/m^2].
 float photon_kernel(float d2, float r) { return 2.0 * k_inv_pi * (1.0 - d2 / (r * r)) / (r * r); }
-// The one that is the same all over the disc.
+// Constant kernel over the disc [1/m^2].
 float photon_flat_kernel(float r) { return k_inv_pi / (r * r); }
 #endif

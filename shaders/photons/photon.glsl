@@ -1,4 +1,4 @@
-// A photon's words, its radius, and the cell that it lies in (shared/photons/photons.h).
+// Packing, radius and cell of a photon (shared/photons/photons.h).
 #ifndef LUCERNA_PHOTONS_PHOTON
 #define LUCERNA_PHOTONS_PHOTON
 #include "shaders/shared/photons/photons.h"
@@ -22,22 +22,22 @@ vec3 photon_direction(uint bits) {
   return normalize(vec3(p, z));
 }
 
-// Where on its triangle a hit is, 16 bits each.
+// Barycentric coordinates of a hit, 16 bits each.
 uint barycentric_pack(Hit hit) {
   uvec2 q = uvec2(clamp(vec2(hit.u, hit.v) * 65535.0 + 0.5, vec2(0.0), vec2(65535.0)));
   return q.x | q.y << 16;
 }
 
-// Within which a photon at x counts; changes by no more than `slope` a metre, and where rounding bounds it by
+// Radius within which a photon at x counts [m]. Changes by at most `slope` per metre; rounding bounds it by
 // k_photon_least_radius.
 float photon_radius(vec3 x) { return photon_radius_of(photons.base + photons.slope * distance(x, photons.eye), photons.most, x); }
 
-// The level whose cells are as wide as a photon of that radius needs them.
+// Level whose cells fit a photon of that radius.
 int photon_level(float radius) { return int(ceil(2.0 * log2(2.0 * k_photon_slack * radius))); }
 // 2^(-level / 2).
 float photon_inverse_cell(int level) { return ldexp((level & 1) != 0 ? 0.70710678 : 1.0, -(level >> 1)); }
 
-// Entry for a cell of a table with so many entries, less 1.
+// Table entry of a cell. `mask`: number of entries minus 1.
 uint photon_entry_of(ivec3 cell, int level, uint mask) {
   uvec3 above = uvec3(cell >> 1);
   uint hash = hash_combine(hash_combine(hash_combine(uint(level >> 2), above.x), above.y), above.z);
@@ -46,7 +46,7 @@ uint photon_entry_of(ivec3 cell, int level, uint mask) {
 }
 uint photon_entry(ivec3 cell, int level) { return photon_entry_of(cell, level, photons.mask); }
 
-// By whose radii importance was noted.
+// The frame whose radii importance was recorded with.
 float importance_radius(vec3 x) {
   return photon_radius_of(photons.importance_base + photons.importance_slope * distance(x, photons.importance_eye), photons.most, x);
 }

@@ -1,5 +1,5 @@
-// Photons as points to be drawn over the picture: one invocation a point. Their flux is nearly the same but for its colour, which
-// is what is shown of it.
+// Draws photons as points over the picture, one invocation each. Photons have nearly equal flux, so only its colour is
+// shown.
 #include "lib/invocation.glsl"
 #include "shaders/shared/photons/photons.h"
 #include "shaders/shared/overlay.h"
@@ -18,7 +18,7 @@ void main() {
   uint photon = index * push.step;
   vec4 a = texelFetch(photon_texels, int(k_photon_texels * photon)), b = texelFetch(photon_texels, int(k_photon_texels * photon + 1u));
   uint events = floatBitsToUint(b.w) >> k_photon_events_shift & k_photon_most_events;
-  vec3 light = sqrt(b.rgb / max(max(b.r, max(b.g, b.b)), 1e-37));  // encoded
+  vec3 light = sqrt(b.rgb / max(max(b.r, max(b.g, b.b)), 1e-37));  // sRGB-encoded
   OverlayPoint p;
   p.position = a.xyz;
   p.half_width = 0.6;

@@ -1,15 +1,15 @@
-// Of the densities of single rounds, whose photons lie far apart: their mean over pixels around that show the same surface,
-// along one axis of the picture; behind the second axis also the greatest, as bits of a float.
+// Smooths the density view along one axis of the picture: mean over nearby pixels that show the same surface, because
+// photons of a single round lie far apart. The pass over the second axis also writes the maximum, as the bits of a float.
 #include "lib/invocation.glsl"
 #include "shaders/shared/photons/inspect.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PhotonSmoothPush push; };
-uniform samplerBuffer surface_texels;  // of every pixel, as overlay/lookup_place.glsl reads them
+uniform samplerBuffer surface_texels;  // for every pixel, as overlay/lookup_place.glsl reads them
 layout(scalar) readonly buffer PhotonDensities { float densities[]; };
 layout(scalar) writeonly buffer PhotonSmoothed { float smoothed[]; };
 layout(scalar) buffer PhotonDensityMost { uint density_most; };
 
-const float k_same_normal = 0.9, k_same_plane = 0.6;  // cosine; distance over that in the picture
+const float k_same_normal = 0.9, k_same_plane = 0.6;  // cosine; distance from the plane over distance in the picture
 
 void main() {
   uint pixel = global_index();

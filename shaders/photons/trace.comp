@@ -1,11 +1,11 @@
-// One vertex of every live light path: the photon that it leaves there, if any eye path can read it, and how it goes on.
+// One vertex of every live light path: stores a photon if an eye path can read it, then continues the path.
 #include "shaders/shared/photons/photons.h"
 #include "transport/light_vertex.glsl"
 #include "lib/emission.glsl"
 #include "photons/importance.glsl"
 
-layout(scalar) writeonly buffer PhotonList { Photon photon_list[]; };  // in the order in which they come ...
-layout(scalar) writeonly buffer PhotonIds { uint photon_ids[]; };      // ... and the one in which they will be
+layout(scalar) writeonly buffer PhotonList { Photon photon_list[]; };  // in order of arrival ...
+layout(scalar) writeonly buffer PhotonIds { uint photon_ids[]; };      // ... and the keys of their final order
 layout(scalar) writeonly buffer PhotonRadiances { float photon_radiances[]; };
 layout(scalar) writeonly buffer PhotonSurfaces { PhotonSurface photon_surfaces[]; };
 layout(scalar) buffer PhotonCounts { uint photon_counts[]; };
@@ -28,14 +28,14 @@ void main() {
   LightVertex v = light_vertex(path, ray, hit, random);
   uint part = automaton_component(state);
   bool unreachable = path.pdf == 0.0 && depth > 1u;
-  // Events of the word that this makes for the eye, the surface's own with them.
+  // Events of the whole path as seen from the eye, including this surface's.
   bool wanted = depth <= frame.max_depth && v.lit && part < k_component_count && max3(v.bsdf.diffuse_albedo + v.bsdf.transmitted_albedo) > 0.0;
   if (wanted && !is_finite(v.arriving)) {
     atomicAdd(counters[k_counter_dropped], 1u);
     wanted = false;
   }
   if (wanted && (unreachable ? photons.skips_unreachable != 0u : (photons.unreachable_parts >> part & 1u) != 0u)) wanted = false;
-  // Importons (I. Peter and G. Pietrek, "Importance Driven Construction of Photon Maps", 1998), as roulette.
+  // Importons (I. Peter and G. Pietrek, "Importance Driven Construction of Photon Maps", 1998), as Russian roulette.
   float share = 1.0;
   if (wanted && photons.importance_counts != 0u && importance_around(v.surface.position) == 0u) share = k_photon_unseen_share;
   if (wanted && sample_vertex(random, depth, k_pad_light_uv).x >= share) {

@@ -1,9 +1,10 @@
-// What photons bring to a vertex of an eye path: a density estimate (H. W. Jensen 1996) with discs of given radius and
-// Epanechnikov's kernel, of the diffuse lobe alone; what arrives by its other lobes is traced on.
+// Photon density estimation at vertices of eye paths (H. W. Jensen 1996): discs of given radius, Epanechnikov's kernel,
+// diffuse lobe only; the path traces the light of the other lobes.
 //
-// Where light bends, E(x + d) = E + d.grad E + d.H d / 2 + ..., a kernel of second moment m = integral K d^2 adds m tr H / 4 to it:
-// m = r^2 / 3 for Epanechnikov's, r^2 / 2 for the flat one. So twice what the flat one finds more is what Epanechnikov's is off
-// by. Of all functions of the photons in the disc that tell tr H this has the least variance, that of the estimate itself.
+// Bias of curved light: with E(x + d) = E + d.grad E + d.H d / 2 + ..., a kernel of second moment m = integral K d^2 adds m
+// tr H / 4; m = r^2 / 3 for Epanechnikov's kernel, r^2 / 2 for the constant one. So twice the difference of the two
+// estimates is the bias of Epanechnikov's. Among all functions of the disc's photons that estimate tr H it has the least
+// variance: that of the estimate itself.
 #ifndef LUCERNA_PHOTONS_VERTEX_HOOK
 #define LUCERNA_PHOTONS_VERTEX_HOOK
 #include "transport/vertex_hook.glsl"
@@ -19,10 +20,10 @@ layout(scalar) buffer PhotonImportance { uint photon_importance[]; };
 layout(scalar) writeonly buffer PhotonLookups { PhotonLookup photon_lookups[]; };
 
 struct photons_Vertex {
-  uint from;  // first of the states in which a path goes on behind the diffuse lobe; 0: as it is
+  uint from;  // first of the states in which the path continues behind the diffuse lobe; 0: unchanged
 };
 
-// The shortest rotation that takes unit vector a to b, of w.
+// Rotates w by the smallest rotation that maps unit vector a to b.
 vec3 turn_along(vec3 w, vec3 a, vec3 b) {
   vec3 both = a + b;
   return w - both * (dot(both, w) / (1.0 + dot(a, b))) + b * (2.0 * dot(a, w));
@@ -30,13 +31,13 @@ vec3 turn_along(vec3 w, vec3 a, vec3 b) {
 
 photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   photons_Vertex vertex = photons_Vertex(0u);
-  // What lights are chosen by is learned alike whoever computes what.
+  // Learned light sampling must not depend on which solver computes a component.
   uint word = v.again || frame.learning != 0u ? k_photon_no_components : photons.component[v.state];
   uint components = word & k_photon_no_components, only = word >> k_photon_unreachable_only_shift;  // bits, by part
-  // A pilot notes where light is looked up, and reads none. Where only light is read that paths from the eye do not find, these
-  // go on as they would without.
+  // Pilot paths record lookups and read no photons. Where only light is read that eye paths cannot find, the eye path
+  // continues unchanged.
   bool reads = components != k_photon_no_components && only == 0u && photons.importance_mask == 0u;
-  // Paths that bring all by themselves do so no longer where it has been looked up; where there is nothing to be read yet, they do.
+  // Eye paths stop computing a component behind a lookup of it; before there is data they compute all.
   bool some = photons.count > 0u;
 #if LUCERNA_PHOTON_IRRADIANCE
   some = some || irradiance.triangles > 0u;
@@ -46,7 +47,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   if (reads && reads_irradiance(v.state)) {
     bool known = irradiance_read(v, o);
     if (!known) vertex.from = k_fallback_state;
-    // Where nothing is known the path goes on for all but the light that no path finds.
+    // In a cell without data the path computes all light except the light that no eye path finds.
     if (known || irradiance.gathers == 0u) components = k_photon_no_components;
     only = 0xfu;  // all parts
   }
@@ -64,23 +65,23 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
       photon_lookups[v.path.pixel] =
           PhotonLookup(x, luminance(v.path.throughput * v.bsdf.diffuse_albedo), facet_pack(v.side));
   }
-  // What light has to reach in order to be of use: diffuse vertices of the pilot's paths behind the first.
+  // Targets of useful light: diffuse vertices of the pilot's paths behind the first.
   if (photons.importance_mask != 0u && v.depth > 0u && v.depth <= photons.vertices && v.path.pixel < photons.lookups && !automaton_no_diffuse(v.state))
     photon_lookups[photons.lookups + v.path.pixel * photons.vertices + v.depth - 1u] =
         PhotonLookup(x, luminance(v.path.throughput * v.bsdf.diffuse_albedo), facet_pack(v.side));
   int lowest = photon_lowest_level(radius), highest = photon_highest_level(radius);
   uint candidates = looks ? photon_candidates(x, lowest, highest) : 0u;
-  // Where very many lie together every so-manyth is taken, beginning anywhere.
+  // If very many photons are near, every n-th is taken, from a random start.
   uint step = (candidates + photons.most_candidates - 1u) / max(photons.most_candidates, 1u);
   step = max(step, 1u);
   uint skip = step > 1u ? hash_combine(hash_combine(v.path.pixel, v.path.sample_index), v.depth) % step : 0u;
   vec3 found_1 = vec3(0.0), found_2 = vec3(0.0), found_3 = vec3(0.0);  // by part
 #if LUCERNA_GROUP_SUMS
-  vec3 by_group[k_group_count];  // of all that is brought, by group of lights
+  vec3 by_group[k_group_count];  // of all read light, by light group
   [[unroll]] for (uint g = 0u; g < k_group_count; ++g) by_group[g] = vec3(0.0);
 #endif
   uint own_facet = facet_pack(v.surface.normal_g);
-  vec3 found_flat = vec3(0.0);  // of all parts that are brought, by the flat kernel
+  vec3 found_flat = vec3(0.0);  // of all read parts, by the constant kernel
   for (int level = lowest; looks && level <= highest; ++level) {
     ivec3 cell = ivec3(floor(x * photon_inverse_cell(level) - 0.5));
     for (uint k = 0u; k < k_photon_near_cells; ++k) {
@@ -94,17 +95,17 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
         vec4 b = texelFetch(photon_texels, int(k_photon_texels * at + 1u));
         uint bits = floatBitsToUint(b.w), part = bits >> k_photon_part_shift & 3u;
         vec3 wi = photon_direction(floatBitsToUint(a.w));
-        // The normal of the photon's facet, without the error of its 22 bits where that is the vertex's own.
+        // Normal of the photon's facet; the vertex's own normal if both are equal within 22 bits.
         vec3 front = (bits & k_photon_facet) == own_facet ? v.surface.normal_g : facet_unpack(bits & k_photon_facet);
-        // The side on which it arrives is the one that the path sees, or its surface is this one, lit from behind.
+        // The photon arrives on the side that the path sees, or on the back of the same surface, transmitted.
         vec3 side = dot(wi, front) > 0.0 ? front : -front;
         bool reflected = dot(side, v.side) > 0.0;
         float agree = reflected ? dot(side, v.side) : dot(front, v.surface.normal_g);
         bool wanted = (only >> part & 1u) == 0u || (bits & k_photon_unreachable) != 0u;
-        // Events of the whole path: those of the eye's, this one, and the photon's.
+        // Events of the whole path: the eye path's, this one, and the photon's.
         wanted = wanted && v.depth + 1u + (bits >> k_photon_events_shift & k_photon_most_events) <= frame.max_depth;
         if (!wanted || agree <= k_photon_normals || abs(dot(away, v.surface.normal_g)) >= k_photon_slab * r) continue;
-        // Its facet is turned into this one's plane: the cosine that the flux is divided by is that to the photon's own facet.
+        // The facet is rotated into this plane, so flux is divided by the cosine at the photon's own facet.
         wi = reflected ? turn_along(wi, side, v.side) : turn_along(wi, front, v.surface.normal_g);
         vec3 flux = diffuse_of_flux(v.bsdf, v.to_world, v.surface.normal_g, wi, reflected) * b.rgb, light = flux * photon_kernel(d2, r);
         bool contributes = part > 0u && (components >> 4u * part & 15u) < k_component_count;
@@ -122,12 +123,12 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   }
   vec3 weight = v.path.throughput * float(step);
   vec2 areas = vec2(1.0);
-  // Where deep light is looked up and none has come by there is no telling yet how dark it is.
+  // If deep light is looked up and no photon is found, its relative error is unknown.
   bool deep = ((components >> 4 & 15u) < k_component_count && (only >> 1 & 1u) == 0u) ||
               ((components >> 8 & 15u) < k_component_count && (only >> 2 & 1u) == 0u);
   if (deep && photons.importance_mask == 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0 && max3(found_1 + found_2 + found_3) <= 0.0)
     o.bias += k_found_nothing;
-  // Only where there is something to correct.
+  // Only if there is an error to correct.
   if (max3(found_1 + found_2 + found_3) > 0.0) areas = photon_areas(x, v.surface.normal_g, radius);
   o.bias += 2.0 * luminance(weight * found_flat) / areas.y;
   weight /= areas.x;

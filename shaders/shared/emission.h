@@ -1,45 +1,45 @@
-// Where paths from lights begin. Read by C++ and GLSL.
+// Emission of light paths. Read by C++ and GLSL.
 #ifndef LUCERNA_SHARED_EMISSION_H
 #define LUCERNA_SHARED_EMISSION_H
 #include "shaders/shared/compat.h"
 LUCERNA_SHARED_BEGIN
 
-/// Besides emission_alias, which is like light_alias (shared/scene.h), by the power of lights.
+/// Besides emission_alias, an alias table like light_alias (shared/scene.h) by the power of lights.
 struct EmissionTable {
-  vec3 centre;   ///< of the sphere that holds the scene [m]
-  float radius;  ///< of it: what comes from afar begins on a disk of this radius
-  uint count;    ///< entries of emission_alias: the lights of scene_lights, and the sky where that is none of them
-  uint sky;      ///< which entry that is; k_no_sky_entry: none
-  float sun_pmf; ///< of the sun in light_alias, where the sky is apart
-  uint casters;  ///< boxes that paths are aimed at; 0: none is
-  uint groups;   ///< of lights
-  vec3 core_centre;   ///< ... of what lies together, where something else stands far away (FlatScene::core_radius)
+  vec3 centre;   ///< centre of the sphere around the scene [m]
+  float radius;  ///< its radius: distant light starts on a disk of this radius
+  uint count;    ///< entries of emission_alias: the lights of scene_lights, and the sky if it is none of them
+  uint sky;      ///< entry of the sky; k_no_sky_entry: none
+  float sun_pmf; ///< pmf of the sun in light_alias, with a separate sky
+  uint casters;  ///< number of boxes to aim at; 0: no aiming
+  uint groups;   ///< number of light groups for aiming
+  vec3 core_centre;   ///< likewise for the core, without distant outliers (FlatScene::core_radius)
   float core_radius;
-  float core_share;   ///< of what comes from afar, that begins on a disk of that radius; 0: nothing stands far away
+  float core_share;   ///< share of distant light that starts on the core's disk; 0: there are no outliers
 };
 LUCERNA_CONST uint k_no_sky_entry = 0xffffffffu;
 
 // Aimed emission. A stratum is 0, which is not aimed, or 1 + group of lights * casters + caster. emission_strata: a texel
-// each (bits of where its interval of 0 ... 2^32 begins, its share of all). emission_boxes: two texels a caster, low and high corner. emission_groups, in
-// this order: a texel a group (bits first, bits count of its members), a texel an entry of emission_alias (bits group,
-// bits member), a texel a member (bits entry). emission_members: an alias table a group, by power, of entries that count from its
-// first member.
-LUCERNA_CONST uint k_most_casters = 32u;  ///< of the boxes
+// each (bits of the start of its interval of 0 ... 2^32, its share of all). emission_boxes: two texels a caster, low and high
+// corner. emission_groups, in this order: a texel a group (bits first, bits count of its members), a texel an entry of
+// emission_alias (bits group, bits member), a texel a member (bits entry). emission_members: an alias table a group, by power,
+// with entries counted from its first member.
+LUCERNA_CONST uint k_most_casters = 32u;  ///< maximum number of boxes
 LUCERNA_CONST uint k_most_strata = 4096u;
 
-/// Of a batch of light paths. `count` is the first word of all, as wavefront.glsl has it.
+/// Parameters of a batch of light paths. `count` comes first, as wavefront.glsl requires.
 struct EmitPush {
   uint count;      ///< paths of this batch
-  uint first;      ///< number of the first of them in the round
+  uint first;      ///< number of its first path in the round
   uint round;
   float share;     ///< 1 / paths of the round
   uint step;       ///< 2^32 / paths of the round
 };
-LUCERNA_CONST uint k_most_light_events = 255u;      ///< after which a light path ends
-LUCERNA_CONST uint k_most_light_paths = 1u << 24;   ///< of a round
+LUCERNA_CONST uint k_most_light_events = 255u;      ///< maximum events of a light path
+LUCERNA_CONST uint k_most_light_paths = 1u << 24;   ///< maximum paths of a round
 
 // LightPathCounts, uint each.
-LUCERNA_CONST uint k_light_paths_dark = 0u;     ///< began where a light has none
+LUCERNA_CONST uint k_light_paths_dark = 0u;     ///< started where the light does not emit
 LUCERNA_CONST uint k_light_paths_escaped = 1u;  ///< left the scene
 LUCERNA_CONST uint k_light_path_counts = 2u;
 

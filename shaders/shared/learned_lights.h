@@ -1,10 +1,10 @@
-// Direct light that learns: how lights are chosen by what has arrived at a place before, and what is recorded to learn that.
+// Learned light selection: probabilities of lights by what has arrived at a place before, and the records to learn from.
 // Read by C++ and GLSL.
 //
 // Clusters are disjoint parts of all lights: rectangles of the sky's texels, squares of large emissive triangles, runs of
 // neighbouring small ones, lamps. A row holds the probability of each cluster for one cell of space and one facing. Within a
-// cluster lights are chosen as without learning, so that the density of a light sample is the density without learning times
-// one number of row and cluster: their ratio.
+// cluster, lights are chosen as without learning, so that the density of a light sample is the density without learning times
+// the ratio of row and cluster.
 //
 // Texel buffers (RGBA32F; integers as bit patterns):
 // learned_grid: k_learned_top^3 words for each of 6 facings, then k_learned_brick^3 words a brick, four words a texel. A word
@@ -12,12 +12,11 @@
 // learned_rows: an alias table of the clusters a row: (threshold, bits alias, ratio of this cluster, ratio of the alias).
 // light_clusters: one texel a cluster: (bits first member, bits number of members, bits square, probability without learning).
 // A square is column | row << 8 | squares a side << 16 of the unit square of random numbers that choose a place on the
-// member: 1 << 16 is all of it. k_cluster_of_triangles: of a run of emissive triangles.
+// member; 1 << 16: the whole unit square. k_cluster_of_triangles: a run of emissive triangles.
 // cluster_members: alias tables: (threshold, bits 0, bits member, bits member of the alias). A member of the sky is a texel of
 // the environment, else an entry of scene_lights.
 // light_facets (LUCERNA_TRIANGLE_CANDIDATES): one texel a triangle of scene_lights: (centroid, bits facing). Facing: the normal
-// of the side that emits, as the octahedral map has it, in twice 12 bits; from bit 24 e, of the area 2^(e - 64) m^2; bit 31:
-// both sides emit.
+// of the emitting side, octahedral, 12 bits each; bits 24-30 e of the area 2^(e - 64) m^2; bit 31: both sides emit.
 // primitive_clusters: a word a primitive, four a texel: first cluster | squares a side << 24.
 // sky_tiles: a byte a texel of the environment, 16 a texel: its cluster.
 #ifndef LUCERNA_SHARED_LEARNED_LIGHTS_H
@@ -30,19 +29,19 @@ LUCERNA_CONST uint k_learned_brick = 8u;   ///< cells of the fine grid in one of
 LUCERNA_CONST uint k_learned_cells = 128u; ///< cells of the fine grid along an axis
 LUCERNA_CONST uint k_learned_facings = 6u;
 LUCERNA_CONST uint k_cluster_of_triangles = 0x80000000u;
-LUCERNA_CONST uint k_learned_vertices = 4u;  ///< of a path, of which a light sample is recorded
+LUCERNA_CONST uint k_learned_vertices = 4u;  ///< maximum vertices of a path whose light samples are recorded
 
-/// A vertex: its light sample, and the light that the ray scattered there meets. A value is what light contributes over the
-/// density of its direction within its cluster, weighted against scattered rays as if there were no other cluster; a rate is
-/// the density of scattered rays there over that within the cluster.
+/// A vertex: its light sample, and the light that its scattered ray hits. A value is a contribution over the density of its
+/// direction within its cluster, weighted against scattered rays as if there were no other cluster; a rate is the density of
+/// scattered rays in this direction over the density within the cluster.
 struct LightRecord {
   vec3 position;
   uint cell;       ///< facing << 16 | cluster of the light sample
   float value, rate;
-  float full;      ///< luminance that its shadow ray set out with; < 0: there was no shadow ray; 0: there is no record
-  float arrived;   ///< ... that has arrived
-  float before;    ///< luminance of what the path carried here
-  uint met;        ///< cluster of what the scattered ray met, from 1; 0: no light
+  float full;      ///< luminance at the start of its shadow ray; < 0: no shadow ray; 0: no record
+  float arrived;   ///< ... at its end
+  float before;    ///< luminance of the path's throughput
+  uint met;        ///< cluster of the light that the scattered ray hits, from 1; 0: none
   float met_value, met_rate;
 };
 

@@ -1,10 +1,10 @@
-// What is shown of a picture until its samples are enough: layout and what the kernels are told. Read by C++ and GLSL.
+// The preview of a picture until it has enough samples: data layout and kernel parameters. Read by C++ and GLSL.
 //
-// Of a pixel: k_preview_texels texels of sixteen half floats, component by component red, green, blue and the standard
-// error of the luminance (below 0: not known), in units of what is shown white; and one texel of its surface: depth along the
-// view axis [m] (0: nothing is there; below 0: not known, and where a draft has seen it about k_preview_about less
-// this), bits packSnorm2x16(octahedral normal), bits packUnorm4x8(albedo, share of the samples that have met
-// it or, where it is known to emit light, 0), samples – of what a ray has met: 0, or k_preview_beyond.
+// For each pixel: k_preview_texels texels of sixteen half floats, by component red, green, blue and the standard error of the
+// luminance (negative: unknown), in units of display white; and one texel of its surface: depth along the view axis [m] (0: no
+// surface; negative: unknown, or, if known from a preview sample, k_preview_about minus the approximate depth), bits
+// packSnorm2x16(octahedral normal), bits packUnorm4x8(albedo, share of the samples that hit it, or 0 if it is known to emit
+// light), number of samples, or for a ray's hit: 0, or k_preview_beyond.
 #ifndef LUCERNA_SHARED_PREVIEW_H
 #define LUCERNA_SHARED_PREVIEW_H
 #include "shaders/shared/compat.h"
@@ -13,16 +13,16 @@ LUCERNA_SHARED_BEGIN
 LUCERNA_CONST uint k_preview_texels = 2u;
 LUCERNA_CONST uint k_preview_none = 0xffffffffu;  ///< no pixel
 LUCERNA_CONST float k_preview_about = -2.0f;
-LUCERNA_CONST float k_preview_beyond = -1.0f;  ///< it is seen in a mirror or through glass
-/// Bits of what a ray through a pixel has found (film/preview_look.comp).
+LUCERNA_CONST float k_preview_beyond = -1.0f;  ///< surface seen in a mirror or through glass
+/// Result of a ray through a pixel, as bits (film/preview_look.comp).
 LUCERNA_CONST uint k_sight_met = 1u, k_sight_beyond = 2u, k_sight_emits = 4u;
-LUCERNA_CONST uint k_preview_step = 2u;  ///< pixels along the side of a cell of the grid that is filtered
-LUCERNA_CONST uint k_preview_first_step = 4u;  ///< ... while there is a draft of a quarter of the resolution alone
+LUCERNA_CONST uint k_preview_step = 2u;  ///< pixels along the side of a cell of the filtered grid
+LUCERNA_CONST uint k_preview_first_step = 4u;  ///< ... with only a preview sample of a quarter of the resolution
 
-// What is known of the surface of a pixel that has no sample.
+// Source of the surface of a pixel without samples.
 LUCERNA_CONST uint k_preview_surface_unknown = 0u;
-LUCERNA_CONST uint k_preview_surface_before = 1u;  ///< what was shown before
-LUCERNA_CONST uint k_preview_surface_seen = 2u;    ///< what a ray has met
+LUCERNA_CONST uint k_preview_surface_before = 1u;  ///< the previous picture
+LUCERNA_CONST uint k_preview_surface_seen = 2u;    ///< a traced ray
 
 struct PreviewCamera {
   vec3 origin, right, up, forward;  ///< as Frame's
@@ -31,90 +31,90 @@ struct PreviewCamera {
 struct PreviewPackPush {
   uint width, height;
   float exposure;
-  uint guided;  ///< not 0: where there are no samples the surface is known otherwise
-  uint show;    ///< bit i: component i is part of what is shown
+  uint guided;  ///< not 0: surfaces of pixels without samples are known from the guide
+  uint show;    ///< bit i: component i is shown
 };
 
 struct PreviewHalvePush {
   uint width, height;              ///< of the picture
   uint across, down;               ///< of the grid
   uint draft_width, draft_height;  ///< 0: none
-  uint history;                    ///< 0: nothing was shown before
-  uint repainted;                  ///< not 0: surfaces may have other colours than were shown before
-  vec3 history_scale;              ///< of what was shown before
-  float draft_share;               ///< of a draft's sample, what a cell of the grid gets: its area over the draft pixel's
+  uint history;                    ///< 0: there is no previous picture
+  uint repainted;                  ///< not 0: surfaces may have other colours than in the previous picture
+  vec3 history_scale;              ///< factor on the previous picture
+  float draft_share;               ///< of a preview sample per cell of the grid: the cell's area over its pixel's
   uint step;                       ///< pixels along the side of a cell
   uint sampled;                    ///< 0: the film has no sample yet
   uint surfaces;                   ///< k_preview_surface_*
-  uint moved;                      ///< not 0: what was shown before was seen from elsewhere
+  uint moved;                      ///< not 0: the camera has moved since the previous picture
 };
 
 struct PreviewFilterPush {
   uint across, down;
-  uint step;             ///< between the cells that are weighed: in the first pass no less than a draft's pixel is wide
+  uint step;             ///< between the weighted cells; in the first pass at least the width of a preview sample's pixel
   uint orthographic;
-  uint history;          ///< 0: nothing was shown before
-  uint blocks_across, blocks_down;  ///< as PreviewResolvePush has them
+  uint history;          ///< 0: there is no previous picture
+  uint blocks_across, blocks_down;  ///< as in PreviewResolvePush
   vec3 right, up, forward;
 };
 
-/// Cells along the side of a block that tells how much light has changed.
+/// Cells along the side of a block that measures the change of light.
 LUCERNA_CONST uint k_preview_change_step = 16u;
-LUCERNA_CONST uint k_preview_change_texels = 5u;  ///< of its sums
+LUCERNA_CONST uint k_preview_change_texels = 5u;  ///< texels of a block's sums
 struct PreviewChangePush {
   uint across, down;                 ///< of the grid
   uint blocks_across, blocks_down;
-  uint all;                          ///< 0: each block's sums; not 0: from these all blocks' ratios
+  uint all;                          ///< 0: sums of each block; not 0: ratios of all blocks from the sums
 };
 
 struct PreviewReprojectPush {
   uint width, height;
-  uint pass;             ///< of preview_scatter.comp. 0: depths, 1: which pixel is the nearest
+  uint pass;             ///< of preview_scatter.comp. 0: depths, 1: nearest pixel
   uint orthographic;     ///< bit 0: before, bit 1: now
   PreviewCamera before, now;
 };
 
 struct PreviewRecallPush {
   uint width, height;
-  uint pass;             ///< 0: cells, 1: those that are not known, 2: the picture
-  uint show;             ///< bit i: component i is part of what is shown
+  uint pass;             ///< 0: known cells, 1: unknown cells, 2: the picture
+  uint show;             ///< bit i: component i is shown
   uint curve;
-  vec3 history_scale;    ///< of what was shown before
+  vec3 history_scale;    ///< factor on the previous picture
 };
 
 struct PreviewResolvePush {
   uint width, height, across, down;
-  uint show;             ///< bit i: component i is part of what is shown
+  uint show;             ///< bit i: component i is shown
   uint curve;
-  uint filtering;        ///< 0: where there are samples they are shown as they are
-  uint history;          ///< 0: there is none
-  uint repainted;        ///< as PreviewHalvePush has it
-  vec3 history_scale;    ///< of what was shown before
+  uint filtering;        ///< 0: pixels with samples are shown unfiltered
+  uint history;          ///< 0: there is no previous picture
+  uint repainted;        ///< as in PreviewHalvePush
+  vec3 history_scale;    ///< factor on the previous picture
   uint step;             ///< pixels along the side of a cell of the grid
   uint sampled;          ///< 0: the film has no sample yet
-  uint same_light;       ///< not 0: no light has changed since, only the camera or how it is computed
-  uint recoloured;       ///< not 0: surfaces had other colours when what was shown before was shown
-  uint blocks_across, blocks_down;  ///< that tell how much light has changed; 0: it has not
+  uint same_light;       ///< not 0: no light has changed since, only the camera or the solver
+  uint recoloured;       ///< not 0: surfaces had other colours in the previous picture
+  uint blocks_across, blocks_down;  ///< blocks that measure the change of light; 0: it has not changed
   uint surfaces;         ///< k_preview_surface_*
-  uint moved;            ///< not 0: what was shown before was seen from elsewhere
+  uint moved;            ///< not 0: the camera has moved since the previous picture
 };
 
-LUCERNA_CONST uint k_preview_tile = 16u;  ///< pixels along the side of a tile of which errors are estimated
+LUCERNA_CONST uint k_preview_tile = 16u;  ///< pixels along the side of a tile for error estimates
 struct PreviewJudgePush {
   uint width, height;            ///< of the picture
-  uint film_width, film_height;  ///< of the film whose new samples judge it
-  uint step;                     ///< pixels along the side of one of the film's; 0: there are no new samples
+  uint film_width, film_height;  ///< of the film whose new samples measure the error
+  uint step;                     ///< picture pixels along the side of a film pixel; 0: there are no new samples
 };
-/// A tile of what is shown. Errors are relative: of means over a few pixels, over their luminance or k_preview_dark.
+/// A tile of the shown picture. Errors are relative: of means over a few pixels, over their luminance or k_preview_dark.
 struct PreviewTile {
-  float error;   ///< expected of what is shown now: mean over its pixels
-  float square;  ///< of what was shown before: square of the tile's mean error by samples taken since; below 0 by chance
-  float noise;   ///< variance of the tile's mean of these samples, relative; below 0: there are none
+  float error;   ///< expected error now: mean over its pixels
+  float square;  ///< previous picture: squared mean error of the tile, measured by samples taken since; may be below 0 by chance
+  float noise;   ///< relative variance of the tile's mean of these samples; below 0: there are none
 };
 
-/// Pixels darker than this, of white, err in proportion to it.
+/// Minimum luminance, of white, by which errors are divided.
 LUCERNA_CONST float k_preview_dark = 0.02f;
-/// Sums over a workgroup's pixels, of luminance: all, and what of it is older light or filtered.
+/// Sums of luminance over a workgroup's pixels: all, older light, filtered light.
 struct PreviewShares {
   float all, stale, filtered;
 };

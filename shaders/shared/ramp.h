@@ -1,6 +1,6 @@
-// Colour ramps of heat maps and of the tiles' overlay, and where a value lies on them. Compiled by C++ and by GLSL, so that
-// a legend and the picture beside it agree. Colours are sRGB-encoded, 0..1; ramps are even in perceived lightness, which
-// rises all the way, so that they can be read without seeing hues.
+// Colour ramps of heat maps and of the tile overlay, and the position of a value on them. Compiled by C++ and by GLSL, so that
+// a legend and its picture agree. Colours are sRGB-encoded, 0..1; ramps are even in perceived lightness, which
+// increases throughout, so that they are readable without hues.
 #ifndef LUCERNA_SHARED_RAMP_H
 #define LUCERNA_SHARED_RAMP_H
 #include "shaders/shared/tone.h"
@@ -8,9 +8,9 @@ LUCERNA_SHARED_BEGIN
 
 LUCERNA_CONST uint k_ramp_viridis = 0u;
 LUCERNA_CONST uint k_ramp_magma = 1u;
-LUCERNA_CONST uint k_ramp_tiles = 2u;  ///< far from the target .. at it
+LUCERNA_CONST uint k_ramp_tiles = 2u;  ///< from far above the target to the target
 
-// Polynomials with the least greatest error from the ramps of that name (S. van der Walt and N. Smith, 2015; public
+// Minimax polynomials of the ramps of that name (S. van der Walt and N. Smith, 2015; public
 // domain), measured at 129 places: 0.013 at most in any channel. t is 0..1.
 LUCERNA_TONE_FUNCTION vec3 ramp_viridis(float t) {
   vec3 c = vec3(0.7164f, -1.1696f, 43.3753f);
@@ -46,7 +46,7 @@ LUCERNA_TONE_FUNCTION vec3 ramp_tiles(float t) {
   return c;
 }
 
-/// The ramp's colour at t, 0..1 (held to it; NaN counts as 0).
+/// The ramp's colour at t, clamped to 0..1; NaN counts as 0.
 LUCERNA_TONE_FUNCTION vec3 ramp_color(uint ramp, float t) {
   float x = t > 0.0f ? min(t, 1.0f) : 0.0f;
   vec3 c;
@@ -56,14 +56,14 @@ LUCERNA_TONE_FUNCTION vec3 ramp_color(uint ramp, float t) {
   return clamp(c, vec3(0.0f), vec3(1.0f));
 }
 
-/// Where a value lies between lo and hi (lo < hi; 0 < lo where `logarithmic` is not 0): 0..1, held to it; NaN counts as 0.
+/// Position of a value between lo and hi (lo < hi; 0 < lo if `logarithmic` is not 0), clamped to 0..1; NaN counts as 0.
 LUCERNA_TONE_FUNCTION float ramp_position(float value, float lo, float hi, uint logarithmic) {
   float t = (value - lo) / (hi - lo);
   if (logarithmic != 0u) t = value > lo ? log2(value / lo) / log2(hi / lo) : 0.0f;
   return t > 0.0f ? min(t, 1.0f) : 0.0f;
 }
 
-/// Distinct hues of even lightness for things that are numbered (OKLab: lightness 0.8, chroma 0.13; the golden angle keeps
+/// Distinct hues of equal lightness for numbered items (OKLab: lightness 0.8, chroma 0.13; the golden angle keeps
 /// neighbours apart). Encoded by a square root.
 LUCERNA_TONE_FUNCTION vec3 ramp_hue(uint index) {
   float angle = 0.9f + 2.399963f * float(index);
@@ -77,26 +77,26 @@ LUCERNA_TONE_FUNCTION vec3 ramp_hue(uint index) {
   return sqrt(clamp(linear, vec3(0.0f), vec3(1.0f)));
 }
 
-// How many records serve a pixel: viridis up to this many, none in an ink of its own.
+// Number of valid records at a pixel: viridis up to this number, 0 in a separate colour.
 LUCERNA_CONST float k_overlap_scale = 12.0f;
 LUCERNA_CONST vec3 k_unserved_ink = vec3(0.75f, 0.12f, 0.16f);
-LUCERNA_CONST vec3 k_gathered_ink = vec3(0.45f, 0.47f, 0.52f);  ///< none serves: paths gather there
+LUCERNA_CONST vec3 k_gathered_ink = vec3(0.45f, 0.47f, 0.52f);  ///< no valid record: paths gather
 
-// What the tiles' overlay is told of a tile.
+// Mark of one tile for the tiles' overlay.
 struct TileMark {
-  float position;  ///< on k_ramp_tiles; negative: its error is not known
+  float position;  ///< on k_ramp_tiles; negative: unknown error
   uint bits;       ///< 0-1 one of k_tile_*, then the flags
 };
-LUCERNA_CONST uint k_tile_waiting = 0u;  ///< for the minimum of samples
+LUCERNA_CONST uint k_tile_waiting = 0u;  ///< waits for the minimum of samples
 LUCERNA_CONST uint k_tile_active = 1u;
 LUCERNA_CONST uint k_tile_done = 2u;
-LUCERNA_CONST uint k_tile_capped = 3u;   ///< given up over the target
+LUCERNA_CONST uint k_tile_capped = 3u;   ///< stopped by the maximum above the target
 LUCERNA_CONST uint k_tile_state = 3u;    ///< mask
 LUCERNA_CONST uint k_tile_heavy = 4u;    ///< flag: heavy-tailed
 
 struct TilesPush {
   uint width, height;
-  uint side;    ///< of a tile, pixels
+  uint side;    ///< side of a tile, pixels
   uint across;  ///< tiles in a row
   uint line;    ///< width of an outline, pixels
 };
@@ -105,9 +105,9 @@ struct HeatPush {
   uint width, height;
   uint layer;        ///< k_layer_samples, k_layer_error, k_layer_cost
   uint ramp;         ///< k_ramp_*
-  uint logarithmic;  ///< of the scale, from lo to hi
+  uint logarithmic;  ///< not 0: logarithmic scale from lo to hi
   float lo, hi;
-  float unit;        ///< cost: what a vertex took
+  float unit;        ///< cost: time of a vertex
 };
 
 LUCERNA_SHARED_END

@@ -1,5 +1,5 @@
-// The scene as it lies in device buffers. Read by C++ and GLSL. All buffers of this header are texel buffers (RGBA32F);
-// integers travel as their bit patterns.
+// Layout of the scene in device buffers. Read by C++ and GLSL. All buffers of this header are texel buffers (RGBA32F);
+// integers are stored as bit patterns.
 #ifndef LUCERNA_SHARED_SCENE_H
 #define LUCERNA_SHARED_SCENE_H
 #include "shaders/shared/compat.h"
@@ -7,7 +7,7 @@ LUCERNA_SHARED_BEGIN
 
 // scene_triangles: one texel a primitive: bits (vertex 0, vertex 1, vertex 2, material | k_triangle_*).
 LUCERNA_CONST uint k_triangle_material_mask = 0x00ffffffu;
-LUCERNA_CONST uint k_triangle_flipped = 0x80000000u;   ///< instance with a negative determinant: clockwise is the front
+LUCERNA_CONST uint k_triangle_flipped = 0x80000000u;   ///< instance with a negative determinant: the front is clockwise
 
 // scene_vertices: 2 texels a vertex: (position, u0) (normal, v0), world space, normals unit.
 // scene_tangents: 1 texel a vertex, only in scenes with normal maps: (tangent, handedness).
@@ -46,9 +46,9 @@ LUCERNA_CONST uint k_texture_uv1 = 1u << 21;
 LUCERNA_CONST uint k_texture_present = 1u << 31;
 LUCERNA_CONST uint k_max_buckets = 6u;
 
-// Kinds of hits, by what their material calls for (renderer/upload/material_kinds.h).
-LUCERNA_CONST uint k_kind_sky = 0u;    ///< of paths that leave the scene
-LUCERNA_CONST uint k_kind_first = 1u;  ///< of materials
+// Kinds of hits, by the features of their material (renderer/upload/material_kinds.h).
+LUCERNA_CONST uint k_kind_sky = 0u;    ///< paths that leave the scene
+LUCERNA_CONST uint k_kind_first = 1u;  ///< first kind of materials
 LUCERNA_CONST uint k_hit_kinds = 32u;
 
 // Material flags.
@@ -78,33 +78,32 @@ LUCERNA_CONST uint k_light_spot = 2u;
 LUCERNA_CONST uint k_light_directional = 3u;
 LUCERNA_CONST uint k_light_environment = 4u;
 
-// light_alias: one texel a light: (threshold, bits alias, pmf of this light, pmf of the alias). Behind it the same of the
-// lamps alone, numbered from Frame::first_lamp.
+// light_alias: one texel a light: (threshold, bits alias, pmf of this light, pmf of the alias). It is followed by a table of
+// the lamps alone, numbered from Frame::first_lamp.
 // environment_texels: one a texel: (radiance rgb, density of the directions through it as environment_alias chooses
 // them, per solid angle). environment_alias: like light_alias.
 //
-// Where records hold the environment's light (LUCERNA_SEPARATE_SKY) it is two emitters: the sun, texels brighter than a
-// threshold, and the sky, the others; filtered between texels, each has its share of a direction's radiance. The density
-// and the alias table above are then the sky's, the density's sign bit tells a texel of the sun, and the sky is no entry of
-// scene_lights: light samples choose it with a probability of its own. The sun (LUCERNA_SUN) is the entry of
-// k_light_environment, with bits of the number of its cells in texel 1 x. Its cells are those from which bilinear
-// filtering reaches a texel of the sun.
-// sun_cells: alias table of the cells, like light_alias, then bits of the texel that each is.
+// If records store the environment's light (LUCERNA_SEPARATE_SKY), it is two emitters: the sun, texels brighter than a
+// threshold, and the sky, the others; filtered between texels, each has its share of a direction's radiance. The density and
+// the alias table above are then the sky's, the density's sign bit marks texels of the sun, and the sky is no entry of
+// scene_lights: light samples select it with a separate probability. The sun (LUCERNA_SUN) is the entry of
+// k_light_environment, with bits of the number of its cells in texel 1 x. Its cells are those from which bilinear filtering
+// reaches a texel of the sun. sun_cells: alias table of the cells, like light_alias, then bits of each cell's texel.
 // sun_density: four texels each: density of the texel's directions as the sun's, times the sun's pmf in light_alias.
 // bsdf_table: see renderer/upload/bsdf_table.h.
 //
-// scene_media, where a solid absorbs: what volumes hold, and the closed shells around them (renderer/upload/media.h).
-//   0: bits of the first node's texel, of how many nodes there are, and of the first triangle's texel
+// scene_media, if a solid absorbs: media, and the closed shells around them (renderer/upload/media.h).
+//   0: bits of the first node's texel, the number of nodes, and the first triangle's texel
 //   1 ...: absorption rgb [1/m] of each medium, the medium's number being the texel's
 //   2 a node, in depth-first order: (low corner, bits of the node behind all below it | k_media_around)
 //                                   (high corner, bits 0 of an inner node, else first triangle << 3 | triangles)
 //   3 a triangle: its vertices, counter-clockwise from outside; the first with the medium
-LUCERNA_CONST uint k_media_around = 0x80000000u;  ///< met where the place lies in the box, else where the ray meets it; a shell
-                                                  ///< begins at one
-/// Numbers that stacks of media have (shaders/lib/media.glsl) are below this.
+LUCERNA_CONST uint k_media_around = 0x80000000u;  ///< visited if the position lies in the box; other nodes: if the ray hits it.
+                                                  ///< A shell begins at such a node
+/// Upper bound, exclusive, of the numbers of stacks of media (shaders/lib/media.glsl).
 LUCERNA_CONST uint k_media_stacks = 1u << 20;
 
-/// What every kernel knows of the frame. Lengths in metres, angles in radians.
+/// Parameters of the frame for all kernels. Lengths in metres, angles in radians.
 struct Frame {
   vec3 camera_origin;
   uint width;
@@ -116,20 +115,20 @@ struct Frame {
   uint seed;
   vec3 environment_radiance;  ///< factor of the environment map
   uint light_count;
-  uint first_lamp, lamp_count;  ///< lamps among the lights that are drawn again (LUCERNA_LAMP_CANDIDATES)
-  float lamp_pmf;               ///< probability that the light sampler chooses one of them
+  uint first_lamp, lamp_count;  ///< lamps among the lights, for resampling (LUCERNA_LAMP_CANDIDATES)
+  float lamp_pmf;               ///< probability that the light sampler chooses a lamp
   uint environment_width, environment_height;  ///< 0: there is none
   float environment_rotation; ///< radians
   float environment_light_pmf;///< probability that the light sampler chooses the environment, or the sky (0: not sampled)
   uint max_depth;
   uint roulette_depth;
-  uint most_branches;         ///< of a path that is followed on several times (VertexOut.branches)
+  uint most_branches;         ///< maximum branches of a split path (VertexOut.branches)
   float scene_radius;
   uint camera_in_solids;      ///< 1: paths from the camera may start inside a solid
-  uint sky_group, sun_group;  ///< of lights, where they are kept apart: of the environment, and of its sun
+  uint sky_group, sun_group;  ///< light groups of the environment and of its sun, if lights are separated
   vec3 learned_origin;        ///< of the grid of shared/learned_lights.h (LUCERNA_LEARNED)
   float learned_scale;        ///< its cells a metre
-  uint light_clusters, sky_clusters;  ///< of them, those of the sky, which are the first
+  uint light_clusters, sky_clusters;  ///< number of all clusters, and of the sky's, which are the first
   uint learning;              ///< 1: light samples are recorded
   uint automaton[64];         ///< paths::pack; k_automaton_states
 };

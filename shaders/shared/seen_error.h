@@ -11,7 +11,7 @@
 // - scale = max(local, shown(Y) / k_seen_most, floor), with floor = k_luminance_floor / exposure.
 // - e = D / scale, 0 .. k_seen_most, without unit: the error as seen. 0.1 is a tenth of the light around.
 //
-// The bound keeps a single firefly from outweighing its picture. Components are held against the same scale.
+// The bound keeps a single firefly from outweighing its picture. Components use the same scale.
 // With d_c = (A_c - B_c) / 2 of component c, the sum of d_c over the components is (A - B) / 2, and
 // e_c = |d_c| / scale times the part of the sum's deviation that is seen, D / (|A - B| / 2). A component that
 // is off has e_c = 0. The squares of independent components' errors add up to e^2 in the mean.
@@ -28,15 +28,14 @@ using glm::max;
 using glm::min;
 #endif
 
-/// Display radiance (after exposure) below which noise is held against this value instead of the pixels' own:
-/// 5 % of it is about one step of an 8-bit sRGB picture, so that black corners do not take the samples of a
-/// render.
+/// Minimum display radiance (after exposure) in relative errors: 5 % of it is about one step of an 8-bit sRGB picture, so
+/// black corners do not take the samples of a render.
 LUCERNA_CONST float k_luminance_floor = 0.02f;
 
-/// The largest error of a pixel.
+/// Maximum error of a pixel.
 LUCERNA_CONST float k_seen_most = 4.0f;
 
-/// Pixels that `local` reaches to each side.
+/// Radius of `local` [pixels].
 LUCERNA_CONST uint k_seen_reach = 2u;
 
 LUCERNA_INLINE float seen_shown(float luminance, float white) { return min(luminance, white); }

@@ -1,4 +1,4 @@
-// What the picture's pixels show: the surfaces that rays through their centres meet. Read by C++ and GLSL.
+// Visible surfaces of the picture's pixels, found by rays through their centres. Read by C++ and GLSL.
 #ifndef LUCERNA_SHARED_SIGHT_H
 #define LUCERNA_SHARED_SIGHT_H
 #include "shaders/shared/compat.h"
@@ -9,14 +9,14 @@ LUCERNA_SHARED_BEGIN
 //   1: smooth normal on the side that is seen; bits facet | media << k_surface_media_shift, where these are noted
 LUCERNA_CONST uint k_surface_texels = 2u;
 LUCERNA_CONST uint k_surface_media_shift = 22u;
-LUCERNA_CONST uint k_surface_media = 1u << 10;  ///< media numbers are below that
-LUCERNA_CONST float k_surface_none = -1.0f;  ///< nothing diffuse is seen
-/// What is seen is diffuse, but its normal map leads too far off for what is stored to serve it, or too many media enclose it.
+LUCERNA_CONST uint k_surface_media = 1u << 10;  ///< media numbers are below this
+LUCERNA_CONST float k_surface_none = -1.0f;  ///< no diffuse surface
+/// The surface is diffuse, but its normal map is too steep for stored light, or too many media enclose it.
 LUCERNA_CONST float k_surface_bent = -2.0f;
 
-/// How the points lie over the picture, for those who ask what a pixel shows.
+/// Grid of the traced points over the picture.
 struct SightGrid {
-  uint across;  ///< points a row; 0: nobody has looked yet
+  uint across;  ///< points per row; 0: not traced yet
   uint stride;  ///< pixels from one to the next
 };
 

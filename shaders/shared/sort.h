@@ -1,4 +1,4 @@
-// Prefix sums and radix sorts: what is sorted, and what the kernels are told. Read by C++ and GLSL.
+// Parameters of prefix sums and radix sorts. Read by C++ and GLSL.
 #ifndef LUCERNA_SHARED_SORT_H
 #define LUCERNA_SHARED_SORT_H
 #include "shaders/shared/compat.h"
@@ -19,14 +19,14 @@ struct SortEntry64 {
 };
 
 struct ScanPush {
-  uint count;          ///< elements; where the count is read from a buffer: the most that there may be
-  uint count_at;       ///< word of ScanCount that holds their number; k_sort_count_here: `count` does
-  uint total_at;       ///< word of ScanTotal for the sum of all
+  uint count;          ///< elements; the maximum if the count is read from a buffer
+  uint count_at;       ///< word of ScanCount with the number; k_sort_count_here: `count` is used
+  uint total_at;       ///< word of ScanTotal for the total
 };
 
 struct SortPush {
-  uint count;          ///< entries; where the count is read from a buffer: the most that there may be
-  uint count_at;       ///< word of SortCount that holds their number; k_sort_count_here: `count` does
+  uint count;          ///< entries; the maximum if the count is read from a buffer
+  uint count_at;       ///< word of SortCount with the number; k_sort_count_here: `count` is used
   uint shift;          ///< the digit is (word >> shift) & (bins - 1)
   uint bins;           ///< a power of two
   uint high_word;      ///< 1: of the upper half of a 64-bit key

@@ -1,4 +1,4 @@
-// Tone curves: from exposed linear Rec.709 radiance to what a display is sent. Compiled by C++ and by GLSL, so that the
+// Tone curves: from exposed linear Rec.709 radiance to display values. Compiled by C++ and by GLSL, so that the
 // window, PNG files and tests see one and the same curve. All functions take any value: NaN and negative values count as
 // black, infinity as the largest value; results are finite and in 0..1.
 #ifndef LUCERNA_SHARED_TONE_H
@@ -29,7 +29,7 @@ LUCERNA_CONST uint k_tone_neutral = 0u;
 LUCERNA_CONST uint k_tone_agx = 1u;
 LUCERNA_CONST uint k_tone_linear = 2u;
 
-LUCERNA_CONST float k_tone_largest = 65504.0f;  ///< radiance above it looks the same
+LUCERNA_CONST float k_tone_largest = 65504.0f;  ///< larger radiance looks the same
 
 LUCERNA_TONE_FUNCTION float tone_finite(float x) { return x > 0.0f ? min(x, k_tone_largest) : 0.0f; }
 LUCERNA_TONE_FUNCTION vec3 tone_finite(vec3 c) { return vec3(tone_finite(c.x), tone_finite(c.y), tone_finite(c.z)); }

@@ -1,4 +1,4 @@
-// What the tracing kernels are told. Read by C++ and GLSL.
+// Parameters of the tracing kernels. Read by C++ and GLSL.
 #ifndef LUCERNA_SHARED_TRACE_H
 #define LUCERNA_SHARED_TRACE_H
 #include "shaders/shared/compat.h"

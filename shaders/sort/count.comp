@@ -1,5 +1,5 @@
-// Radix sort, first step of a pass: how often each digit occurs in every run. The table lies digit by digit, so that its
-// prefix sum is where each run's entries of a digit belong.
+// Radix sort, first step of a pass: counts each digit in every run. The table is ordered by digit, so its prefix sum is the
+// destination of each run's entries.
 #include "lib/variants.glsl"
 #include "lib/sort.glsl"
 layout(scalar) writeonly buffer SortTable { uint sort_table[]; };

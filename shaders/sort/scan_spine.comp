@@ -1,4 +1,4 @@
-// Prefix sum, second step: the sums of all runs, by one workgroup, in place.
+// Prefix sum, second step: scans the sums of all runs in place, in one workgroup.
 #include "lib/scan.glsl"
 layout(local_size_x = 64) in;
 layout(scalar) buffer ScanSums { uint scan_sums[]; };

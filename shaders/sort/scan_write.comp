@@ -1,6 +1,6 @@
-// Prefix sum, last step: within every run, from what the runs before it sum up to. Elements are read before they are
-// written, by one invocation. Where output and input are one buffer it is read under the name that it is written by: of
-// another name a compiler may read it again after it was written.
+// Prefix sum, last step: scans every run, starting from the sum of the runs before it. One invocation reads elements before
+// it writes them. If output and input are one buffer, it is read under the name that is written: under another name the
+// compiler may read it again after the write.
 #include "lib/scan.glsl"
 #ifndef LUCERNA_SCAN_IN_PLACE
 #define LUCERNA_SCAN_IN_PLACE 0

@@ -1,4 +1,4 @@
-// Radix sort, last step of a pass: every run's entries go, in their order, to where their digit belongs.
+// Radix sort, last step of a pass: moves the entries of every run, in order, to the place of their digit.
 #include "lib/variants.glsl"
 #include "lib/sort.glsl"
 uniform usamplerBuffer sort_places;   // the prefix sum of the table

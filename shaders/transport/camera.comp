@@ -1,5 +1,5 @@
-// Source `camera`: one path for each (pixel of the item's blocks, sample). Slots are ordered pixel within block first (Morton
-// order, so that neighbours trace neighbouring rays), then block, then sample.
+// Source `camera`: one path for each (pixel of the item's blocks, sample). Slots are ordered pixel within block first
+// (Morton order, so that neighbours trace neighbouring rays), then block, then sample.
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
 #include "lib/blocks.glsl"
@@ -39,7 +39,7 @@ void main() {
   p.sample_index = sample_index;
   p.bits = 0u;
 #if LUCERNA_DELEGATED_REGIONS
-  // A coin of its own: either way of computing is right in the mean, whatever else is drawn.
+  // Separate random number: both ways of computing are unbiased whatever else is drawn.
   uint coin = hash_combine(hash_combine(pixel, sample_index), frame.seed ^ 0x2c1b3c6du);
   if (float(coin >> 8) * (1.0 / 16777216.0) < delegated_share(place)) p.bits = k_delegated_states;
 #endif
@@ -54,8 +54,8 @@ void main() {
   store_path(slot, p);
   clear_radiance(slot);
 #if LUCERNA_SPLATS
-  // What paths from lights have brought to the pixel, whatever this path meets. In a draft of fewer pixels: to the one that the
-  // path goes through.
+  // Adds what light paths contributed to the pixel, whatever this path hits. A preview sample of lower resolution reads the
+  // pixel that its path goes through.
   if (inside && splat_frame.width > 0u) {
     uvec2 size = uvec2(splat_frame.width, splat_frame.height);
     bool same = size == uvec2(frame.width, frame.height);
@@ -63,7 +63,8 @@ void main() {
     vec4 splat = texelFetch(splat_picture, int(at.y * size.x + at.x));
     radiance[radiance_texel(slot, lane_of(0u, splat_frame.component))].rgb = splat.rgb;
 #if LUCERNA_GROUP_SUMS
-    // Each colour's light is that of its group. Where two are of one group its texel is written twice alike.
+    // Each channel's light belongs to its group. If two channels share a group, its texel is written twice with equal
+    // values.
     uvec3 groups = uvec3(floatBitsToUint(splat.a)) >> (k_splat_owner_bits * uvec3(0u, 1u, 2u)) &
                    ((1u << k_splat_owner_bits) - 1u);
     uint lit = 0u;

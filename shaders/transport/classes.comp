@@ -1,12 +1,12 @@
-// Hits by what their material calls for. Counts them by kind (LUCERNA_COUNT_KINDS), or puts each into its class's part of a
-// queue, from which a kernel shades it in which nothing else is compiled (renderer/transport/hit_classes.h).
+// Sorts hits by the features of their material. Counts them by kind (LUCERNA_COUNT_KINDS), or appends each to the queue part
+// of its class, whose shading kernel compiles in nothing else (renderer/transport/hit_classes.h).
 #define LUCERNA_PUSH ClassesPush
 #include "lib/variants.glsl"
 #include "lib/wavefront.glsl"
 
 uniform samplerBuffer scene_triangles;
 uniform samplerBuffer scene_materials;
-layout(scalar) writeonly buffer ClassQueue { uint class_queue[]; };  // push.slots a class
+layout(scalar) writeonly buffer ClassQueue { uint class_queue[]; };  // push.slots for each class
 
 uint kind_of(Hit hit) {
   bool met = hit.prim != k_no_hit;

@@ -1,26 +1,26 @@
-// Direct light, for shade.comp: emitters that a path meets and emitters that a vertex samples, weighted against each other.
+// Direct light for shade.comp: emitters hit by the path and emitters sampled at a vertex, combined by MIS.
 //
-// Where records hold the sky's light (LUCERNA_SEPARATE_SKY), a vertex whose diffuse lobe has looked it up (sky_known) brings it
-// by neither strategy: its light samples give the sky to the glossy lobe alone, and what a diffuse ray meets of the sky is
-// left out. The sun and all other lights are sampled as ever.
+// Where records hold the sky's light (LUCERNA_SEPARATE_SKY), a vertex whose diffuse lobe has looked it up (sky_known)
+// computes it by neither strategy: light samples contribute the sky to the glossy lobe only, and a diffuse ray that hits the
+// sky adds nothing. The sun and all other lights are sampled as usual.
 #ifndef LUCERNA_TRANSPORT_DIRECT_LIGHT
 #define LUCERNA_TRANSPORT_DIRECT_LIGHT
 #include "lib/variants.glsl"
 
 layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
 
-// Power heuristic (Veach 1997, exponent 2), as a function of the densities' ratio so that nothing overflows.
+// Power heuristic (Veach 1997, exponent 2) as a function of the ratio of the densities, which avoids overflow.
 float mis_weight(float mine, float other) {
   float r = other / max(mine, 1e-37);
   return 1.0 / (1.0 + r * r);
 }
-// Of what a path's ray meets that light samples of its last vertex would have found with density pdf.
+// MIS weight of an emitter hit that light samples of the path's last vertex would have found with density pdf.
 float met_weight(PathState path, float pdf) { return path.pdf > 0.0 ? mis_weight(path.pdf, pdf) : 1.0; }
 
 #if LUCERNA_SEPARATE_SKY
-// Probability of the sky among the lights that the path's last vertex sampled.
+// Probability of the sky among the lights sampled at the path's last vertex.
 float sky_share_before(PathState path) { return (path.bits & k_path_sky_not_sampled) != 0u ? 0.0 : frame.environment_light_pmf; }
-// ... and of a vertex itself: where the diffuse lobe knows the sky and nothing glossy asks for it, none.
+// ... and at the current vertex: 0 if the diffuse lobe has looked up the sky and there is no glossy lobe.
 bool sky_not_sampled(Bsdf bsdf, bool sky_known) { return sky_known && !bsdf_glossy(bsdf); }
 #endif
 
@@ -36,8 +36,8 @@ uint sky_bits(Bsdf bsdf, bool sky_known, uint event) {
 #if LUCERNA_LEARNED
 layout(scalar) writeonly buffer LightRecords { LightRecord light_records[]; };
 
-// The weight against scattered rays is that which a cluster would have alone: a weight that hangs on its present probability
-// would teach what is seldom chosen to be chosen more seldom.
+// The MIS weight against scattered rays uses a fixed probability of the cluster: with its present probability, clusters that
+// are rarely chosen would learn to be chosen more rarely.
 void record_light_sample(uint slot, PathState path, vec3 position, vec3 normal, LightSample l, BsdfValue f, bool sent, inout ShadowState shadow) {
   uint at = slot * k_learned_vertices + path_depth(path);
   float within = l.pdf / max(l.chosen, 1e-30);
@@ -54,7 +54,7 @@ void record_light_sample(uint slot, PathState path, vec3 position, vec3 normal, 
   shadow.tag = at + 1u;
 }
 
-// Of light that a path's ray meets, which light samples would have found with that density.
+// Records an emitter hit that light samples would have found with that density.
 void record_light_met(uint slot, PathState path, vec3 light, float pdf, uint cluster) {
   float chosen = learned_ratio(path.light_group, cluster) * light_cluster(cluster).plain;
   float within = pdf / max(chosen, 1e-30), rate = path.pdf / max(within, 1e-30);
@@ -69,7 +69,7 @@ void record_light_met(uint slot, PathState path, vec3 light, float pdf, uint clu
 }
 #endif
 
-// What a path that leaves the scene brings; where groups of lights are kept apart, without the sun's part.
+// Light of a path that leaves the scene; with light groups, without the sun's part.
 vec3 environment_met(uint slot, PathState path, vec3 direction, out vec3 sun) {
   sun = vec3(0.0);
 #if LUCERNA_SEPARATE_SKY
@@ -89,7 +89,7 @@ vec3 environment_met(uint slot, PathState path, vec3 direction, out vec3 sun) {
   float pdf;
 #if LUCERNA_LEARNED && LUCERNA_ENVIRONMENT_MAP
   vec3 light = environment_radiance(direction, path.light_group, pdf);
-  // A loop, because a branch saves no work on lavapipe, and only pilot paths are recorded.
+  // A loop instead of a branch: on lavapipe a branch saves no work, and only pilot paths are recorded.
   for (uint once = 0u; once < frame.learning; ++once) {
     EnvironmentTexels t = environment_texels_at(direction);
     record_light_met(slot, path, light, pdf, sky_cluster(direction, uint(t.texel), t.u));
@@ -101,7 +101,7 @@ vec3 environment_met(uint slot, PathState path, vec3 direction, out vec3 sun) {
 #endif
 }
 
-// Of an emissive surface that light samples find with density pdf; the sky apart, with its share of it.
+// Weighted emission of a surface that light samples find with density pdf.
 float emissive_weight(PathState path, float pdf) {
 #if LUCERNA_SEPARATE_SKY
   return (path.bits & k_path_sky_only) != 0u ? 0.0 : met_weight(path, pdf * (1.0 - sky_share_before(path)));
@@ -111,7 +111,7 @@ float emissive_weight(PathState path, float pdf) {
 }
 
 #if LUCERNA_LIGHT_SURFACE
-// Radiance that a sampled emissive triangle sends along -direction; textures and coverage by alpha included.
+// Radiance of a sampled emissive triangle along -direction, including textures and alpha coverage.
 vec3 light_radiance(LightSample l) {
   Ray towards;
   towards.origin = l.target - l.direction * l.distance;
@@ -130,7 +130,7 @@ vec3 light_radiance(LightSample l) {
 #endif
 
 #if LUCERNA_LIGHTS
-// One light sample for all lobes, queued as a shadow ray if it is wanted. `row`: of learned lights.
+// One light sample for all lobes, queued as a shadow ray if it can contribute. `row`: of learned lights.
 void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, vec3 wo, mat3 to_world, Sampler random, bool sky_known, bool wanted,
                          uint row) {
   uint state = path_automaton(path), depth = path_depth(path);
@@ -186,7 +186,7 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
     shadow_ray.tmax = k_infinity;
     shadow_ray.slot = slot;
     if (l.primitive != k_no_hit) {
-      // To a point moved off the light by its own error bound, so that the light does not shadow itself.
+      // The end point is moved off the light by its error bound, so that the light does not shadow itself.
       vec3 to = l.target + l.normal * dot(abs(l.normal), l.offset) - shadow_ray.origin;
       float distance = length(to);
       shadow_ray.direction = distance > 0.0 ? to / distance : l.direction;

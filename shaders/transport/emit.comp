@@ -1,4 +1,4 @@
-// Source `light`: light paths of a batch, one a slot.
+// Path source `light`: one light path for each slot of a batch.
 #define LUCERNA_PUSH EmitPush
 #include "shaders/shared/emission.h"
 #include "lib/wavefront.glsl"
@@ -24,7 +24,7 @@ void main() {
   flux = e.flux * push.share;
   group = e.group;
 #if LUCERNA_LIGHT_GROUPS <= 1
-  // To tell lights apart by: of lamps their number, of triangles that lie together that of their cluster.
+  // Group number: for lamps their index, for adjacent triangles their cluster.
   group = emission.casters > 0u ? floatBitsToUint(texelFetch(emission_groups, int(emission.groups + e.light)).x) : e.light;
   group &= k_most_groups - 1u;
 #endif
@@ -37,7 +37,7 @@ void main() {
   ray.tmax = lit ? k_infinity : -1.0;
   flux = lit ? flux : vec3(0.0);
   over_radiance = e.radiance > 0.0 ? luminance(flux) / e.radiance : 0.0;
-  // Below 0 where it comes from afar.
+  // Negative for distant light.
   sampling = (e.afar ? -1.0 : 1.0) * e.sampling / push.share;
 #endif
   store_ray(slot, ray);
@@ -46,10 +46,10 @@ void main() {
   p.pdf = over_radiance;
   p.pixel = max3(flux) > 0.0 ? index : 0xffffffffu;
   p.sample_index = push.round;
-  p.bits = 1u << k_path_events_shift;  // the emission has the random numbers of depth 0
+  p.bits = 1u << k_path_events_shift;  // emission uses the random numbers of depth 0
   p.media = 0u;
 #if LUCERNA_VOLUMES && LUCERNA_LIGHTS
-  // What comes from afar begins outside.
+  // Distant light starts outside all media.
   for (uint once = e.afar || !lit ? 1u : 0u; once < 1u; ++once) p.media = media_at(e.origin, hash_combine(index, push.round));
 #endif
   p.travelled = 0.0;

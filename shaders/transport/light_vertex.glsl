@@ -1,5 +1,5 @@
-// One vertex of a path from a light: it carries flux, and f goes the other way round than for a path from the eye. For kernels
-// that run in place of shade.comp (transport/wavefront.h, PathEnds::vertex).
+// One vertex of a light path. Light paths carry flux, so f has its arguments exchanged compared to eye paths. For kernels
+// that replace shade.comp (transport/wavefront.h, PathEnds::vertex).
 #ifndef LUCERNA_TRANSPORT_LIGHT_VERTEX
 #define LUCERNA_TRANSPORT_LIGHT_VERTEX
 #include "lib/variants.glsl"
@@ -8,27 +8,27 @@
 #include "lib/surface.glsl"
 
 struct LightVertex {
-  float coverage;  // how much of the surface is there (alpha); light falls on that, whether or not this path stays
+  float coverage;  // alpha: the share of light that meets the surface, whether or not this path is scattered
   Surface surface;
-  Bsdf bsdf;       // as seen from where the light comes
+  Bsdf bsdf;       // as seen from the arriving light
   mat3 to_world;
-  vec3 wo;         // whence the light comes, local
+  vec3 wo;         // towards the arriving light, local
   vec3 arriving;   // flux
-  bool lit;        // reflects or transmits light at all
-  bool stays;      // ... and this path's is scattered
-  bool passed;     // the path goes straight on
+  bool lit;        // reflects or transmits any light
+  bool stays;      // ... and this path is scattered
+  bool passed;     // the path continues undeflected
 };
 
 // Flux is scattered by f(wi, wo) |wo . n_g| / |wo . n_s| over directions wi in projected solid angle about the geometric
-// normal; bsdf_sample has f(wo, wi) |wi . n_s| / pdf (E. Veach 1997, 5.3.2).
+// normal; bsdf_sample returns f(wo, wi) |wi . n_s| / pdf (E. Veach 1997, 5.3.2).
 float adjoint_correction(vec3 n_g, vec3 n_s, vec3 wo, vec3 wi) {
   float above = abs(dot(wo, n_s) * dot(wi, n_g)), below = abs(dot(wo, n_g) * dot(wi, n_s));
   return below > 0.0 ? above / below : 0.0;
 }
 
-// A reflection off a surface whose shading normal leans. A path from the eye that leaves along `towards` sees the surface in a
-// frame that is bent towards that direction (shading_frame()), not towards the light; so what it would weigh the light by is
-// evaluated as it would do it. `density`: that with which `towards` was drawn; `pick`: of the event.
+// Reflection off a surface with a tilted shading normal. An eye path that leaves along `towards` uses a shading frame bent
+// towards that direction (shading_frame()), not towards the light, so f is evaluated as that eye path would. `density`: of
+// sampling `towards`; `pick`: of the event.
 void reflect_as_seen(LightVertex v, vec3 from, vec3 towards, float density, float pick, out vec3 weight, out uint event) {
   mat3 to_world = shading_frame(v.surface, towards);
   vec3 wo = towards * to_world, wi = from * to_world;
@@ -72,15 +72,15 @@ LightVertex light_vertex(inout PathState path, Ray ray, Hit hit, Sampler random)
   float p_undeflected = bsdf_undeflected_probability(v.bsdf, v.wo.z);
   if (v.stays && u_null.y < p_undeflected) {
     v.passed = true;
-    // What the path carries on; the surface's other lobes are lit by what it has brought.
+    // The flux that this path carries on. The light reaching the surface's other lobes is already accounted for.
     path.throughput *= bsdf_undeflected(v.bsdf, v.wo.z) / p_undeflected;
   }
 #endif
   return v;
 }
 
-// Goes on by an event, of which there are no more than `most_events`, or straight on; puts the next ray into the queue.
-// Roulette keeps the flux of those that go on as near to what it was as their colour allows (J. Arvo and D. Kirk 1990).
+// Continues the path by an event (at most `most_events` of them) or undeflected, and queues the next ray. Russian roulette
+// keeps the flux of surviving paths as constant as their colour allows (J. Arvo and D. Kirk 1990).
 void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float travelled, uint most_events, Sampler random) {
   uint depth = path_depth(path);
   vec3 direction = ray.direction;
@@ -95,8 +95,8 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     vec2 u = sample_vertex(random, depth, k_pad_direction);
     vec2 lobe = sample_vertex(random, depth, k_pad_lobe);
     vec3 side = v.surface.front ? v.surface.normal_g : -v.surface.normal_g;
-    // Directions above the surface and below the plane of the shading normal: paths from the eye come from there, lobes about
-    // the normal never lead there. They are drawn evenly, as densely as from the whole hemisphere.
+    // Directions above the surface but below the plane of the shading normal: eye paths come from there, but lobes about the
+    // shading normal never sample them. Sampled uniformly, with the density of the whole hemisphere.
     vec3 edge = cross(v.to_world[2], side);
     float sine = length(edge), lean = atan(sine, dot(v.to_world[2], side));
     bool leans = sine > 1e-4 && (v.bsdf.p_diffuse > 0.0 || bsdf_glossy(v.bsdf));
@@ -105,7 +105,7 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     if (lobe.x < below) {
       edge /= sine;
       float z = 2.0 * u.x - 1.0, r = sqrt(max(0.0, 1.0 - z * z)), angle = u.y * lean;
-      // From the plane of the surface up to that of the shading normal.
+      // From the surface's plane up to the plane of the shading normal.
       direction = normalize(z * edge + r * (sin(angle) * side + cos(angle) * cross(edge, side)));
       b.transmitted = false, b.eta2 = 1.0, b.pdf = 0.5 * k_inv_pi;
       b.event = k_event_glossy, b.weight = vec3(0.0);
@@ -116,7 +116,7 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
       b.pdf *= 1.0 - below, b.weight /= 1.0 - below;
     }
     bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
-    // Radiance is scaled where it is refracted, flux is not.
+    // Refraction scales radiance, but not flux.
     vec3 weight = b.weight * (adjoint_correction(v.surface.normal_g, v.to_world[2], ray.direction, direction) / b.eta2);
     if (leans && sides_agree && !b.transmitted && b.event != k_event_specular)
       reflect_as_seen(v, -ray.direction, direction, b.pdf, lobe.y, weight, b.event);
@@ -130,10 +130,10 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     if (go_on && finite && !survives) atomicAdd(counters[k_counter_roulette], 1u);
     go_on = go_on && finite && survives;
     path.throughput = throughput / max(q, 1e-30);
-    // A path from the eye is not subject to this roulette. Unless the first vertex from the light scatters specularly, light
-    // samples contribute f cos flux sampling / distance^2 there, and f cos is about the weight times the density drawn from,
-    // either way round; by the balance heuristic the harmonic sum of both remains. 0 remains where no path from the eye finds
-    // the light: behind a specular event at the first vertex from a point or a direction.
+    // Eye paths do not apply this roulette. Unless the first vertex from the light is specular, light samples contribute f
+    // cos flux sampling / distance^2 there, and f cos is about the weight times the sampling density in either direction; by
+    // the balance heuristic the harmonic sum of both remains. 0 remains where no eye path finds the light: behind a specular
+    // first event of a point or directional light.
     path.pdf /= max(q, 1e-30);
     if (depth == 1u && b.event != k_event_specular)
       path.pdf += max((path.eta_scale < 0.0 ? 1.0 : travelled * travelled) / max(b.pdf * abs(path.eta_scale), 1e-37), 1e-30);

@@ -1,10 +1,9 @@
-// One vertex of every live path: emission with its MIS weight, direct light by next-event estimation, what solvers look up
-// there, scattering, roulette. What can arrive later (the light sample) is queued as a shadow ray; the path goes on in the
-// next queue.
+// One vertex of every live path: emission with its MIS weight, next-event estimation, solver lookups, scattering, Russian
+// roulette. The light sample is queued as a shadow ray; the path continues in the next queue.
 //
-// Where a hook asks for it the diffuse lobe of a vertex is followed several times, one branch after the other once the one
-// before has ended (J. Arvo and D. Kirk, "Particle Transport and Image Synthesis", 1990): light that comes by it is the mean of
-// theirs. What else is done at the vertex, the first branch does alone.
+// A hook may branch the diffuse lobe of a vertex. Branches run one after the other, each after the one before has ended (J.
+// Arvo and D. Kirk, "Particle Transport and Image Synthesis", 1990); their light is averaged. Everything else at the vertex
+// is computed by the first branch alone.
 #include "lib/variants.glsl"
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
@@ -14,7 +13,7 @@
 #include "transport/direct_light.glsl"
 
 #if LUCERNA_VERTEX_HOOKS
-// Vertices that are followed again, as they were met: of a ray 2 texels, of the hit 1, of the path 3.
+// Stored vertices with further branches: 2 texels for the ray, 1 for the hit, 3 for the path.
 const uint k_branching_texels = 6u;
 uniform samplerBuffer branching_texels;
 layout(scalar) writeonly buffer Branching { vec4 branching[]; };
@@ -38,14 +37,14 @@ void load_vertex(uint slot, out Ray ray, out Hit hit, out PathState path) {
 }
 #endif
 
-// What the camera sees first.
+// Features of the first visible surface.
 void write_features(uint slot, Surface surface) {
   vec3 n = surface.front ? surface.normal_s : -surface.normal_s;
   features[2u * slot] = vec4(surface.parameters.base, 1.0);
   features[2u * slot + 1u] = vec4(n, dot(surface.position - frame.camera_origin, frame.camera_forward));
 }
 
-// Emission of the surface that a path meets.
+// Emission of the surface that a path hits.
 vec3 emission_met(uint slot, PathState path, Surface surface, Hit hit, float travelled, vec3 direction) {
 #if LUCERNA_HITS_EMISSIVE
   if ((surface.flags & k_flag_emissive) != 0u && (surface.front || (surface.flags & k_flag_double_sided) != 0u)) {
@@ -61,7 +60,7 @@ vec3 emission_met(uint slot, PathState path, Surface surface, Hit hit, float tra
   return vec3(0.0);
 }
 
-// Samples a lobe and a direction and makes the path what it is behind the vertex; whether it goes on. `branches`: of which
+// Samples a lobe and a direction and updates the path; true if the path continues. `branches`: number of branches, of which
 // this is one.
 bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint branches, inout PathState path, out vec3 direction) {
   vec2 u = sample_vertex(v.random, v.depth, k_pad_direction);
@@ -78,7 +77,7 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
   go_on = go_on && finite;
   uint sky = sky_bits(v.bsdf, sky_known, b.event);
 #if LUCERNA_SEPARATE_SKY && !LUCERNA_EMISSIVE && !LUCERNA_SUN
-  // The ray could meet no light but the sky's: only where it may go on to another is it worth tracing.
+  // The next ray could hit no light but the sky: it is traced only if the path may continue behind the hit.
   go_on = go_on && ((sky & k_path_sky_known) == 0u || automaton_goes_on(next));
 #endif
   hooks_leave(v, hooks, Leaving(b, finite), throughput, go_on);
@@ -88,7 +87,7 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
   if (one_of_many) throughput /= float(branches), path.eta_scale /= float(branches);
   go_on = go_on && (one_of_many || push.round == 0u);
 #endif
-  // Roulette on what the path carries without the radiance scale of refraction.
+  // Russian roulette on the throughput without the radiance scaling of refraction.
   if (v.depth + 1u >= frame.roulette_depth) {
     float q = clamp(max3(throughput) / path.eta_scale, 0.0, 1.0);
     float u = to_unit(sample_vertex_bits(v.random, v.depth, k_pad_light_choice)).y;
@@ -117,7 +116,7 @@ void main() {
   Hit hit;
   PathState path;
 #if LUCERNA_VERTEX_HOOKS
-  bool again = push.round > 0u;  // the first branch has met the vertex
+  bool again = push.round > 0u;  // a further branch of a vertex that the first has shaded
   if (again)
     load_vertex(slot, ray, hit, path);
   else
@@ -133,9 +132,9 @@ void main() {
   uint state = path_automaton(path), depth = path_depth(path);
   Sampler random = make_sampler(path.pixel, frame.width, path.sample_index, frame.seed);
 
-  vec3 gain = vec3(0.0);  // what the path meets here, all of one lane ...
+  vec3 gain = vec3(0.0);  // light found here, for one lane ...
   uint group = 0u;
-  vec3 sun = vec3(0.0);  // ... but for an environment's sun, where that is of another group
+  vec3 sun = vec3(0.0);  // ... except an environment's sun in a separate group
   VertexOut found;
   for (uint lane = 0u; lane < found.radiance.length(); ++lane) found.radiance[lane] = vec3(0.0);
 #if LUCERNA_GROUP_SUMS
@@ -149,7 +148,7 @@ void main() {
   if (hit.prim == k_no_hit) {
     gain = environment_met(slot, path, ray.direction, sun);
 #if LUCERNA_HIDDEN_BACKGROUND
-    // Straight from the eye; what mirrors and glass show of it stays, and all that it lights.
+    // Directly visible emission; its reflections, and the light it casts, remain.
     if (depth == 0u && automaton_no_diffuse(state)) gain = sun = vec3(0.0);
 #endif
 #if LUCERNA_LIGHT_GROUPS > 1
@@ -171,8 +170,8 @@ void main() {
     group = emissive_group(hit.prim);
 #endif
     float travelled = path.travelled + hit.t;
-    bool go_on = false;   // a next ray is to be traced
-    bool passed = false;  // ... straight on, without an event
+    bool go_on = false;   // a next ray is traced
+    bool passed = false;  // ... undeflected, without an event
     vec3 direction = ray.direction;
 
 #if LUCERNA_TRANSPARENT
@@ -193,9 +192,9 @@ void main() {
 #if LUCERNA_THIN_GLASS
       float p_undeflected = bsdf_undeflected_probability(bsdf, wo.z);
       passed = !again && u_null.y < p_undeflected;
-      if (passed) random = random_null;  // the vertex behind has the numbers of this depth
+      if (passed) random = random_null;  // the next vertex uses the random numbers of this depth
 #endif
-      // What passes is no event and not counted; the surface's other lobes are lit all the same.
+      // A null event is not counted; the surface's other lobes are lit as usual.
       bool ends = depth >= frame.max_depth;
       if (ends && !passed && !again) atomicAdd(counters[k_counter_depth], 1u);
 #if LUCERNA_UNLIT

@@ -1,5 +1,5 @@
-// Shadow rays that met no opaque surface deliver their light. In scenes with transparent surfaces the light first passes
-// them one by one (LUCERNA_TRANSPARENT): the queue of those still on their way is traced again.
+// Shadow rays that hit no opaque surface deliver their light. In scenes with transparent surfaces (LUCERNA_TRANSPARENT) the
+// ray first passes them one by one: the queue of unfinished rays is traced again.
 #include "lib/variants.glsl"
 #include "lib/wavefront.glsl"
 #if LUCERNA_SPLATS_SUMMED
@@ -23,7 +23,7 @@ void main() {
   ShadowState s = load_shadow_state(slot);
   bool blocked = hit.prim != k_no_hit;
 #if LUCERNA_TRANSPARENT
-  // hits: of the non-opaque triangles; the opaque ones have been tested by the first pass (push.round == 0).
+  // Hits of non-opaque triangles; the first pass (push.round == 0) has tested the opaque ones.
   if (push.round == 0u) {
     if (!blocked) shadow_queue[queue_place(k_counter_shadow_next)] = slot;
     return;
@@ -43,7 +43,7 @@ void main() {
     s.glossy *= transmittance;
     if (max3(s.diffuse) + max3(s.glossy) > 0.0) {
       vec3 origin = offset_origin(surface, ray.direction);
-      // The end point stays where it was.
+      // The end point stays unchanged.
       ray.tmax -= ray.tmax < 1e30 ? dot(origin - ray.origin, ray.direction) : 0.0;
       ray.origin = origin;
       if (ray.tmax > 0.0) {

@@ -1,5 +1,5 @@
-// Where a light path's light goes that is joined straight to the camera: into the sums of a pixel (shared/splat.h). In place of
-// adding what shadow rays bring to a path's radiance (LUCERNA_SPLATS_SUMMED in shadow.comp).
+// Splats the light of paths connected to the camera: adds it to the sums of a pixel (shared/splat.h) instead of a path's
+// radiance (LUCERNA_SPLATS_SUMMED in shadow.comp).
 #ifndef LUCERNA_TRANSPORT_SPLAT
 #define LUCERNA_TRANSPORT_SPLAT
 #include "lib/wavefront.glsl"
@@ -19,15 +19,15 @@ layout(scalar) buffer SplatContributions { LongSum splat_contributions[]; };  //
 #endif
 
 #if LUCERNA_GROUP_SUMS
-// `exponential`: a number of rate 1, not below 0.
+// `exponential`: a random number from the exponential distribution of rate 1.
 uint splat_owner(float exponential, float light, uint group) {
   uint bits = light > 0.0 ? floatBitsToUint(exponential / light) : 0xffffffffu;
   return bits >> k_splat_owner_bits << k_splat_owner_bits | group;
 }
 #endif
 
-// `state`: lanes the pixel of the band, tag the stratum, where that is asked for. Rounded up or down at random, so that no dim light is
-// lost: by numbers of the path's, so that it is the same every time.
+// `state`: lanes: pixel in the band; tag: stratum, if recorded. Values are rounded up or down at random, so that dim light
+// is not lost; the path's own random numbers make this reproducible.
 void add_splat(uint slot, ShadowState state) {
   vec3 units = state.diffuse / splat_frame.unit;
   bool fits = is_finite(units) && max3(units) < k_most_splat;
@@ -37,7 +37,7 @@ void add_splat(uint slot, ShadowState state) {
   uint key = hash_combine(hash_combine(path.pixel, path.sample_index), splat_frame.first + state.lanes);
   vec3 coin = vec3(uvec3(key, hash_mix(key), hash_mix(key ^ 0x68bc21ebu)) >> 8u) * (1.0 / 16777216.0);
 #if LUCERNA_GROUP_SUMS && !LUCERNA_SPLATS_WEIGHED
-  // One number for all colours: they are then mostly of one path.
+  // One random number for all channels: they then mostly belong to one path.
   float exponential = -log((float(hash_mix(key ^ 0x02e5be93u) >> 8u) + 0.5) * (1.0 / 16777216.0));
   atomicMin(splat_owners[state.lanes].red, splat_owner(exponential, units.r, path.light_group));
   atomicMin(splat_owners[state.lanes].green, splat_owner(exponential, units.g, path.light_group));

@@ -1,18 +1,20 @@
-// What shade.comp asks solvers at every vertex that scatters. A solver's hook is a file with a structure X_Vertex, which is
-// what it knows of one vertex while that is worked on, and five functions, where X is the solver's name:
+// Interface of solver hooks, which shade.comp calls at every scattering vertex. A hook is a file with a structure X_Vertex,
+// the solver's state at one vertex, and these functions, where X is the solver's name:
 //
-//   X_Vertex X_read(VertexIn v, inout VertexOut o)   looks up; what it brings, it adds to o
+//   X_Vertex X_read(VertexIn v, inout VertexOut o)
+//       looks up light and adds it to o
 //   vec3 X_cosine(VertexIn v, inout X_Vertex x, vec2 u, vec3 cosine)
-//       direction of the diffuse lobe in place of `cosine`, which is distributed by the cosine; local to v.to_world
+//       direction of the diffuse lobe, replaces the cosine-distributed `cosine`; local to v.to_world
 //   void X_weigh(VertexIn v, X_Vertex x, vec3 direction, inout BsdfSample b)
-//       the weight of the sampled direction, where X_cosine has changed its density
+//       updates the weight of the sampled direction where X_cosine has changed its density
 //   uint X_state(VertexIn v, X_Vertex x, BsdfSample b, uint state)
-//       state of the automaton behind the vertex, in place of `state`
+//       automaton state behind the vertex, replaces `state`
 //   void X_leave(VertexIn v, inout X_Vertex x, Leaving l, inout vec3 throughput, inout bool go_on)
-//       may end the path, or change what it carries, after everything else has been decided but roulette
-//   void X_end(VertexIn v, X_Vertex x)               writes what it notes of the vertex
+//       may end the path or change its throughput; runs after everything except Russian roulette
+//   void X_end(VertexIn v, X_Vertex x)
+//       writes notes about the vertex
 //
-// transport/vertex_hooks.glsl calls those of the plan's solvers in turn (renderer/transport/vertex_hooks.h makes it).
+// transport/vertex_hooks.glsl calls the hooks of all solvers in turn; renderer/transport/vertex_hooks.h generates it.
 #ifndef LUCERNA_TRANSPORT_VERTEX_HOOK
 #define LUCERNA_TRANSPORT_VERTEX_HOOK
 #include "lib/surface.glsl"
@@ -20,35 +22,34 @@
 
 struct VertexIn {
   uint slot;
-  PathState path;   // as it arrives
-  uint state;       // of the automaton
-  uint depth;       // scattering events before this one
+  PathState path;   // on arrival
+  uint state;       // automaton state
+  uint depth;       // number of scattering events before this vertex
   Hit hit;
   Surface surface;
   Bsdf bsdf;
   mat3 to_world;    // shading frame
-  vec3 side;        // geometric normal on the side that the path comes from
-  Sampler random;   // of this vertex
-  bool again;       // another branch leaves it: all that the vertex itself brings has been brought, what X_read adds is not heeded
+  vec3 side;        // geometric normal on the side of the arriving path
+  Sampler random;   // random numbers of this vertex
+  bool again;       // a further branch: the vertex's light has been computed, and what X_read adds is ignored
 };
 
 struct VertexOut {
-  // What is brought here, times the path's throughput: by lane, or where groups of lights are kept in short by component,
-  // and once more by group.
+  // Light found here times the path's throughput: by lane; with compact groups by component and, once more, by group.
 #if LUCERNA_GROUP_SUMS
   vec3 radiance[k_component_count];
   vec3 by_group[k_group_count];
 #else
   vec3 radiance[k_lane_count];
 #endif
-  float bias;       // by what the luminance of that is told to be too large, in the mean (LUCERNA_LOOKUP_BIAS; else not heeded)
-  bool sky_known;   // in it is what the sky sends straight to the diffuse lobe
+  float bias;       // estimated mean excess of that luminance (LUCERNA_LOOKUP_BIAS; otherwise ignored)
+  bool sky_known;   // includes direct sky light on the diffuse lobe
   bool samples_lights;
-  uint branches;    // by how many the diffuse lobe is followed on
+  uint branches;    // number of branches of the diffuse lobe
 };
 
 struct Leaving {
   BsdfSample b;
-  bool finite;      // the throughput behind the vertex is
+  bool finite;      // the throughput behind the vertex is finite
 };
 #endif

@@ -1,5 +1,5 @@
-// The hooks of no solver at all: paths are traced and nothing is looked up. Where solvers are looked up the host puts its
-// own text in this file's place (renderer/transport/vertex_hooks.cpp).
+// Hooks for paths without lookups. If solvers are looked up, the host replaces this file's text
+// (renderer/transport/vertex_hooks.cpp).
 #define LUCERNA_VERTEX_HOOKS 0
 #include "transport/vertex_hook.glsl"
 

@@ -138,7 +138,7 @@ TEST_CASE(
   const Run mended = run("bench " + matrix + " --report " + folder);
   INFO(mended.out);
   CHECK(mended.status == 0);
-  CHECK_THAT(mended.out, Contains("half a file; it is measured again") && Contains("it is made anew") &&
+  CHECK_THAT(mended.out, Contains("half a file; it is measured again") && Contains("it is rendered again") &&
                              Contains("2 of 2  cornell, plain, 16 samples, repeat 2 of 3"));
   CHECK(read_json(cell)["repeat"] == 1);
   const film::FilmImage after = film::read_exr(reference);

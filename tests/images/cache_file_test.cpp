@@ -211,7 +211,7 @@ TEST_CASE("a file that does not fit is refused, and picture and records stay") {
   const uint32_t count = first.records().size();
   Bed narrow;
   narrow.set({{"cache.max_records", std::to_string(count - 1)}});
-  CHECK_THAT(narrow.refusal(file), Contains(fmt::format("holds {} records and there is room for {}; set "
+  CHECK_THAT(narrow.refusal(file), Contains(fmt::format("holds {} records, but the limit is {}; set "
                                                         "cache.max_records to {} or more",
                                                         count, count - 1, count)));
   narrow.set({{"cache.max_records", std::to_string(count)}});

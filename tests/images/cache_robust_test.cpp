@@ -200,7 +200,7 @@ TEST_CASE("a cache at its record limit reports it once, and light without record
   CHECK(cached.cache.records == 40);
   CHECK(compare(path, cached, 0.1) < 0.04);
   REQUIRE(complaints.lines.size() == 1);
-  CHECK_THAT(complaints.lines[0], Catch::Contains("the irradiance cache is full with 40 records") &&
+  CHECK_THAT(complaints.lines[0], Catch::Contains("the irradiance cache is full (40 records)") &&
                                       Catch::Contains("path traced") && Catch::Contains("cache.max_records"));
 }
 

@@ -188,7 +188,7 @@ TEST_CASE("A reference is used if it is complete and from the same inputs; other
     INFO(why);
     CHECK_FALSE(find());
     REQUIRE(reported.lines.size() == size_t(++old));
-    CHECK_THAT(reported.lines.back(), Contains(why) && Contains("made anew"));
+    CHECK_THAT(reported.lines.back(), Contains(why) && Contains("rendered again"));
     CHECK_FALSE(fs::exists(reference_file(temporary.path, scene)));
     CHECK(fs::exists(reference_file(temporary.path, scene).string() +
                      (old == 1 ? ".old" : ".old" + std::to_string(old))));

@@ -100,9 +100,8 @@ TEST_CASE("A gain within the noise is not reported as a gain") {
   REQUIRE(reported.size() == 6);
   for (const std::string& line : reported) CHECK_THAT(line, Contains("by more than the measurement’s noise"));
   const auto gain = findings(report(4));
-  CHECK_THAT(
-      gain[0],
-      Contains("adaptive brings the whole picture to 4.8 % in 3.92 s, plain in 15.7 s: 4.00 times sooner"));
+  CHECK_THAT(gain[0],
+             Contains("adaptive: the whole picture to 4.8 % in 3.92 s, plain in 15.7 s: 4.00 times sooner"));
   CHECK_THAT(
       gain[2],
       Contains(
@@ -288,7 +287,7 @@ TEST_CASE("A curve's best setting is reported, and the number of records for the
   };
   // Split sphere: 6 % with 500, 3 % with 2000; hessian: 4.8 % with 300, 2.4 % with 1200, so 3 % with 768.
   CHECK_THAT(line("records"),
-             Contains("hessian brings the whole picture to 3 % with 768 records, split sphere with 2000: "
+             Contains("hessian: the whole picture to 3 % with 768 records, split sphere with 2000: "
                       "2.60 times fewer"));
   CHECK_THAT(line("records"), !Contains("of one"));
   const std::string ends = line("ends with a relative squared error");

@@ -215,7 +215,7 @@ TEST_CASE("text and page show the measured values beside the expected ones") {
   CHECK_THAT(photons_page(report), Contains("<svg") && Contains("A &lt;Processor&gt;") &&
                                        Contains("rounds of photons") && !Contains("A <Processor>"));
   report["free"]["low"] = 0.008, report["free"]["high"] = 0.03;
-  CHECK_THAT(photons_text(report), Contains("not to be told from 1 %"));
+  CHECK_THAT(photons_text(report), Contains("not distinguishable from 1 %"));
   report["free"]["low"] = 0.02;
   CHECK_THAT(photons_text(report), Contains("over 1 %"));
   report["slopes"][0].erase("points");

@@ -129,7 +129,7 @@ TEST_CASE("a truncated file is refused at every length") {
     REQUIRE_THAT(reported, Contains(std::to_string(n)));
   }
   CHECK(refusal(bytes).empty());
-  CHECK_THAT(refusal(bytes + "x"), Contains("a.cache: damaged: ") && Contains("it says that it has"));
+  CHECK_THAT(refusal(bytes + "x"), Contains("a.cache: damaged: ") && Contains("its header states"));
 }
 
 TEST_CASE("a file with one byte changed is refused, for every byte and change") {
@@ -223,5 +223,5 @@ TEST_CASE("a cache fits what it was built from, and reports what differs") {
         "components.tertiary cache");
   CHECK(fits([](MadeWith& m) { m.recursive = false, m.parts = 0b0010; }).empty());
   CHECK(fits([](MadeWith&) {}, 19) ==
-        "a.cache: holds 20 records and there is room for 19; set cache.max_records to 20 or more");
+        "a.cache: holds 20 records, but the limit is 19; set cache.max_records to 20 or more");
 }

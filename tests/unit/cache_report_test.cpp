@@ -86,7 +86,7 @@ TEST_CASE("the status bar's text follows the build") {
   r = make_report(c, settings());
   CHECK((r.waits && !r.ready && r.state == "waits"));
   CHECK(r.preparing == "cache waits: probe, pass 1");
-  CHECK_THAT(r.to_go_on, Contains("cache.run goes on"));
+  CHECK_THAT(r.to_go_on, Contains("cache.run continues"));
   CHECK(r.figure("records") == 120);
   CHECK(r.figure("stage") == double(BuildStage::probe));
   CHECK(r.figure("nothing of that name") == 0);
@@ -103,12 +103,12 @@ TEST_CASE("the panel shows numbers, steps and passes, each step with its text") 
         "120 of 1\xE2\x80\x88"
         "000");
   CHECK(value_of(numbers, "Passes") == "2 of 12");
-  CHECK(value_of(numbers, "Asked in the last pass") == "0.10 %");
-  CHECK(value_of(numbers, "Not served") == "\xE2\x80\x93");
-  const auto& strip = item<solvers::StepStrip>(section(r, "Steps of building"));
+  CHECK(value_of(numbers, "New candidates, last pass") == "0.10 %");
+  CHECK(value_of(numbers, "Pixels without records") == "\xE2\x80\x93");
+  const auto& strip = item<solvers::StepStrip>(section(r, "Stages of building"));
   CHECK(strip.steps.size() == k_build_stages.size());
   CHECK(strip.last == int(BuildStage::octree));
-  for (const auto& button : item<solvers::CommandButtons>(section(r, "Steps of building")).buttons) {
+  for (const auto& button : item<solvers::CommandButtons>(section(r, "Stages of building")).buttons) {
     CHECK(solvers::find_command(info(), button.command) != nullptr);
     CHECK_FALSE(button.enabled);
   }
@@ -136,7 +136,7 @@ TEST_CASE("the panel shows numbers, steps and passes, each step with its text") 
   o.histogram.resize(33);
   c.overlap = o;
   r = make_report(c, s);
-  CHECK(value_of(section(r, "Cache"), "Not served") == "10.0 %");
+  CHECK(value_of(section(r, "Cache"), "Pixels without records") == "10.0 %");
   const auto& columns = item<solvers::Histogram>(section(r, "Cache")).columns;
   REQUIRE(columns.size() == 13);
   CHECK(columns[3].height == 1);
@@ -187,7 +187,7 @@ TEST_CASE("the card shows the record under a point and the records it reads, sho
   const auto reported = [&](Room room = Room::much) {
     return words_of(*make_report(c, settings()).card, room);
   };
-  CHECK_THAT(reported(), Contains("No record serves here: it is path traced."));
+  CHECK_THAT(reported(), Contains("No record serves here: path traced."));
   c.status.stop = StopReason::building;
   CHECK_THAT(reported(), Contains("No record serves here yet."));
   c.inspection.gathers = true;

@@ -17,7 +17,7 @@ TEST_CASE("the panel opens beside the scene's, and says if the cache is not used
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   const auto outcome = test::window(
-      "wait_scene\nwait_samples 2\nrender.pause\nwindow.section \"Steps of building\" false\nscreenshot " +
+      "wait_scene\nwait_samples 2\nrender.pause\nwindow.section \"Stages of building\" false\nscreenshot " +
       file("scene.png") +
       // The tab, then the button in the empty panel.
       "\nmouse.move 1257 48\nmouse.down\nmouse.up\nwait 0.2\nscreenshot " + file("empty.png") +

@@ -60,7 +60,8 @@ TEST_CASE("a script that waits for a picture while the cache waits gets an error
   auto outcome = test::window(std::string(k_start) + "wait_samples 2\nquit\n");
   INFO(outcome.output);
   CHECK(outcome.status != 0);
-  CHECK_THAT(outcome.output, Catch::Contains("building of the cache waits (cache.pause); cache.run goes on"));
+  CHECK_THAT(outcome.output,
+             Catch::Contains("building of the cache is paused (cache.pause); cache.run continues"));
   for (const char* command : {"cache.step", "cache.run", "wait_cache"}) {
     outcome = test::window("wait_scene\n" + std::string(command) + "\nquit\n");
     INFO(outcome.output);

@@ -13,7 +13,7 @@ namespace lucerna::bvh {
 
 namespace {
 
-// Embree allocates these through its own arena; `count` tells them apart (0: an inner node).
+// Embree allocates these in its own arena; `count` distinguishes them (0: an inner node).
 struct BuiltNode {
   uint32_t count = 0;
 };
@@ -66,9 +66,9 @@ void* create_leaf(RTCThreadLocalAllocator allocator, const RTCBuildPrimitive* pr
   return static_cast<BuiltNode*>(leaf);
 }
 
-/// Boxes of the parts of a triangle on both sides of a plane, within the box it has already been cut to. Each
-/// has the margin of the triangle's test around it, which keeps the parts of large triangles from becoming
-/// smaller than what can be known of where their rays go.
+/// Boxes of the parts of a triangle on both sides of a plane, within its already clipped box. Each includes
+/// the margin of the triangle's test, so that parts of large triangles do not become smaller than the
+/// rounding of ray positions.
 void split(const RTCBuildPrimitive* primitive, unsigned axis, float position, RTCBounds* left,
            RTCBounds* right, void* user) {
   const Job& job = *static_cast<Job*>(user);
@@ -172,8 +172,8 @@ Tree build_tree(const Triangles& triangles, const BuildOptions& options) {
   RTCBuildArguments arguments = rtcDefaultBuildArguments();
   arguments.buildQuality = options.spatial_splits ? RTC_BUILD_QUALITY_HIGH : RTC_BUILD_QUALITY_MEDIUM;
   arguments.maxBranchingFactor = 2;
-  // The stack's depth is seen to by limit_depth(), with less harm than Embree's own large leaves do; its
-  // builder gives up altogether when a limit of its own is reached.
+  // limit_depth() bounds the stack's depth, at less cost than Embree's large leaves; Embree's builder fails
+  // if its own limit is reached.
   arguments.maxDepth = 1024;
   arguments.sahBlockSize = 1;
   arguments.minLeafSize = 1;
@@ -192,7 +192,7 @@ Tree build_tree(const Triangles& triangles, const BuildOptions& options) {
   arguments.buildProgress = options.progress ? progress : nullptr;
   arguments.userPtr = &job;
   const auto* root = static_cast<const BuiltNode*>(rtcBuildBVH(&arguments));
-  // A small build may be over before Embree heeds the refusal.
+  // A small build may be over before Embree sees the refusal.
   if (job.cancelled) throw_error("bvh", "building the tree of {} triangles: cancelled", count);
   if (root) return collect(root, bounds);
 

@@ -4,8 +4,8 @@
 
 namespace lucerna::bvh {
 
-/// While it lives, this thread treats denormals as zero. They cost hundreds of cycles and mean nothing at the
-/// scale of a scene; Embree asks for this.
+/// While it lives, this thread treats denormals as zero. They cost hundreds of cycles and are negligible at
+/// the scale of a scene; Embree requires this.
 class FlushDenormals {
  public:
   FlushDenormals() : saved_(_mm_getcsr()) {

@@ -22,8 +22,8 @@ namespace lucerna::bvh {
 /// Where the distances computed are equal, both take the lower primitive id.
 class HostTracer {
  public:
-  /// Builds its trees and copies what it needs of `triangles`. `threads` trace, the
-  /// caller of trace() included; 0: one a core. Throws Error: out of memory.
+  /// Builds the trees and copies what it needs of `triangles`. `threads`: tracing threads, including the
+  /// caller of trace(); 0: one per core. Throws Error: memory.
   explicit HostTracer(const Triangles& triangles, int threads = 0);
   ~HostTracer();
   HostTracer(HostTracer&&) noexcept;

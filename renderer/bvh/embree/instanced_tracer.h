@@ -1,6 +1,6 @@
 #pragma once
-// One ray at a time against meshes and their instances, without flattening them: for the hand (what is under
-// the pointer, what stands in the way), not for light.
+// Traces single rays against meshes and their instances, without flattening them: for interaction (picking,
+// collisions), not for light.
 #include <functional>
 #include <memory>
 #include <optional>
@@ -30,8 +30,8 @@ class InstancedTracer {
     float u, v;  ///< barycentric coordinates of the second and third vertex
   };
 
-  /// Copies what it needs. `threads` build. Throws Error: out of memory. An instance of a mesh that is not
-  /// there, or has no triangles, is never hit.
+  /// Copies what it needs. `threads`: for building. Throws Error: memory. An instance of a missing or empty
+  /// mesh is never hit.
   InstancedTracer(const std::vector<Mesh>& meshes, const std::vector<Instance>& instances, int threads);
   ~InstancedTracer();
   InstancedTracer(InstancedTracer&&) noexcept;

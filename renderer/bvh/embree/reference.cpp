@@ -45,7 +45,7 @@ EmbreeReference::~EmbreeReference() = default;
 void EmbreeReference::trace(Query query, std::span<const shared::Ray> rays,
                             std::span<shared::Hit> hits) const {
   if (query == Query::closest_non_opaque)
-    throw_error("embree", "the reference does not tell non-opaque triangles apart");
+    throw_error("embree", "the reference does not distinguish non-opaque triangles");
   constexpr size_t k_chunk = 512;
   const auto chunks = static_cast<uint32_t>((rays.size() + k_chunk - 1) / k_chunk);
   impl_->workers.run(chunks, [&](uint32_t chunk) {

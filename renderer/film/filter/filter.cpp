@@ -26,10 +26,10 @@ namespace {
 // so that no pattern of the wide ones is left.
 constexpr uint32_t k_strides[] = {1, 2, 4, 1};
 
-// Pixels that are fitted in a piece of the work.
+// Pixels fitted in one work item.
 constexpr uint32_t k_piece = 1u << 16;
 
-/// Brings the mean luminance of the picture to about 1: a power of two, so that nothing is rounded.
+/// Factor that scales the picture's mean luminance to about 1: a power of two, so that nothing is rounded.
 float scale_of(const std::array<vec3, k_components>& means) {
   const float y = luminance(means[0] + means[1] + means[2] + means[3]);
   return y > 0 && std::isfinite(y) ? std::exp2(-std::round(std::log2(y))) : 1.0f;

@@ -23,11 +23,11 @@ class Filter {
   void apply(gpu::Stream& stream, const Film& film, Film& filtered, const gpu::Buffer* seen = nullptr,
              uint32_t looked_up = 0);
 
-  /// The same in pieces, between which other work may run: begin(), then step() until it returns false. The
-  /// films, `seen`, and what is in them stay as they are until then, or until release().
+  /// The same in work items, between which other work may run: begin(), then step() until it returns false.
+  /// The films, `seen` and their contents must stay unchanged until then, or until release().
   void begin(const Film& film, Film& filtered, const gpu::Buffer* seen = nullptr, uint32_t looked_up = 0);
   bool step(gpu::Stream& stream);
-  /// Gives up what is left of the work, and the memory for it.
+  /// Cancels the remaining work and frees its memory.
   void release();
 
  private:

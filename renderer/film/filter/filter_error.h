@@ -12,14 +12,14 @@ struct FilteredTile {
   double standard_error = 0;  ///< of that mean: noise and bias together
   /// Half width of the interval around `luminance` that holds the truth with probability 0.9.
   double half_width_90() const { return 1.645 * standard_error; }
-  double relative = 0;  ///< quadratic mean of the pixels' errors, each over what is largest of its
+  double relative = 0;  ///< quadratic mean of the pixels' errors, each over the maximum of its
                         ///< luminance, the tile's, and the floor
 };
 
 struct FilterError {
   uint32_t tiles_across = 0, tiles_down = 0;
-  /// Of each pixel: standard error of its luminance, noise and bias together. A pixel with less than two
-  /// samples tells nothing: its own luminance.
+  /// Of each pixel: standard error of its luminance, noise and bias together. With less than two samples: its
+  /// own luminance.
   std::vector<float> pixels;
   std::vector<float> luminances;    ///< of each pixel of the filtered picture
   std::vector<FilteredTile> tiles;  ///< in raster order

@@ -1,5 +1,5 @@
 #pragma once
-// How far an image is from a reference: the figures of `lucerna compare`, for stochastic images too.
+// Difference of an image from a reference: the figures of `lucerna compare`, also for stochastic images.
 #include <array>
 #include <string>
 #include <vector>
@@ -9,7 +9,7 @@
 namespace lucerna::film {
 
 struct CompareOptions {
-  double epsilon = 0.01;         ///< of the relative measures, in squared units of the layer; > 0
+  double epsilon = 0.01;         ///< regularization of relative measures, in squared units of the layer; > 0
   double trimmed_share = 0.001;  ///< share of the worst pixels that the trimmed measures drop; 0..1
   uint32_t block = 16;  ///< side of the blocks, pixels; > 0 (blocks at the right and bottom may be smaller)
 };
@@ -27,9 +27,9 @@ struct Comparison {
   std::string layer;
   uint32_t width = 0, height = 0;
   std::vector<std::string> channels;         ///< names in b, in the order of the vectors below
-  uint64_t pixels = 0;                       ///< that are finite in both: what the figures rest on
+  uint64_t pixels = 0;                       ///< number of pixels finite in both images: basis of the figures
   std::array<uint64_t, 2> non_finite{0, 0};  ///< values (not pixels) that are NaN or infinite, in a and in b
-  std::array<uint64_t, 2> nan{0, 0};         ///< of those, the NaNs
+  std::array<uint64_t, 2> nan{0, 0};         ///< NaNs among those
   /// Layers of either image, the one compared or not, that are not finite somewhere. No figure below holds
   /// for such pictures.
   std::vector<NonFinitePixels> non_finite_layers;
@@ -40,7 +40,7 @@ struct Comparison {
   double relmse = 0;  ///< mean over pixels of mean_C (a - b)^2 / (b^2 + epsilon)
   struct {
     double rmse = 0, relmse = 0;
-  } trimmed;  ///< the same without the ceil(trimmed_share * pixels) worst pixels of each
+  } trimmed;  ///< likewise, without the ceil(trimmed_share * pixels) worst pixels of each
   struct {
     double absolute = 0;  ///< of mean_C |a - b|
     double relative = 0;  ///< of mean_C |a - b| / sqrt(b^2 + epsilon)
@@ -56,9 +56,9 @@ struct Comparison {
 };
 
 /// Compares one layer (FilmImage::layer; "" is the sum R, G, B). Throws Error, located at the layer or
-/// "compare", when the sizes differ, a layer is missing or has not the same number of channels in both, or an
-/// option is out of range. Non-finite values do not throw: they are counted, and their pixels left out.
-/// Percentiles are nearest-rank: the ceil(q n)-th smallest value.
+/// "compare", if the sizes differ, a layer is missing or has a different number of channels, or an option is
+/// out of range. Non-finite values do not throw: they are counted, and their pixels are left out. Percentiles
+/// are nearest-rank: the ceil(q n)-th smallest value.
 Comparison compare(const FilmImage& a, const FilmImage& b, const std::string& layer = "",
                    const CompareOptions& options = {});
 
@@ -66,7 +66,7 @@ Comparison compare(const FilmImage& a, const FilmImage& b, const std::string& la
 std::string to_json(const Comparison& comparison);
 /// "" or which layers are not finite, one line: "rgb: 12 pixels of the first image, 0 of the second; ...".
 std::string non_finite_text(const Comparison& comparison);
-/// A few lines for a person, ending in a line break.
+/// A few lines of text, ending in a line break.
 std::string to_text(const Comparison& comparison);
 
 /// |a - b| * factor of a layer as sRGB bytes (RGBA, alpha 255) for write_png; a single channel is shown grey;

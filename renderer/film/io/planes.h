@@ -1,5 +1,5 @@
 #pragma once
-// Pictures of colours as planes of a FilmImage.
+// Colour pictures as planes of a FilmImage.
 #include <span>
 #include <string>
 #include <vector>
@@ -9,8 +9,7 @@
 
 namespace lucerna::film {
 
-/// Adds three channels, `prefix` and one of the three `names` each ("RGB", "XYZ"), with what `plane` has of
-/// each pixel.
+/// Adds three channels from `plane`, each named `prefix` and one of the three `names` ("RGB", "XYZ").
 inline void add_plane(FilmImage& out, const std::string& prefix, const char* names,
                       std::span<const vec3> plane) {
   for (int k = 0; k < 3; ++k) {

@@ -1,5 +1,5 @@
 #pragma once
-// A picture taken for the truth: what an image in progress is held against, layer by layer.
+// A reference picture, taken as the truth, layer by layer.
 #include <array>
 #include <optional>
 #include <span>
@@ -16,11 +16,11 @@ struct Reference {
   std::filesystem::path file;
   uint32_t width = 0, height = 0;
   std::array<std::vector<float>, k_reference_layers> luminance;  ///< Rec.709, a value a pixel, top row first
-  double mean_luminance = 0;                                     ///< of the sum
-  /// Root mean square over the pixels of its own standard error, in luminance, as its file tells (metadata
-  /// "noise"); none: the file does not, and figures hold the reference's noise as well.
+  double mean_luminance = 0;                                     ///< mean luminance of the sum
+  /// Root mean square of its own standard error over the pixels, in luminance (metadata "noise"); nullopt:
+  /// missing, and measured errors include the reference's noise.
   std::optional<LayerFigures> noise;
-  std::string scene, view, seed;  ///< of its metadata; empty: not told
+  std::string scene, view, seed;  ///< from its metadata; empty: missing
 };
 
 /// Reads an EXR as `lucerna render` writes it, for a picture of that size. Throws Error located at `file`:

@@ -88,8 +88,8 @@ std::vector<double> products(std::span<const vec3> picture, const ReferencePair&
   return error;
 }
 
-/// The mean of `error` without the share of the pixels, rounded up, that are worst by `order`; of equals
-/// those that come last. 0 where none is left.
+/// The mean of `error` without the worst share of the pixels by `order`, rounded up; of equal ones the last.
+/// 0 if none remains.
 double trimmed_mean(std::span<const double> error, std::span<const double> order, double share) {
   const size_t dropped = size_t(std::ceil(share * double(error.size())));
   const size_t kept = error.size() - std::min(dropped, error.size());

@@ -60,7 +60,7 @@ glm::dmat4 Deformer::matrix(uint32_t element) const {
     }
   }
   if (total > 0 && std::isfinite(total)) return sum / total;
-  // glTF asks for weights that sum to 1.
+  // glTF requires weights that sum to 1.
   if (!warned_)
     document_.warnings.add("{} primitives have vertices without joint weights: they follow the skin's first",
                            item_.path());

@@ -11,7 +11,7 @@ using Json = nlohmann::ordered_json;
 
 Json rgb(const vec3& v) { return {v.x, v.y, v.z}; }
 
-// What a person would call the material.
+// Common name of the kind of material.
 std::string kind_of(const Material& m) {
   if (m.unlit) return "unlit";
   std::string kind;

@@ -113,7 +113,7 @@ nlohmann::json pick_each(const nlohmann::json& root, const char* list,
   return result;
 }
 
-// tinygltf takes 3.0 for a float and refuses it as an integer; JSON schema does not tell them apart.
+// tinygltf takes 3.0 for a float and refuses it as an integer; JSON schema does not distinguish them.
 void whole_numbers_to_integers(nlohmann::json& value) {
   if (value.is_structured()) {
     for (nlohmann::json& child : value) whole_numbers_to_integers(child);

@@ -108,8 +108,8 @@ void require_inside(const Document& document, const std::filesystem::path& file,
 /// later steps touch (check_structure), then lets tinygltf make its model.
 void open_document(Document& document, const std::filesystem::path& path);
 
-/// Throws a located Error unless the structure is valid glTF 2.0, as far as it is read: afterwards every
-/// index is in range, every view inside its buffer, every accessor inside its view, the node graph a forest.
+/// Throws a located Error unless the parts that are read are valid glTF 2.0: afterwards every index is in
+/// range, every view inside its buffer, every accessor inside its view, and the node graph is a forest.
 void check_structure(const Document& document);
 /// extras.light_group of a node, material or lamp: a text or a whole number, normalized as in light_groups.h;
 /// "" if there is none. Throws a located Error for other types.

@@ -22,7 +22,7 @@ dmat4 trs(const dvec3& t, const glm::dquat& r, const dvec3& s) {
 }
 
 enum class Kind {
-  regular,  // can be inverted as far as single precision can tell, which is what the renderer computes with
+  regular,  // invertible in single precision, in which the renderer computes
   flat,     // takes volumes to areas
   nothing,  // takes areas to lines or points
   endless,  // beyond single precision's range
@@ -398,7 +398,7 @@ class Walker {
   Item root_;
   Placement placement_;
   std::map<std::pair<uint32_t, std::vector<float>>, Id> shared_;
-  std::vector<std::optional<dmat4>> globals_;  // by node, once asked for
+  std::vector<std::optional<dmat4>> globals_;  // by node, computed on demand
   std::vector<uint32_t> parents_;
 };
 

@@ -26,9 +26,9 @@ std::vector<std::string> curve(const char* name, const char* about, const char* 
   return settings;
 }
 
-/// Cached light alone is held against the reference, of records so little noisy that it is the interpolation
-/// that errs. Nothing but the metric decides their radii: in a small picture the bounds that they have
-/// otherwise leave most records one size, whatever the metric says.
+/// Compares cached light alone with the reference. Records have little noise, so interpolation is the main
+/// error. Only the metric sets the radii: in a small picture the default bounds would give most records one
+/// size.
 std::string cache_matrix() {
   const char* const k_head = R"({
   "name": "cache",
@@ -46,15 +46,14 @@ std::string cache_matrix() {
   "settings": [
     {"name": "plain", "about": "path tracing, no cache"},
     )";
-  const auto split =
-      curve("split", "cache, records reach as far as things are away", "split sphere", "split-sphere");
+  const auto split = curve("split", "cache, radii by distances", "split sphere", "split-sphere");
   const auto hessian =
-      curve("hessian", "cache, records reach in ellipses, by how their light bends", "hessian", "hessian");
+      curve("hessian", "cache, ellipses by the curvature of the light", "hessian", "hessian");
   return k_head + fmt::format("{},\n{}]}}", fmt::join(split, ",\n"), fmt::join(hessian, ",\n"));
 }
 
-/// Cached light alone, to an error that is hard to see: each scene with what leads there, found by trying,
-/// with the metric that it was tried with.
+/// Cached light alone, to a barely visible error: settings of each scene found by experiment, for the metric
+/// of that time.
 std::string indirect_matrix() {
   const char* const k_head = R"({
   "name": "indirect",
@@ -82,35 +81,31 @@ std::string indirect_matrix() {
   "settings": [
     {"name": "plain", "about": "path tracing", "budget": "seconds"},
     )";
-  return k_head +
-         setting("cache", "secondary and tertiary light from an irradiance cache, built anew", cached()) +
+  return k_head + setting("cache", "secondary and tertiary light from a new irradiance cache", cached()) +
          "]}";
 }
 
 }  // namespace
 
 std::vector<solvers::BenchInfo> bench_rows() {
-  return {{"cache",
-           "error of cached light against the records of the irradiance cache, by either metric; an hour and "
-           "a quarter",
-           cache_matrix()},
-          {"indirect",
-           "how much sooner than path tracing cached light is right to 2 % in five interiors; two and a half "
-           "hours",
-           indirect_matrix()}};
+  return {
+      {"cache", "error of cached light over the number of records, by both metrics; an hour and a quarter",
+       cache_matrix()},
+      {"indirect",
+       "speedup of cached light over path tracing to an error of 2 % in five interiors; two and a half hours",
+       indirect_matrix()}};
 }
 
 std::vector<std::string> bench_settings() {
   return {
       setting("cache", "as plain, secondary and tertiary light from an irradiance cache", cached()),
-      setting("cache-split", "as cache, records reach as far as things are away",
-              cached(R"(, "cache.metric": "split-sphere")")),
-      setting("cache-sky", "as cache, the sky's light on diffuse surfaces too",
+      setting("cache-split", "as cache, radii by distances", cached(R"(, "cache.metric": "split-sphere")")),
+      setting("cache-sky", "as cache, with direct sky light on diffuse surfaces",
               cached(R"(, "cache.environment": true)")),
   };
 }
 
-/// Whether records are kept from serving the same points twice.
+/// With and without removal of overlapping records.
 std::vector<solvers::LookupWay> lookup_ways() {
   const std::map<std::string, std::string> looked_up{{"components.secondary", "cache"},
                                                      {"components.tertiary", "cache"}};

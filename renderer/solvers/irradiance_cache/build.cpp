@@ -100,8 +100,8 @@ void Cache::Impl::end_stage(BuildStage stage, bool last) {
 }
 
 void Cache::Impl::end_pass(const Work& w) {
-  // The levels' rays have met more than the first's. Records that are relit stay as they are: nobody would
-  // fill gaps.
+  // Later levels may hit nearer geometry than the first. Relit records stay unchanged: nothing would fill the
+  // gaps.
   if (progress.levels.level() > 0 && status.relighting.records == 0)
     clamp_radii(w, ranges.evaluated(), options.radius.nearest);
   overlay.set_scales(tables.records.figures());

@@ -1,11 +1,10 @@
 #pragma once
-// What a cache holds while it is built, and the stages of a pass: probe (where do paths find no record?),
-// choose, measure (how far are things around what is tried?), thin, evaluate level by level, index. Internal
-// to the cache: cache.h is what others see.
+// State of a cache during building, and the stages of a pass: probe (find paths without records), choose,
+// measure (distances around the tried places), thin, evaluate (level by level), index. Internal; the
+// interface is cache.h.
 //
-// build.cpp leads from stage to stage and pass to pass; build_places.cpp has the stages up to the places of
-// records, build_radii.cpp how far these serve, build_light.cpp their light; relight.cpp other light on
-// places that stay.
+// build.cpp: stages and passes; build_places.cpp: stages up to the places; build_radii.cpp: radii;
+// build_light.cpp: light; relight.cpp: new light on existing places.
 #include <span>
 #include <vector>
 
@@ -23,10 +22,10 @@ namespace lucerna::irradiance_cache {
 
 enum class Stage { probe, choose, measure, thin, evaluate, index, done };
 
-/// Elevations of a level of that many rays; there are four times as many azimuths.
+/// Elevations of a level with that many rays; there are four times as many azimuths.
 uint32_t elevations_for(uint32_t rays);
 
-/// The stage that is next to be worked at, and what it has to go through.
+/// The current stage and its progress.
 struct BuildProgress {
   Stage stage = Stage::probe;
   PictureProbing probing;
@@ -35,12 +34,12 @@ struct BuildProgress {
   StageClock clock;
   Pauses pauses;
   Refining refining;
-  /// Why building had stopped before records were relit, which it does again once they are.
+  /// Why building had stopped before relighting; it stops again for that reason afterwards.
   StopReason stopped_before = StopReason::building;
 };
 
 struct Cache::Impl {
-  /// What a piece of work is done with.
+  /// Arguments of a work item.
   struct Work {
     transport::Wavefront& wavefront;
     const paths::Automaton& automaton;
@@ -52,8 +51,8 @@ struct Cache::Impl {
   CacheOptions options;
   LookupTables tables;
   RecordRanges ranges;  // of tables.records
-  RecordLight gathers;  // what records that are evaluated hold
-  RecordLight held;     // what all complete ones do; `gathers` at least
+  RecordLight gathers;  // parts of evaluated records
+  RecordLight held;     // parts that all complete records have; includes `gathers`
   Radii radii;
   Evaluator evaluator;
   PassPlaces places;
@@ -62,13 +61,13 @@ struct Cache::Impl {
   BuildProgress progress;
   CacheStatus status;
   RelightPreview preview;
-  bool previews = false;  ///< somebody watches
+  bool previews = false;  ///< a preview of relighting is wanted
 
   Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheRoutes& routes,
        const CacheOptions& o);
 
-  /// One bounded piece of a stage each; false when it was cancelled, and is to be done again. A stage that is
-  /// complete hands over to the next.
+  /// One bounded work item of each stage; false if cancelled: it will be repeated. A complete stage starts
+  /// the next one.
   bool probe(const Work& work);
   bool choose(const Work& work);
   bool measure(const Work& work);
@@ -78,35 +77,34 @@ struct Cache::Impl {
   void finish(StopReason reason);
   void clear();
   void look_from(const CacheView& view);
-  /// Building goes on; passes are counted, and the picture looked along, from the beginning.
+  /// Restarts building: passes, and paths along the picture, count from 0.
   void restart_passes(bool beyond);
-  /// What is placed and not evaluated is dropped, and what was asked for.
+  /// Drops places that are not evaluated, and all candidates.
   void drop_pass();
   void relight(const std::optional<std::vector<vec3>>& factors, uint32_t sky_group);
-  /// The first pass has no light yet: places that it has found stay, and only what light has gone into is
-  /// done again. False, and nothing done, where there are records with light, or nothing is being built.
+  /// If the first pass has no light yet: keeps its places and repeats only what depends on light. Otherwise,
+  /// or if nothing is being built: returns false and does nothing.
   bool relight_first_places();
-  /// The records of the next pass that stand without light; after the last, building goes on where it was.
+  /// Starts relighting the next pass's records; after the last pass, building continues from before.
   void relight_pass();
-  /// Complete records from elsewhere, in place of all.
+  /// Replaces all records by complete ones from elsewhere.
   void replace_records(const RawRecords& raw);
 
-  /// Records that are noisier than the last time allowed, over the root of 2, are to get further rays.
+  /// Queues further rays for records whose noise exceeds the last bound over sqrt(2).
   void begin_refining();
-  /// That is given up as far as it has come; and the next time begins with the noise of building again.
+  /// Cancels that; the next time starts from the noise bound of building.
   void end_refining();
   void forget_refining();
-  /// One piece of looking at the picture's points; false when it was cancelled.
+  /// Traces one batch of the picture's points; false if cancelled.
   bool see(transport::Wavefront& wavefront, const CacheView& view, const std::function<bool()>& cancel);
-  /// ... or all of them, for somebody who watches.
-  /// False when it was cancelled.
+  /// Traces all of them, for display. False if cancelled.
   bool see_all(transport::Wavefront& wavefront, const CacheView& view,
                const std::function<bool()>& cancel = {});
 
   Radii::Bind binding() const {
     return [this](gpu::Resources& to) { tables.bind(to); };
   }
-  /// Over the records that are evaluated, or the first `count`.
+  /// Builds the octree over the evaluated records, or over the first `count`.
   void build_octree(transport::Wavefront& wavefront) { build_octree(wavefront, ranges.evaluated()); }
   void build_octree(transport::Wavefront& wavefront, uint32_t count) {
     status.references = tables.build_octree(wavefront, count);
@@ -114,12 +112,12 @@ struct Cache::Impl {
   void write_frame(uint32_t probing, const RouteTable& routes) {
     tables.write_frame(ranges.evaluated(), probing, routes);
   }
-  /// ... of the picture's paths.
+  /// ... for the picture's paths.
   void write_frame(uint32_t probing = shared::k_probe_none) {
     tables.write_frame(ranges.evaluated(), probing, tables.picture_routes,
                        probing == shared::k_probe_none ? options.branches : 1);
   }
-  /// Of the records that are evaluated, as dark_luminance().
+  /// dark_luminance() of the evaluated records.
   float dark() const;
 
  private:
@@ -127,61 +125,60 @@ struct Cache::Impl {
   void begin_pass(const Work& work);
   void end_pass(const Work& work);
   void next_pass();
-  /// Building may wait here; `last`: of its pass.
+  /// Pauses here if requested; `last`: last stage of its pass.
   void end_stage(BuildStage stage, bool last = false);
-  /// The records of this pass, which end there, for the next piece of work on them.
+  /// Queues the records of this pass, up to `end`.
   void queue_until(uint32_t end);
   CachePass& pass() { return status.passes.back(); }
   void add_time(BuildStep step, double ms) { pass().ms[size_t(step)] += ms; }
   void add_rays(size_t records, uint32_t rays);
-  /// Writes into the status what the cache takes: its own, and what grows while records are placed.
+  /// Updates the memory in the status: the cache's own, and what grows while records are placed.
   void count_bytes();
 
   // Places:
-  /// The screen-space stage; true when there is nothing left of it to do. `cancelled` is set when it was.
+  /// Runs the screen-space stage; true when complete. Sets `cancelled`.
   bool look(const Work& work, bool& cancelled);
-  bool looks_first() const;  ///< what the camera sees straight asks by dithering alone in this pass
+  bool looks_first() const;  ///< directly visible surfaces get candidates by dithering only in this pass
   ReachOptions reach(const CacheView& view) const;
-  /// What the paths of these blocks ask for, the first of which is there in the list of those looked at.
+  /// Collects the candidates of these blocks; `first`: position in the probed list.
   void collect(const Work& work, const schedule::WorkItem& item, uint32_t first);
-  /// All paths of this pass have asked: is it the last?
+  /// Ends the probing of this pass, or of all passes.
   void end_probing();
-  /// Those that crowded as the camera saw them, and no longer do, are dropped, and asked for anew.
+  /// Drops records that were crowded for an earlier camera and no longer are; they become candidates again.
   void drop_roomy(const Work& work);
 
   // Radii:
   /// As Radii::Wanted::crowd: decided once for each record, before it is evaluated.
   float crowd() const;
-  /// Of the records of this pass, which are waiting.
+  /// For the queued records of this pass.
   Radii::Wanted wanted_radii() const;
-  /// What pilots of the records of this pass tell is pooled with what those around them do.
+  /// Averages the pilot results of this pass's records with those of their neighbours.
   void pool(const Work& work);
-  /// Radii of the records of this pass, by how far things are, or by the light too.
+  /// Sets the radii of this pass's records, from distances, or from light too.
   enum class By { distance, light };
   void set_radii(const Work& work, By by);
-  /// ... of all, also of earlier passes, by the records around, that they be no wider than they need be.
-  /// ... of the first `count`, those that are evaluated at least, by what is nearest to any of them; the
-  /// octree is built anew.
+  /// Clamps the radii of the first `count` records, at least the evaluated ones, by the nearest geometry that
+  /// any neighbour has met; rebuilds the octree.
   void clamp_radii(const Work& work, uint32_t count, float near);
 
   // Light:
-  /// One piece of looking where the picture reads records; false when it was cancelled.
+  /// Traces one batch of the importance paths; false if cancelled.
   bool see_reads(const Work& work);
-  /// A round of rays of the next records in the queue; false when it was cancelled.
+  /// Traces one round of rays of the next queued records; false if cancelled.
   bool gather(const Work& work);
-  /// The records of this pass that are still too noisy, for four times as many rays. False when there are
+  /// Queues the records of this pass that are too noisy, for four times as many rays. False if there are
   /// none.
   bool next_level();
   bool at_last_level() const;
-  /// Of these, which have all had as many rays, those that are too noisy. `figures`: of every record.
+  /// The noisy ones among records with equally many rays. `figures`: of every record.
   std::vector<uint32_t> noisy(const std::vector<uint32_t>& records,
                               const std::vector<Records::Figures>& figures) const;
-  /// The records of any pass that are to get further light next, and their level. False when there are none.
+  /// Queues the next records of any pass for refinement, and sets their level. False if there are none.
   bool next_refined();
   float share_of_noise(uint32_t record) const;
-  /// ... without those that bring no light because paths gather there.
+  /// Without crowded records, which store no light.
   std::vector<uint32_t> without_crowded(std::vector<uint32_t> list) const;
-  /// Lights and radii of this level, for those who look up.
+  /// Publishes light and radii of this level to lookups.
   void publish_level(const Work& work);
 };
 

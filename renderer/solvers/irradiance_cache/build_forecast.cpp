@@ -7,13 +7,13 @@
 namespace lucerna::irradiance_cache {
 namespace {
 
-// Measured on classroom, hall and two real interiors, from nothing: what was left of the work when a
-// pass began ...
+// Measured from scratch on classroom, hall and two real interiors: remaining share of the work when a pass
+// began, ...
 constexpr std::array<double, 7> k_remaining_after = {1, 0.85, 0.6, 0.32, 0.21, 0.11, 0.04};
-// ... of the first pass, what placing took of it, and how many rays its records got each.
+// ... share of placement in the first pass, and rays per record in it.
 constexpr double k_placing = 0.22, k_rays_a_record = 600;
 
-/// The same by how much of the picture asked for records, the largest first.
+/// Remaining share of the work by the share of uncovered paths, largest first.
 struct Remaining {
   double share, remaining;
 };
@@ -31,9 +31,9 @@ double remaining_uncovered(double share) {
   return k_remaining_uncovered.back().remaining * share / k_remaining_uncovered.back().share;
 }
 
-/// `before_ms`: of building that was complete before this began.
+/// `before_ms`: of building before it was extended or relit.
 BuildForecast forecast(double all_ms, double done_ms, double before_ms = 0) {
-  // What has taken longer than was foretold is nearly done, as far as one can tell.
+  // Work that takes longer than predicted is assumed to be nearly done.
   const double remaining = std::max(all_ms - done_ms, 0.04 * done_ms);
   return {.done = (before_ms + done_ms) / (before_ms + done_ms + remaining), .left_ms = remaining};
 }
@@ -46,22 +46,22 @@ std::optional<BuildForecast> forecast_of(const CacheStatus& s, double stop_share
   for (const CachePass& p : s.passes) all += p.total_ms();
   if (s.relighting.records > 0) {
     if (s.rays == 0 || s.relighting.rays == 0) return {};
-    // By rays alone: what is set up before the first of them is spent already.
+    // By rays alone: setup time before the first ray is already spent.
     double evaluating = 0;
     for (const CachePass& p : s.passes) evaluating += p.ms[size_t(BuildStep::evaluate)];
-    if (evaluating <= 0) return {};  // rays are counted before their time is known
+    if (evaluating <= 0) return {};  // rays are counted before their time is measured
     return forecast(evaluating * std::max(1.0, double(s.relighting.rays) / double(s.rays)), evaluating);
   }
-  if (s.passes.back().relit) return {};  // all are relit, and what is missing has not been looked for yet
-  // Passes are counted from 0 again when building is extended: what was built before says how long it takes.
-  // Those that were relit stand for the ones that had placed them, which building now goes on from.
+  if (s.passes.back().relit) return {};  // all are relit; missing records are not known yet
+  // Extending building restarts the pass count; the work before it is a measure of the rest. Relit passes
+  // stand for the ones that placed their records.
   size_t first = s.passes.size() - 1;
   while (first > 0 && (s.passes[first].number > 0 || s.passes[first].relit)) --first;
   double before = 0;
   for (size_t i = 0; i < first; ++i) before += s.passes[i].total_ms();
   const CachePass& now = s.passes.back();
   const double done = all - before, of_pass = now.total_ms();
-  // Whether this pass has come to know how much asks; else the one before it tells.
+  // Use this pass if it has counted uncovered paths already; else the one before.
   const bool looked = now.paths > 0;
   if (before > 0) {
     if (!looked) return {};
@@ -74,10 +74,10 @@ std::optional<BuildForecast> forecast_of(const CacheStatus& s, double stop_share
         k_placing + (1 - k_placing) * std::min(1.0, double(now.rays) / (now.records * k_rays_a_record));
     return forecast(done / (part * (1 - k_remaining_after[1])), done);
   }
-  const double begun = done - of_pass;  // when this pass began
+  const double begun = done - of_pass;  // at the start of this pass
   const bool last = looked && double(now.uncovered) <= stop_share * double(now.paths);
   double remaining = k_remaining_after[std::min<size_t>(now.number, k_remaining_after.size() - 1)];
-  // Small scenes have fewer passes, which is seen of how many ask.
+  // Small scenes have fewer passes, which the share of uncovered paths shows.
   if (looked)
     remaining = std::sqrt(remaining * remaining_uncovered(double(now.uncovered) / double(now.paths)));
   if (last) remaining = k_remaining_after.back();

@@ -1,5 +1,5 @@
 #pragma once
-// How long building will go on, told from what its passes have taken so far. No device: pure state.
+// Predicts the remaining time of building from the passes so far. Pure; no device.
 #include <optional>
 
 #include "solvers/irradiance_cache/cache.h"
@@ -7,13 +7,12 @@
 namespace lucerna::irradiance_cache {
 
 struct BuildForecast {
-  double done = 0;     ///< of the work, 0..1
-  double left_ms = 0;  ///< of what CachePass::ms measures
+  double done = 0;     ///< share of the work, 0..1
+  double left_ms = 0;  ///< remaining time in the measure of CachePass::ms
 };
 
-/// Nothing while building has stopped, or as long as too little is known. `stop_share`:
-/// CacheOptions::stop_share. On scenes whose passes were measured it is within a factor of 1.7 of what they
-/// took.
+/// nullopt if building has stopped or there is too little data. `stop_share`: CacheOptions::stop_share. On
+/// measured scenes the prediction is within a factor of 1.7.
 std::optional<BuildForecast> forecast_of(const CacheStatus& status, double stop_share);
 
 }  // namespace lucerna::irradiance_cache

@@ -1,4 +1,4 @@
-// The light of a pass's records, level by level, and when lookups get it.
+// Light of a pass's records, level by level, and its publication to lookups.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -13,8 +13,8 @@ using namespace shared;
 
 namespace {
 
-/// How much of the picture reads a record (PictureReads) of which the option `noise` is true after the first
-/// level, in squares of the picture's height: about what one does with a radius of 3 % of that.
+/// Importance (PictureReads) for which the option `noise` holds at the first level, in squares of the
+/// picture's height: about that of a record with a radius of 3 % of it.
 constexpr float k_noisy_importance = 0.03f * 0.03f * 0.5f;
 
 }  // namespace
@@ -100,7 +100,7 @@ bool Cache::Impl::evaluate(const Work& w) {
   return true;
 }
 
-/// Records of the first level get their radii and become those that paths find.
+/// Sets the radii of records after their first level, and makes them available to paths.
 bool Cache::Impl::index(const Work& w) {
   progress.stage = Stage::evaluate;
   publish_level(w);
@@ -115,12 +115,12 @@ bool Cache::Impl::index(const Work& w) {
 
 void Cache::Impl::publish_level(const Work& w) {
   tables.records.publish(w.stream());
-  // Radii come from the first level; what the rays of later ones meet clamps them at the end of the pass, and
-  // the next one fills the gaps. A cache that reads itself does so from the second level on: the first, of
-  // few rays, then is all that is traced without the records of its own pass.
+  // Radii come from the first level. Hits of later levels clamp them at the end of the pass, and the next
+  // pass fills the gaps. A cache that reads itself uses its own pass's records from the second level on: only
+  // the first, of few rays, is traced without them.
   if (status.relighting.records > 0) preview.take(w.stream(), tables, ranges.pass_end());
   if (ranges.waiting() == 0) return;
-  // Ellipses are by the light; circles stand.
+  // Ellipses depend on the light; circles do not.
   const bool sets_radii = ranges.has_new() || radii.by_light();
   if (sets_radii) {
     set_radii(w, radii.by_light() ? By::light : By::distance);
@@ -135,11 +135,11 @@ void Cache::Impl::publish_level(const Work& w) {
   write_frame();
 }
 
-/// What noise a record may have and be done, over the option. One more level is worth what it takes from the
-/// picture's squared error, per ray: with n rays so far, noise^2 A / n where A is how much of the picture
-/// reads the record (PictureReads). Equal gain is noise in proportion to sqrt(n) / sqrt(A).
+/// Noise bound of a record, relative to the option. The gain of one more level in the picture's squared
+/// error, per ray, is noise^2 A / n with n rays so far and importance A (PictureReads). Equal gain means
+/// noise proportional to sqrt(n) / sqrt(A).
 float Cache::Impl::share_of_noise(uint32_t record) const {
-  // Nobody reads some: those stop at the first level.
+  // Records that the picture does not read stop at the first level.
   constexpr float k_least = 1e-20f;
   return std::ldexp(std::sqrt(k_noisy_importance / std::max(picture.importance[record], k_least)),
                     int(progress.levels.level()));
@@ -162,7 +162,7 @@ std::vector<uint32_t> Cache::Impl::noisy(const std::vector<uint32_t>& records,
 
 bool Cache::Impl::next_level() {
   RecordQueue& queue = progress.queue;
-  queue.set(without_crowded(queue.all()));  // the rays so far may have met what is near
+  queue.set(without_crowded(queue.all()));  // the rays so far may have hit near geometry
   if (queue.done() || at_last_level()) return false;
   queue.set(noisy(queue.all(), tables.records.figures()));
   if (queue.done()) return false;

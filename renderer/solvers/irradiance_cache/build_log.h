@@ -1,5 +1,5 @@
 #pragma once
-// What the passes of a cache's building brought and took.
+// Results and times of the passes of building.
 #include <array>
 #include <cstdint>
 
@@ -9,42 +9,41 @@
 namespace lucerna::irradiance_cache {
 
 enum class BuildStep {
-  probe,     ///< paths from the camera, to find where records are missing
-  screen,    ///< where geometry or irradiance changes in the picture
-  choose,    ///< which of the places asked for get one
-  measure,   ///< a few rays from each, to see how wide its record would be and whether it is needed
-  evaluate,  ///< rays over the records' hemispheres
-  radius,    ///< how far each of them serves
-  octree     ///< how they are found
+  probe,     ///< traces camera paths to find where records are missing
+  screen,    ///< finds where geometry or irradiance changes in the picture
+  choose,    ///< chooses among the candidates
+  measure,   ///< traces a few rays from each: its radius, and whether it is needed
+  evaluate,  ///< traces rays over the records' hemispheres
+  radius,    ///< computes radii of validity
+  octree     ///< builds the octree for lookups
 };
 inline constexpr StepText k_step_texts[] = {
-    {"probe", "Paths from the camera, to find where records are missing."},
-    {"screen", "Where geometry or irradiance changes in the picture: there more places ask for records."},
-    {"choose", "Which of the places asked for get a record. On the host."},
-    {"measure",
-     "A few rays from each of these, to see how wide its record would be and whether it is needed."},
-    {"evaluate", "Rays over the records' hemispheres, and their sums."},
-    {"radius", "How far each new record serves."},
-    {"octree", "The octree by which records are found."},
+    {"probe", "Traces camera paths to find where records are missing."},
+    {"screen", "Finds where geometry or irradiance changes in the picture: more candidates there."},
+    {"choose", "Chooses among the candidates. On the host."},
+    {"measure", "Traces a few rays from each: the radius of its record, and whether it is needed."},
+    {"evaluate", "Traces rays over the records' hemispheres and sums them."},
+    {"radius", "Computes the radii of new records."},
+    {"octree", "Builds the octree for lookups."},
 };
 static_assert(std::size(k_step_texts) == size_t(BuildStep::octree) + 1);
 inline constexpr auto k_build_steps = names_of(k_step_texts);
 
 struct CachePass {
-  uint32_t number = 0;  ///< since the building was begun or extended; that of its records
+  uint32_t number = 0;  ///< number since building began or was extended; stored in its records
   bool complete = false;
-  bool relit = false;  ///< its records were placed before; their light was gathered anew
-  /// Paths that asked for a record, paths: of the whole picture, of which part may have been looked at
+  bool relit = false;  ///< its records existed before; their light was gathered again
+  /// Paths that found no record; all paths. For the whole picture, extrapolated from the probed part
   /// (ProbedBlocks).
   uint64_t uncovered = 0, paths = 0;
-  uint64_t uncovered_world = 0;  ///< of those that asked: not at a surface that the camera sees straight
-  uint64_t screen = 0;           ///< candidates by dithering the picture
-  uint64_t candidates = 0;       ///< in all
-  uint32_t clusters = 0;         ///< that they were cut into
-  uint32_t tried = 0;            ///< chosen of them, and measured
-  uint32_t records = 0;          ///< placed, or relit
-  uint64_t rays = 0;             ///< from them
-  /// By BuildStep: device time of the stages that it ran, wall time of what the host did (its tracer too).
+  uint64_t uncovered_world = 0;  ///< of these, paths not at a directly visible surface
+  uint64_t screen = 0;           ///< candidates from dithering the picture
+  uint64_t candidates = 0;       ///< all candidates
+  uint32_t clusters = 0;         ///< clusters of the candidates
+  uint32_t tried = 0;            ///< places drawn from them and measured
+  uint32_t records = 0;          ///< records placed or relit
+  uint64_t rays = 0;             ///< rays of the records
+  /// By BuildStep: device time of the stages, and wall time of host work (including its tracer).
   std::array<double, k_build_steps.size()> ms{};
   double total_ms() const {
     double sum = 0;
@@ -53,7 +52,7 @@ struct CachePass {
   }
 };
 
-/// Time of the wavefront's stages since its making: of the device, and of the host's tracer.
+/// Time of the wavefront's stages since construction: device, and the host's tracer.
 class StageTimer {
  public:
   explicit StageTimer(transport::Wavefront& wavefront)

@@ -1,4 +1,4 @@
-// The places of a pass's records: what asks for one, which of that is tried, which of that is needed.
+// Places of a pass's records: candidates, tried places, and the ones to keep.
 #include <algorithm>
 #include <cmath>
 
@@ -12,26 +12,25 @@ using namespace shared;
 
 namespace {
 
-/// Spacing of the points that are tried in the first pass, in the scene's radius; each pass quarters it, down
-/// to a share of the least radius that records may have there. Of what is tried only what is needed is kept,
-/// so that this says how finely a pass looks, not how many records it leaves.
+/// Spacing of the places tried in the first pass, in the scene's radius. Each pass divides it by 4, down to a
+/// fraction of the minimum radius. Only needed places are kept, so this sets how finely a pass searches, not
+/// the number of records.
 constexpr float k_first_spacing = 1.0f / 24, k_spacing_of_least = 0.6f;
-/// Passes that ask beyond the lookup too, where the cache reads itself, and how finely they look there: what
-/// no record serves there costs time, not accuracy.
+/// Number of passes with candidates beyond the lookup, if the cache reads itself, and their spacing: places
+/// without a record there cost time, not accuracy.
 constexpr uint32_t k_deep_passes = 2;
 constexpr float k_deep_spacing = 1.0f / 32;
-/// Width of the finest cells of the picture that ask, in the spacing of the pass: gaps about finer detail are
-/// left to later passes, whose records read those of the first and are cheaper.
+/// Minimum width of picture cells with candidates, in the spacing of the pass. Gaps at finer detail are left
+/// to later passes, whose records read earlier ones and are cheaper.
 constexpr float k_finest_of_spacing = 0.5f;
-/// Passes that look along one path a pixel; paths a pixel that later ones look along at most, until so many
-/// of the pixels' number ask.
+/// Number of passes with one path a pixel; later ones take up to k_most_looks paths a pixel, until this share
+/// of the pixels is uncovered.
 constexpr uint32_t k_looks_once = 3, k_most_looks = 16;
 constexpr float k_enough_uncovered = 0.1f;
-/// Passes that go on for the irradiance that the records give, when few paths ask.
+/// Minimum number of passes, so that detail of the irradiance is refined even if few paths are uncovered.
 constexpr uint32_t k_refining_passes = 4;
 
-/// Paths a pixel that a pass looks along at most: twice as many as the one before, once what is left is fine
-/// detail.
+/// Maximum number of paths a pixel in a pass: doubled from pass to pass once only fine detail is missing.
 uint32_t most_looks(uint32_t pass) {
   uint32_t looks = 1;
   for (uint32_t p = k_looks_once; p <= pass && looks < k_most_looks; ++p) looks *= 2;
@@ -49,7 +48,7 @@ bool Cache::Impl::probe(const Work& w) {
   if (!look(w, cancelled)) return !cancelled;
   const schedule::UniformSchedule before = probing.schedule;
   schedule::WorkItem item = probing.schedule.next();
-  // Each pass looks along paths of its own.
+  // Each pass uses new paths.
   const uint32_t first = item.blocks.empty() ? 0 : item.blocks.front().index;
   for (WorkBlock& b : item.blocks)
     b = {probing.blocks.list()[b.index], b.first_sample + probing.paths_before};
@@ -74,7 +73,8 @@ void Cache::Impl::end_probing() {
   const uint32_t looks = probing.schedule.complete();
   const bool covered =
       double(status.probed.uncovered) <= double(options.stop_share) * double(status.probed.paths);
-  // Few that ask show where gaps are, not how wide they are: each would get a record that serves little else.
+  // Few uncovered paths locate gaps but do not show their width: each would get a record that serves little
+  // else.
   if (!covered && looks < most_looks(status.pass) &&
       double(status.probed.uncovered) * looks < double(k_enough_uncovered) * double(status.probed.paths)) {
     probing.schedule.set_samples(2 * looks);
@@ -86,8 +86,8 @@ void Cache::Impl::end_probing() {
   const bool last = covered && (status.pass >= k_refining_passes ||
                                 double(pass().screen) <=
                                     double(options.stop_share) * double(picture.screen.sight().points()));
-  // Few ask, and may stand side by side: a hole in a wall is seen however small its share of the picture is.
-  // Not when light has changed: then there would be a little more with every change.
+  // Few uncovered paths may be adjacent: a hole in a wall is visible however small its share of the picture.
+  // Not after a change of the light: each change would add a few records.
   probing.filling = last && probing.probes_beyond && status.probed.uncovered > 0;
   if (last && !probing.filling)
     finish(StopReason::covered);
@@ -129,7 +129,7 @@ bool Cache::Impl::see_all(transport::Wavefront& wavefront, const CacheView& view
 }
 
 bool Cache::Impl::look(const Work& w, bool& cancelled) {
-  // The first pass looks at the geometry; later ones at what the records make of it.
+  // The first pass searches detail of the geometry; later ones of the irradiance.
   const bool geometry = looks_first();
   const bool irradiance = options.screen.density > 0 && options.screen.irradiance_weight > 0 &&
                           tables.picture_routes[0] != k_no_routes && status.pass > 0 &&
@@ -166,7 +166,7 @@ void Cache::Impl::collect(const Work& w, const schedule::WorkItem& item, uint32_
     const double stands_for = probing.blocks.stands_for(first + i);
     for (size_t origin = 0; origin < 3; ++origin) probing.uncovered[origin] += stands_for * counts[i][origin];
     probing.paths += stands_for * 64 * item.sample_count;
-    // Where the cache reads itself is anywhere, not there.
+    // Lookups by records' rays are not tied to a block.
     if (counts[i][k_origin_screen] + counts[i][k_origin_world] > 0) probing.blocks.note(item.blocks[i].index);
   }
   const auto& by_origin = probing.uncovered;
@@ -178,7 +178,7 @@ void Cache::Impl::collect(const Work& w, const schedule::WorkItem& item, uint32_
   places.changed();
 }
 
-/// Which of the places asked for are tried.
+/// Selects the candidates to try.
 bool Cache::Impl::choose(const Work& w) {
   const Timer wall;
   Records& records = tables.records;

@@ -1,4 +1,4 @@
-// How far the records of a pass serve, and which of them crowd.
+// Radii of a pass's records, and which of them are crowded.
 #include <algorithm>
 
 #include "gpu/stream.h"
@@ -11,8 +11,8 @@ using namespace shared;
 
 namespace {
 
-/// Of the least radius: where something is nearer, records crowd. They would be read by few pixels, each with
-/// a noise of its own.
+/// Records become crowded if geometry is nearer than this times the minimum radius: few pixels would read
+/// them, each with separate noise.
 constexpr float k_crowds = 2;
 
 }  // namespace
@@ -27,8 +27,8 @@ Radii::Wanted Cache::Impl::wanted_radii() const {
       .first = ranges.evaluated(), .count = ranges.waiting(), .most = tables.least.most, .crowd = crowd()};
 }
 
-/// How far things are around what is tried, and how light bends there, says how wide its records will be, and
-/// so which are needed.
+/// Measures distances around the tried places, and the curvature of the light, to get their radii and the
+/// ones to keep.
 bool Cache::Impl::measure(const Work& w) {
   const std::span<const uint32_t> batch =
       progress.queue.next(std::max(1u, w.wavefront.slots() / Evaluator::k_distance_rays));
@@ -103,7 +103,7 @@ void Cache::Impl::clamp_radii(const Work& w, uint32_t count, float near) {
 }
 
 void Cache::Impl::drop_roomy(const Work& w) {
-  // Twice as much room as they need, so that they are not tried again with every move of the camera.
+  // With twice the necessary room, so that small camera moves do not drop them again.
   constexpr float k_roomy = 2;
   if (!options.gather || ranges.complete() == 0) return;
   RawRecords raw = tables.records.raw(ranges.complete());

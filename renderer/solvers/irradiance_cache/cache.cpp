@@ -24,26 +24,26 @@ void drop_crowded(RawRecords& raw) {
 const char* words(StopReason reason) {
   switch (reason) {
     case StopReason::covered:
-      return "few paths still ask for records";
+      return "few paths still find no record";
     case StopReason::passes:
-      return "as many passes as are allowed";
+      return "the maximum number of passes is reached";
     case StopReason::records:
-      return "the room for records is used up";
+      return "the maximum number of records is reached";
     case StopReason::dark:
-      return "there is no light in the scene";
+      return "the scene has no light";
     case StopReason::finished_early:
-      return "it has had its share of the time";
+      return "it was ended early";
     case StopReason::building:
       break;
   }
-  return "it goes on";
+  return "it continues";
 }
 
 Cache::Cache(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheRoutes& routes,
              const CacheOptions& options)
     : impl_(std::make_unique<Impl>(device, compiler, slots, routes, options)) {
   if (slots < k_least_slots)
-    throw_error("irradiance cache", "room for {} paths in flight; {} are needed", slots, k_least_slots);
+    throw_error("irradiance cache", "{} paths in flight; at least {} are needed", slots, k_least_slots);
   const uint32_t elevations = elevations_for(options.rays);
   if (options.rays == 0 || elevations * elevations * 4 != options.rays)
     throw_error("cache.rays", "'{}': expected four times a square, such as 256 or 1024", options.rays);
@@ -71,11 +71,11 @@ void Cache::extend() {
   c.progress.probing.camera_moved = true;
   c.restart_passes(true);
   c.picture.forget();
-  // Records that are being evaluated stay so; what was asked for from where the camera was is dropped, unless
-  // somebody is looking at it, maybe from all sides.
+  // Records in evaluation stay. Candidates for the old camera are dropped, unless building is paused for
+  // inspection.
   if (c.progress.stage != Stage::evaluate && c.progress.stage != Stage::index && !c.status.waits) {
     c.drop_pass();
-    if (c.status.relighting.records > 0) c.relight_pass();  // they have been waiting in the dark
+    if (c.status.relighting.records > 0) c.relight_pass();  // their relighting has waited without light
   }
 }
 
@@ -99,7 +99,7 @@ void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const Cache
       raw.lights[i] = vec4(0);
   c.replace_records(raw);
   c.status.loaded = raw.size();
-  c.progress.probing.camera_moved = true;  // for all that is known
+  c.progress.probing.camera_moved = true;  // all present records are for the old camera
   c.status.rays = status.rays;
   if (raw.size() > 0) c.build_octree(wavefront);
   c.overlay.set_scales(c.tables.records.figures());
@@ -186,7 +186,7 @@ bool Cache::estimate_errors(transport::Wavefront& wavefront, film::Film& film, c
 SightGrid Cache::bind_sight(gpu::Resources& to) const {
   const Impl& c = *impl_;
   const SightGrid grid = c.picture.screen.sight().grid();
-  // Kernels name it whether they read it or not.
+  // Kernels declare it whether or not they read it.
   to.set("surface_texels", grid.across > 0 ? c.picture.screen.sight().surfaces() : c.tables.candidates);
   return grid;
 }

@@ -10,7 +10,7 @@ using namespace shared;
 namespace {
 
 constexpr const char* k_stage = "discontinuity";
-/// Of the width of its level's cell: what a candidate stands for, and where a record satisfies it.
+/// Reach of a candidate, and the distance of a record that covers it, in cell widths of its level.
 constexpr float k_cell_share = 0.5f;
 
 }  // namespace
@@ -22,14 +22,14 @@ struct Discontinuity::Impl {
   overlay::Sight sight;
   struct {
     gpu::Kernel surface, lit, detail, dither, draw;
-  } kernels;  // compiled when they are called for
+  } kernels;  // compiled at the first use
   struct {
-    gpu::Buffer lit, taken, taken_levels;  // of the points
-    gpu::Buffer details;                   // of the cells, level by level
+    gpu::Buffer lit, taken, taken_levels;  // by point
+    gpu::Buffer details;                   // by cell, level by level
   } buffers;
   gpu::Resources resources;
   bool begun = false;
-  std::vector<uint32_t> first{0};  // entry of each level in `details`; then their sum
+  std::vector<uint32_t> first{0};  // first entry of each level in `details`; then their sum
 
   Impl(gpu::Device& d, gpu::ShaderCompiler& c, const gpu::Defines& with)
       : device(d), compiler(c), defines(with), sight(d, c, with) {}

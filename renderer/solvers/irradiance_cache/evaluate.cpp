@@ -25,13 +25,13 @@ RecordPush push_of(const paths::Automaton& automaton, const EvaluateOptions& o) 
 struct Evaluator::Impl {
   gpu::Device& device;
   gpu::ShaderCompiler& compiler;
-  gpu::Defines defines;  ///< of kernels that read or write what paths bring
+  gpu::Defines defines;  ///< of kernels that read or write the light of paths
   gpu::Kernel record, gather, gather_groups, distances, hessian, near, guide;
   gpu::Buffer first_hits, list;
   gpu::Resources resources;
 
-  /// Rays of the listed records by `push` (whose range is filled in), a batch of the wavefront's slots at a
-  /// time, summed by `kernels`, in turn. `hits_only`: these read nothing but the first hits.
+  /// Traces the rays of the listed records by `push` (except its range), one batch of the wavefront's slots
+  /// at a time, and runs `kernels` in order. `hits_only`: these read only the first hits.
   size_t gather_by(std::initializer_list<const gpu::Kernel*> kernels, bool hits_only,
                    transport::Wavefront& wavefront, Records& records, std::span<const uint32_t> all,
                    RecordPush push, const std::function<bool()>& cancel) {
@@ -94,8 +94,8 @@ size_t Evaluator::evaluate(transport::Wavefront& wavefront, const paths::Automat
   Impl& e = *impl_;
   const uint32_t cells = o.elevations * o.azimuths, most = std::min(wavefront.slots(), k_most_rays);
   if (cells == 0 || cells > most)
-    throw_error("irradiance cache", "{} x {} rays a record; there is room for 1 to {} paths", o.elevations,
-                o.azimuths, most);
+    throw_error("irradiance cache", "{} x {} rays per record; the range is 1 to {}", o.elevations, o.azimuths,
+                most);
   if (o.near && !e.near) e.near = gpu::Kernel(e.device, e.compiler, "irradiance_cache/near.comp", e.defines);
   if (o.guides && !e.guide)
     e.guide = gpu::Kernel(e.device, e.compiler, "irradiance_cache/guide.comp", e.defines);

@@ -16,7 +16,7 @@ using namespace shared;
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "values are written as they lie in memory");
-// A record that grows or shrinks is refused by its size; this asks whether k_record_layout, too, is right.
+// A record of another size is refused by its size; the assertion below reminds to update k_record_layout.
 static_assert(k_record_texels == 6 && k_part_texels == 4 && k_part_count == 4 && k_record_layout == 5);
 
 constexpr char k_magic[8] = {'L', 'U', 'C', 'C', 'A', 'C', 'H', 'E'};
@@ -25,7 +25,7 @@ constexpr size_t k_length_at = k_head - sizeof(uint64_t);
 constexpr size_t k_checksum = sizeof(uint64_t);
 constexpr uint32_t k_bytes_a_record = sizeof(vec4) * (k_record_texels + k_part_count * k_part_texels + 1);
 
-/// One description of the format (fields()) serves both directions.
+/// One description of the format (fields()) for reading and writing.
 class Writer {
  public:
   template <class T>
@@ -56,7 +56,7 @@ class Writer {
   std::string bytes_;
 };
 
-/// Reads contents whose checksum is right; still never beyond their end.
+/// Reads contents whose checksum is valid, but still never beyond their end.
 class Reader {
  public:
   Reader(std::string_view bytes, const std::string& where) : bytes_(bytes), where_(where) {}
@@ -92,7 +92,7 @@ class Reader {
     plain(count), plain(shares);
     const uint64_t expected = count * (k_bytes_a_record + uint64_t{shares} * sizeof(uvec4));
     if (shares > k_most_groups / 4 || bytes_.size() != expected)
-      throw_error(where_, "damaged: {} bytes stand where its {} records should have {}", bytes_.size(), count,
+      throw_error(where_, "damaged: {} bytes for its {} records, expected {}", bytes_.size(), count,
                   expected);
     r.places.resize(size_t{count} * k_record_texels);
     r.lights.resize(size_t{count} * k_part_count * k_part_texels);
@@ -105,13 +105,13 @@ class Reader {
  private:
   void require(size_t size) const {
     if (bytes_.size() < size)
-      throw_error(where_, "damaged: an entry of {} bytes where {} are left", size, bytes_.size());
+      throw_error(where_, "damaged: an entry of {} bytes, but only {} follow", size, bytes_.size());
   }
   std::string_view bytes_;
   const std::string& where_;
 };
 
-// Of a file that is written nothing changes.
+// Writing does not change the file object.
 void assign(bool& value, uint8_t read) { value = read != 0; }
 void assign(const bool&, uint8_t) {}
 
@@ -122,7 +122,7 @@ void fields(Archive& a, File& f) {
   a.map(f.made_with.hashes, [&](auto& value) { a.plain(value); });
   a.map(f.made_with.settings, [&](auto& value) { a.text(value); });
   a.plain(f.made_with.parts);
-  // 1: looked up in other records, 2: by another solver.
+  // 1: looked up in other records, 2: provided by another solver.
   uint8_t tertiary = f.made_with.elsewhere ? 2 : f.made_with.recursive ? 1 : 0;
   a.plain(tertiary);
   assign(f.made_with.recursive, tertiary == 1);
@@ -142,7 +142,7 @@ uint64_t checksum(std::string_view bytes) {
   return hash.low();
 }
 
-/// "secondary, tertiary" of the bits of parts.
+/// "secondary, tertiary" from the bits of parts.
 std::string part_names(uint32_t parts) {
   constexpr const char* k_names[k_part_count] = {"environment", "secondary", "tertiary", "caustic"};
   std::vector<std::string> names;
@@ -151,13 +151,14 @@ std::string part_names(uint32_t parts) {
   return names.empty() ? "no" : fmt::format("{}", fmt::join(names, ", "));
 }
 
-/// What can be told of a file of `size` bytes by its first k_head.
+/// Checks the first k_head bytes of a file of `size` bytes.
 void check_head(std::string_view bytes, uint64_t size, const std::string& where) {
   const std::string_view magic(k_magic, sizeof k_magic);
   if (!bytes.starts_with(magic) && !magic.starts_with(bytes))
     throw_error(where, "not an irradiance cache: expected a file that begins with '{}'", magic);
   if (bytes.size() < k_head)
-    throw_error(where, "cut short: an irradiance cache has more than {} bytes, this file {}", k_head, size);
+    throw_error(where, "cut short: an irradiance cache has more than {} bytes, this file has {}", k_head,
+                size);
   Reader head(bytes.substr(magic.size()), where);
   uint32_t version = 0, layout = 0, record = 0;
   uint64_t length = 0;
@@ -169,9 +170,9 @@ void check_head(std::string_view bytes, uint64_t size, const std::string& where)
     throw_error(where,
                 "its records are laid out otherwise: layout {} of {} bytes each, expected layout {} of {}",
                 layout, record, k_record_layout, k_bytes_a_record);
-  if (size < length) throw_error(where, "cut short: {} bytes of the {} that it says it has", size, length);
+  if (size < length) throw_error(where, "cut short: {} bytes, but its header states {}", size, length);
   if (size > length || length < k_head + k_checksum)
-    throw_error(where, "damaged: {} bytes, but it says that it has {}", size, length);
+    throw_error(where, "damaged: {} bytes, but its header states {}", size, length);
 }
 
 }  // namespace
@@ -194,12 +195,12 @@ CacheFile decode(const std::string& bytes, const std::string& where) {
   uint64_t stored = 0;
   std::memcpy(&stored, bytes.data() + contents.size(), sizeof stored);
   if (const uint64_t found = checksum(contents); found != stored)
-    throw_error(where, "damaged: its checksum is {:016x}, its contents have {:016x}", stored, found);
+    throw_error(where, "damaged: its checksum is {:016x}, that of its contents {:016x}", stored, found);
   CacheFile cache;
   Reader reader(contents.substr(k_head), where);
   fields(reader, cache);
   if (cache.status.stop > StopReason::finished_early)
-    throw_error(where, "damaged: a reason to stop numbered {}, expected 0 to {}", int(cache.status.stop),
+    throw_error(where, "damaged: stop reason {}, expected 0 to {}", int(cache.status.stop),
                 int(StopReason::finished_early));
   return cache;
 }
@@ -209,9 +210,9 @@ void write_cache(const std::filesystem::path& file, const CacheFile& cache) {
 }
 
 CacheFile read_cache(const std::filesystem::path& file) {
-  // What is no cache is not read to its end, however long.
+  // Other files are not read to the end, however long.
   std::error_code error;
-  const uint64_t size = std::filesystem::file_size(file, error);  // an error where it is no regular file
+  const uint64_t size = std::filesystem::file_size(file, error);  // an error if it is not a regular file
   if (std::ifstream in(file, std::ios::binary); in && !error) {
     std::string head(k_head, 0);
     in.read(head.data(), k_head);
@@ -224,7 +225,7 @@ CacheFile read_cache(const std::filesystem::path& file) {
 void check_fits(const CacheFile& cache, const MadeWith& wanted, uint32_t room, const std::string& where) {
   const MadeWith& made = cache.made_with;
   const auto differing = [](const auto& a, const auto& b, const auto& describe) {
-    std::map<std::string, int> keys;  // of both, in order
+    std::map<std::string, int> keys;  // of both, sorted
     for (const auto& [key, value] : a) keys[key];
     for (const auto& [key, value] : b) keys[key];
     std::vector<std::string> found;
@@ -247,7 +248,7 @@ void check_fits(const CacheFile& cache, const MadeWith& wanted, uint32_t room, c
       });
   if (!settings.empty()) throw_error(where, "its records were made with {}", fmt::join(settings, ", "));
   if (const uint32_t missing = wanted.parts & ~made.parts)
-    throw_error(where, "its records hold {} light; the components that are looked up need {} light too",
+    throw_error(where, "its records hold {} light; the looked-up components also need {} light",
                 part_names(made.parts), part_names(missing));
   const auto by = [](const MadeWith& m) { return m.elsewhere ? "photons" : m.recursive ? "cache" : "path"; };
   const std::string_view made_by = by(made), wanted_by = by(wanted);
@@ -257,7 +258,7 @@ void check_fits(const CacheFile& cache, const MadeWith& wanted, uint32_t room, c
                 "components.tertiary {}",
                 made_by, wanted_by, made_by);
   if (cache.records.size() > room)
-    throw_error(where, "holds {} records and there is room for {}; set cache.max_records to {} or more",
+    throw_error(where, "holds {} records, but the limit is {}; set cache.max_records to {} or more",
                 cache.records.size(), room, cache.records.size());
 }
 

@@ -1,6 +1,6 @@
 #pragma once
-// Irradiance caches as files: all complete records, with what they were made of, so that they are read again
-// only where their light is the light. Little-endian:
+// Files of irradiance caches: all complete records and what they were made with, so that they are reused only
+// for the same light. Little-endian:
 //
 //   8 bytes      "LUCCACHE"
 //   2 x u32      version of the format, layout of the records: k_cache_file_version, shared::k_record_layout
@@ -11,7 +11,7 @@
 //   texels       the records: RawRecords, list by list
 //   u64          checksum of all before, Hash::low()
 //
-// Whoever changes the meaning of a record's texels changes k_record_layout beside them.
+// If the meaning of record texels changes, change k_record_layout too.
 #include <filesystem>
 #include <map>
 #include <string>
@@ -22,43 +22,43 @@ namespace lucerna::irradiance_cache {
 
 inline constexpr uint32_t k_cache_file_version = 3;
 
-/// What decides the light that records hold.
+/// Everything that determines the light in records.
 struct MadeWith {
-  std::string scene;                            ///< its name, for messages
+  std::string scene;                            ///< scene name for messages
   std::map<std::string, uint64_t> hashes;       ///< of the scene: "geometry", "lights", ...
-  std::map<std::string, std::string> settings;  ///< those that decide what a record holds, by key
+  std::map<std::string, std::string> settings;  ///< settings that affect records, by key
   uint32_t parts = 0;                           ///< bit p: the records hold part p
-  /// Their tertiary light was looked up in other records, not path traced.
+  /// Tertiary light was looked up in other records, not path traced.
   bool recursive = false;
-  bool elsewhere = false;  ///< ... or another solver looked it up
-  /// Decides which of the equally good caches it is: kept, not compared.
+  bool elsewhere = false;  ///< ... or provided by another solver
+  /// Selects one of the equally valid caches: stored, not compared.
   std::string seed;
 };
 
 struct CacheFile {
-  std::string program;  ///< version of the one that wrote it
+  std::string program;  ///< version of the program that wrote the file
   MadeWith made_with;
-  /// What the picture saw when the cache was complete for it, as a text that only that view gives.
+  /// Unique text of the view for which the cache was complete.
   std::string view;
-  CacheStatus status;  ///< pass, asked, paths, rays, stop
-  /// Tells which light was of which group, where records keep their shares; 0: they do not. Records of other
-  /// groups fit, and their light is then gathered anew.
+  CacheStatus status;  ///< pass, uncovered, paths, rays, stop
+  /// Hash of the assignment of lights to groups, if records store group shares; 0: they do not. Records of
+  /// another grouping fit; their light is gathered again.
   uint64_t grouping = 0;
   RawRecords records;
 };
 
 std::string encode(const CacheFile& cache);
-/// Throws Error at `where`: not a cache, of another version or layout, cut short, damaged.
+/// Throws Error at `where`: not a cache, another version or layout, truncated, damaged.
 CacheFile decode(const std::string& bytes, const std::string& where);
 
-/// Whole or not at all (write_file). Throws Error located at `file`.
+/// Writes the file atomically (write_file). Throws Error located at `file`.
 void write_cache(const std::filesystem::path& file, const CacheFile& cache);
-/// Throws Error located at `file`: cannot be read, or as decode().
+/// Throws Error located at `file`: not readable, or as decode().
 CacheFile read_cache(const std::filesystem::path& file);
 
-/// Throws Error at `where` unless these records can serve what is made with `wanted` and room for `room`
-/// records: naming what of the scene, which settings, which parts or what gathered tertiary light (where that
-/// is wanted) differ, or the setting that would fit.
+/// Throws Error at `where` unless these records serve `wanted` and fit into `room` records. The message names
+/// what differs: part of the scene, settings, parts, source of tertiary light (if wanted), or the setting to
+/// change.
 void check_fits(const CacheFile& cache, const MadeWith& wanted, uint32_t room, const std::string& where);
 
 }  // namespace lucerna::irradiance_cache

@@ -8,50 +8,49 @@ namespace {
 using scene::Change;
 using namespace solvers;
 
-/// What each change spoils. Lights and materials move no surface: whatever rays measured of the scene's shape
-/// stays true. `components.*` spoil nothing here: what records lack of what is then looked up is known only
-/// when the cache is made for it (Cache::adopt). The test goes through all rows.
+/// Lights and materials do not move surfaces, so geometric measurements stay valid. `components.*`
+/// invalidates nothing here: what records lack for new lookups is known when the cache is made for them
+/// (Cache::adopt). A test checks all rows.
 std::vector<ChangeRow> change_rows() {
   return {
-      {Change::camera, k_invalidates_coverage, "records lie on surfaces, whoever looks"},
-      {Change::size, k_invalidates_coverage, "more pixels ask at more places"},
+      {Change::camera, k_invalidates_coverage,
+       "records do not depend on the view; other surfaces become visible"},
+      {Change::size, k_invalidates_coverage, "other places become visible"},
       {Change::lamp, k_invalidates_light, "other light on the same surfaces"},
       {Change::environment, k_invalidates_light, "other light on the same surfaces"},
-      {Change::colour, k_invalidates_light,
-       "of a material, or its emission: other light on the same surfaces"},
-      {Change::material, k_invalidates_light_and_coverage, "what was a mirror may be diffuse now, and asks"},
+      {Change::colour, k_invalidates_light, "material colour or emission: other light on the same surfaces"},
+      {Change::material, k_invalidates_light_and_coverage,
+       "a former mirror may be diffuse now and need records"},
       {Change::shape, k_invalidates_all, "other surfaces"},
-      {Change::shaders, k_invalidates_all, "whatever they compute"},
-      {Change::restart, k_invalidates_all, "asked for: all anew"},
-      {"components.", k_invalidates_nothing, "as far as records hold what is then looked up"},
-      {"samples", k_invalidates_nothing, "of the picture alone"},
-      {"sampling.", k_invalidates_nothing, "of the picture alone"},
-      {"film.", k_invalidates_nothing, "how it is shown"},
-      {"show.", k_invalidates_nothing, "how it is shown"},
-      {"preview.", k_invalidates_nothing, "how it is shown"},
-      {"overlay.", k_invalidates_nothing, "how it is shown"},
-      {"relight.", k_invalidates_nothing,
-       "where records hold light another mix comes as an edit of the lamps"},
-      {"about", k_invalidates_nothing, "words"},
-      {"camera", k_invalidates_coverage, "records lie on surfaces, whoever looks"},
+      {Change::shaders, k_invalidates_all, "shaders may compute anything"},
+      {Change::restart, k_invalidates_all, "requested by the user"},
+      {"components.", k_invalidates_nothing, "handled by Cache::adopt"},
+      {"samples", k_invalidates_nothing, "affects the picture only"},
+      {"sampling.", k_invalidates_nothing, "affects the picture only"},
+      {"film.", k_invalidates_nothing, "display only"},
+      {"show.", k_invalidates_nothing, "display only"},
+      {"preview.", k_invalidates_nothing, "display only"},
+      {"overlay.", k_invalidates_nothing, "display only"},
+      {"relight.", k_invalidates_nothing, "a mix that changes record light arrives as an edit of the lamps"},
+      {"about", k_invalidates_nothing, "text only"},
+      {"camera", k_invalidates_coverage, "records do not depend on the view; other surfaces become visible"},
       {"tracer", k_invalidates_nothing, "all tracers find the same surfaces"},
-      {"lights.", k_invalidates_light, "the rays' noise"},
-      {"path.batch", k_invalidates_nothing, "how work is cut"},
-      {"path.classes", k_invalidates_nothing, "by which kernels hits are shaded"},
-      {"path.roulette_depth", k_invalidates_light, "the rays' noise"},
-      {"path.max_depth", k_invalidates_light_and_coverage,
-       "how far rays go, and from where lookups are made"},
-      {"seed", k_invalidates_all, "another cache, as good as this one"},
+      {"lights.", k_invalidates_light, "noise of the rays"},
+      {"path.batch", k_invalidates_nothing, "size of work items"},
+      {"path.classes", k_invalidates_nothing, "choice of shading kernels"},
+      {"path.roulette_depth", k_invalidates_light, "noise of the rays"},
+      {"path.max_depth", k_invalidates_light_and_coverage, "length of rays, and places of lookups"},
+      {"seed", k_invalidates_all, "another, equally valid cache"},
       {"cache.rays", k_invalidates_light, "first level of the rays"},
       {"cache.max_rays", k_invalidates_light, "last level of the rays"},
-      {"cache.noise", k_invalidates_light, "who gets further levels"},
-      {"cache.environment", k_invalidates_light, "what of the sky records hold; its threshold too"},
+      {"cache.noise", k_invalidates_light, "which records get further levels"},
+      {"cache.environment", k_invalidates_light, "sky light in records, and its threshold"},
       {"cache.passes", k_invalidates_coverage, "when building ends"},
       {"cache.stop", k_invalidates_coverage, "when building ends"},
-      {"cache.max_records", k_invalidates_coverage, "room; all, where there are more records than that"},
-      {"cache.branches", k_invalidates_nothing, "of the picture alone"},
-      {"cache.pause", k_invalidates_nothing, "where building waits to be looked at"},
-      {"cache.", k_invalidates_all, "where records lie and how far they serve: radii, metric, placement"},
+      {"cache.max_records", k_invalidates_coverage, "capacity; invalidates all if there are more records"},
+      {"cache.branches", k_invalidates_nothing, "affects the picture only"},
+      {"cache.pause", k_invalidates_nothing, "pauses of building"},
+      {"cache.", k_invalidates_all, "places and radii of records"},
   };
 }
 
@@ -63,8 +62,8 @@ const solvers::SolverInfo& info() {
       .label = "Cache",
       .title = "the irradiance cache",
       .help =
-          "Irradiance cache: light is gathered at few points and interpolated between them; smooth and "
-          "quick on large surfaces, with an error that more samples do not take away.",
+          "Irradiance cache: computes light at few points and interpolates between them. Fast and smooth on "
+          "large surfaces; its error does not fall with more samples.",
       .serves = {false, true, true, false},
       .looked_up = true,
       .consumes_lookups = true,
@@ -87,18 +86,17 @@ const solvers::SolverInfo& info() {
            {.option = "overlay.discontinuity", .label = "Detail", .shortcut = 'G'}},
       .commands = {{.name = "step",
                     .label = "Next stage",
-                    .help =
-                        "Goes on building the irradiance cache to the end of the next stage and waits there "
-                        "(see cache.pause); a script goes on when it waits, or is complete.",
+                    .help = "Builds the irradiance cache to the end of the next stage and pauses there (see "
+                            "cache.pause). A script continues when it has paused or is complete.",
                     .shortcut = 'X',
                     .until_still = true},
                    {.name = "run",
-                    .label = "Go on",
-                    .help = "Goes on building the irradiance cache without a pause until it is complete.",
+                    .label = "Continue",
+                    .help = "Builds the irradiance cache without a pause until it is complete.",
                     .shortcut = 'J'}},
       .file = FileInfo{.extension = ".cache",
                        .content = "the records of the irradiance cache",
-                       .fits = "of the same scene, lit alike; what this view is missing is added"},
+                       .fits = "of the same scene and lighting; missing records of this view are added"},
       .benches = bench_rows(),
       .against_noise = {"cache.rays", "cache.noise"},
       .against_bias = {"cache.error"},

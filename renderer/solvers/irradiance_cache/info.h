@@ -1,6 +1,5 @@
 #pragma once
-// What the irradiance cache says of itself: its options, what changes spoil of it, its views, commands,
-// files.
+// Description of the irradiance cache: options, change table, views, commands, files.
 #include "solvers/info.h"
 
 namespace lucerna::irradiance_cache {

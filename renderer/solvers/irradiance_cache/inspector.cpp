@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint64_t k_inspection_bytes = sizeof(InspectHeader) + k_inspect_most * sizeof(InspectServing);
 constexpr vec3 k_line_ink{1.0f, 0.86f, 0.45f};
-constexpr float k_least_weight = 0.004f;  // of lines; a thinner one would not be seen
+constexpr float k_least_weight = 0.004f;  // of lines; thinner ones would be invisible
 
 }  // namespace
 
@@ -23,7 +23,7 @@ struct Inspector::Impl {
   gpu::ShaderCompiler& compiler;
   struct {
     gpu::Kernel inspect, overlap, look_up, lines, normals;
-  } kernels;  // compiled when they are called for
+  } kernels;  // compiled at the first use
   struct {
     gpu::Buffer inspection, overlap, looked_up, lines, segments;
   } buffers;
@@ -33,7 +33,7 @@ struct Inspector::Impl {
   Impl(gpu::Device& d, gpu::ShaderCompiler& c) : device(d), compiler(c), painter(d, c) {}
 
   const gpu::Kernel& ready(gpu::Kernel& kernel, const char* file) {
-    // What a lookup reads of a record is not called here: no part of it is compiled in.
+    // The light of records is not read here: none of that code is compiled in.
     if (!kernel)
       kernel = gpu::Kernel(device, compiler, file,
                            {{"LUCERNA_CACHE_PARTS", "0u"}, {"LUCERNA_CACHE_ELLIPSES", "1"}});
@@ -136,18 +136,18 @@ void Inspector::draw_lines(const overlay::Canvas& canvas, const Cache& cache, co
   const vec2 here(float(found.x) + 0.5f, float(found.y) + 0.5f);
   vec2 lo = here - 4.0f, hi = here + 4.0f;
   const auto cover = [&](const vec2& p, float reach) {
-    // A centre may lie far outside the picture.
+    // A centre may be far outside the picture.
     const vec2 inside = glm::clamp(p, vec2(-1e4f), vec2(1e5f));
     lo = glm::min(lo, inside - reach), hi = glm::max(hi, inside + reach);
   };
   std::vector<OverlayLine> list;
-  for (auto s = found.serving.rbegin(); s != found.serving.rend(); ++s) {  // the heaviest on top
+  for (auto s = found.serving.rbegin(); s != found.serving.rend(); ++s) {  // heaviest last, on top
     if (s->weight < k_least_weight || s->depth <= 0) continue;
     const float strength = std::sqrt(s->weight / found.serving.front().weight);
     list.push_back({here, s->at, found.surface.depth, s->depth, 0.4f + 1.2f * strength,
                     0.3f + 0.65f * strength, k_line_ink});
     cover(s->at, 4);
-    // Its centre: a point.
+    // The centre, as a point.
     list.push_back({s->at, s->at, s->depth, s->depth, 1.5f + strength, 0.5f + 0.5f * strength, k_line_ink});
   }
   list.push_back({here, here, found.surface.depth, found.surface.depth, 2.0f, 1.0f, vec3(1)});
@@ -174,7 +174,7 @@ void Inspector::draw_lines(const overlay::Canvas& canvas, const Cache& cache, co
 }
 
 void Inspector::draw_normals(const overlay::Canvas& canvas, const Cache& cache, uint32_t color) {
-  // Of records that are complete alone: the others have no radius yet.
+  // Complete records only: the others have no radius yet.
   const uint32_t records = cache.status().records;
   if (records == 0) return;
   Impl& i = *impl_;

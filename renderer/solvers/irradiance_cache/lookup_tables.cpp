@@ -8,14 +8,14 @@ using namespace shared;
 
 namespace {
 
-/// References of the octree that there is memory for, a record.
+/// Octree references per record for which memory is allocated.
 constexpr uint32_t k_references = 16;
 
-/// Records that a leaf of it lists before it is split.
+/// Records in an octree leaf above which it is split.
 constexpr uint32_t k_crowd = 16;
 
-/// Of a record's radius: how far off its plane it serves at most. Off the plane between its own and the
-/// point's it is `off_plane`; half of what the normals differ by turns that away from its own.
+/// Largest distance from its plane at which a record serves, in radii: `off_plane` from the plane midway
+/// between its own and the point's, plus what half the difference of the normals adds.
 float slab_thickness(float off_plane, float normal_tolerance) {
   return off_plane + 0.5f * std::sqrt(2 * normal_tolerance);
 }
@@ -105,8 +105,8 @@ bool LookupTables::records_look_up() const {
 }
 
 RouteTable LookupTables::routes_beyond_picture() const {
-  // Beyond the picture's lookups paths read where the rays of records do; and what those have read has read
-  // what its own rays met, however many diffuse events further on.
+  // Beyond the picture's lookups paths read like rays of records do; records there contain light of any
+  // number of further diffuse events.
   RouteTable table = picture_routes;
   const auto end = record_routes.begin() + k_gather_state;
   const auto own = std::find_if(record_routes.begin(), end, looks_up);

@@ -6,7 +6,7 @@
 namespace lucerna::irradiance_cache {
 
 float dark_luminance(std::span<const float> light, uint32_t count) {
-  // Where records crowd they have none.
+  // Crowded records have no light.
   double sum = 0;
   uint32_t lit = 0;
   for (const float l : light.first(count)) sum += double(l), lit += l > 0;

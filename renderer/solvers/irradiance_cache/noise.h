@@ -1,5 +1,5 @@
 #pragma once
-// Which records are too noisy and get more rays. No device: pure.
+// Selects records that are too noisy and get more rays. Pure; no device.
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -7,29 +7,28 @@
 
 namespace lucerna::irradiance_cache {
 
-/// Of a record, by the rays that it has had so far.
+/// Statistics of a record from its rays so far.
 struct Noise {
   float error = 0;  ///< standard error of its luminance
   float light = 0;  ///< its luminance, as `error`
-  float bound = 0;  ///< of error over light: above it more rays are worth their while
+  float bound = 0;  ///< bound of error over light, above which more rays are efficient
 };
 
-/// Records before a record and behind it, of the list, by which it is judged.
+/// Number of records before and behind a record in the list that are judged with it.
 inline constexpr size_t k_around = 4;
 
-/// Irradiance, luminance: what records of less are held against, because what they miss is seen less. A tenth
-/// of the mean of the first `count`, those without light left out; 1 where none has any.
+/// Minimum luminance in relative errors, because errors of darker records are less visible: a tenth of the
+/// mean of the first `count`, without unlit records; 1 if all are unlit.
 float dark_luminance(std::span<const float> light, uint32_t count);
 
-/// Indices, rising, of those that are too noisy: whose neighbours in the list have a root mean square error
-/// of more than `bound` times their mean light, or times `darkest` where they are darker. Neighbours should
-/// be alike: in the order of their places, with as many rays each.
+/// Rising indices of the records that are too noisy: the root mean square error of a record's neighbours in
+/// the list exceeds `bound` times their mean light, or times `darkest` if they are darker. Neighbours should
+/// be similar: sorted by place, with equally many rays each.
 ///
-/// A record is not judged by itself, because its error and light come of the same rays as the irradiance that
-/// it stops with: one that by chance has missed what is bright has too little of both, one that has met too
-/// much light has too small a ratio, and stopping at either would bias what is left. So light that few rays
-/// find (a caustic) is looked for wherever a record near by has found it. A record that is alone is judged by
-/// itself.
+/// A record is not judged alone: its error estimate comes from the same rays as its irradiance. A record that
+/// missed a bright feature by chance has too small an error and too little light; one that met it too often
+/// has too small a ratio; stopping by either would bias the result. Light that few rays find (a caustic) is
+/// therefore searched wherever a nearby record has found it. A record without neighbours is judged alone.
 std::vector<uint32_t> too_noisy(std::span<const Noise> list, float darkest);
 
 }  // namespace lucerna::irradiance_cache

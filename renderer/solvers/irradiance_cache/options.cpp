@@ -4,148 +4,129 @@ namespace lucerna::irradiance_cache {
 
 namespace {
 
-/// How far records serve.
+/// Radii of validity.
 std::vector<OptionInfo> radius_rows() {
   return {
-      choice_option(
-          "cache.metric", "hessian", {"split-sphere", "hessian"}, "",
-          "Irradiance cache: what decides how far a record serves. hessian: how its light bends from "
-          "place to place, with ellipses that are longer where it bends less; split-sphere: how far "
-          "things are that it sees, in whatever light.",
-          "Metric"),
+      choice_option("cache.metric", "hessian", {"split-sphere", "hessian"}, "",
+                    "Irradiance cache: measure that sets the radii of records. hessian: curvature of the "
+                    "irradiance; the region of validity is an ellipse, longer where the light changes less. "
+                    "split-sphere: distances of the surfaces around, independent of the light.",
+                    "Metric"),
       real_option(
           "cache.error", "0.3", 0.01, 1, "",
-          "Irradiance cache: how far records serve: radii are in proportion to it, by either metric. "
-          "Smaller: more records, less error. split-sphere: radius over the harmonic mean distance of what "
-          "a record sees.",
+          "Irradiance cache: scale of the radii of records, for either metric. Smaller: more records, less "
+          "error. split-sphere: radius over the harmonic mean distance of the surfaces around.",
           "Error bound"),
       real_option(
           "cache.nearest", "1", 0.1, 1, "of the distance",
-          "Irradiance cache: greatest radius of a record over the distance of the nearest thing that it or "
-          "a record that it reaches sees. Less: more records, and less error, where narrow things stand "
-          "before a surface."),
+          "Irradiance cache: maximum radius of a record over the distance of the nearest surface that it or "
+          "a record in reach sees. Smaller: more records, and less error near narrow objects."),
       real_option("cache.min_radius", "6", 0, 100, "pixels",
-                  "Irradiance cache: least radius of a record, as the camera sees it.",
+                  "Irradiance cache: minimum radius of a record as seen from the camera.",
                   "Radius \xE2\x89\xA5"),
       real_option("cache.max_radius", "0.1", 0.001, 1, "of the scene's radius",
-                  "Irradiance cache: greatest radius of a record.", "Radius \xE2\x89\xA4"),
+                  "Irradiance cache: maximum radius of a record.", "Radius \xE2\x89\xA4"),
       boolean_option(
           "cache.gather", "false",
-          "Irradiance cache: where something is nearer than twice the least radius, along edges, records "
-          "only "
-          "tell where light comes from. Paths gather it from there and end in records one vertex later: "
-          "grain that more samples take away, instead of specks that further rays of records do, and several "
-          "times dearer."),
-      integer_option(
-          "cache.branches", 4, 1, 64, "paths",
-          "Irradiance cache: paths by which each sample of the picture gathers where it does "
-          "(cache.gather). More: less grain along edges, and more time a sample where there are many.",
-          "Paths along edges"),
+          "Irradiance cache: paths gather near edges, where surfaces are nearer than twice the minimum "
+          "radius. Records there only store where light comes from; paths sample these directions and end in "
+          "records one vertex later. The error is noise that more samples reduce, instead of blotches that "
+          "only more rays reduce; it costs several times as much."),
+      integer_option("cache.branches", 4, 1, 64, "paths",
+                     "Irradiance cache: gathering paths per sample of the picture (cache.gather). More: less "
+                     "noise near edges, more time per sample.",
+                     "Paths along edges"),
       real_option(
           "cache.thinning", "0.6", 0, 1, "of the radius",
-          "Irradiance cache: within that a record makes others superfluous that are tried with it. Less: "
-          "more "
-          "records, and more of them serve a point; 0: all that are tried are kept."),
+          "Irradiance cache: fraction of its radius within which a record removes others tried in the same "
+          "pass. Smaller: more records, and more of them serve each point; 0: none is removed."),
   };
 }
 
-/// What they hold, and how many there are.
+/// Rays, light and number of records.
 std::vector<OptionInfo> light_rows() {
   return {
       choice_option("cache.rays", "256", {"64", "256", "1024", "4096"}, "rays",
-                    "Irradiance cache: rays from a record over its hemisphere, at first.", "First rays"),
-      choice_option(
-          "cache.max_rays", "65536", {"64", "256", "1024", "4096", "16384", "65536"}, "rays",
-          "Irradiance cache: rays of the last level that a noisy record gets, each four times the one "
-          "before.",
-          "Most rays"),
-      real_option(
-          "cache.noise", "0.3", 0, 10, "",
-          "Irradiance cache: relative standard error above which a record with a radius of 3 % of the "
-          "picture's height gets more rays than the first level. Those that more of the picture reads get "
-          "more of them, others fewer, for what they are worth to it. While samples grow more it is lowered "
-          "where that pays more than they do.",
-          "More rays above"),
+                    "Irradiance cache: rays of a record's first level, over its hemisphere.", "First rays"),
+      choice_option("cache.max_rays", "65536", {"64", "256", "1024", "4096", "16384", "65536"}, "rays",
+                    "Irradiance cache: rays of the last level of a noisy record; each level has four times "
+                    "the rays of the one before.",
+                    "Most rays"),
+      real_option("cache.noise", "0.3", 0, 10, "",
+                  "Irradiance cache: relative standard error above which a record gets more rays than the "
+                  "first level. Valid for a record with a radius of 3 % of the picture's height; records "
+                  "that more of the picture reads get more rays, others fewer. The bound falls as samples "
+                  "accumulate, where more rays are more efficient than more samples.",
+                  "More rays above"),
       boolean_option(
           "cache.environment", "false",
-          "Irradiance cache: records also hold the light straight from the sky, so that surfaces that it "
-          "lights need no noisy shadow rays to it. Where secondary light is cached, only while primary "
-          "light is on."),
-      real_option(
-          "cache.environment_threshold", "16", 2, 1000000, "x mean",
-          "Irradiance cache: texels of the environment brighter than so many times its mean radiance are no "
-          "sky but a sun, and are sampled directly everywhere."),
-      integer_option(
-          "cache.max_records", 300000, 16, 400000, "records",
-          "Irradiance cache: room for records, of 592 bytes each and 1.9 kB with the tree that finds them; "
-          "building ends when it is used up.",
-          "Room"),
-      integer_option("cache.passes", 12, 1, 64, "passes", "Irradiance cache: passes of building at most.",
-                     "Most passes"),
-      real_option(
-          "cache.stop", "0.02", 0, 1, "",
-          "Irradiance cache: building ends when no greater share of the paths still asks for records; "
-          "these are "
-          "path traced.",
-          "Stop at"),
+          "Irradiance cache: records also store direct light of the sky, so that surfaces lit by it need no "
+          "noisy shadow rays to it. Takes effect if secondary light is cached and primary light is on."),
+      real_option("cache.environment_threshold", "16", 2, 1000000, "x mean",
+                  "Irradiance cache: texels of the environment brighter than this times its mean radiance "
+                  "count as the sun, which is always sampled directly."),
+      integer_option("cache.max_records", 300000, 16, 400000, "records",
+                     "Irradiance cache: maximum number of records, which sets its memory; building ends when "
+                     "it is reached.",
+                     "Room"),
+      integer_option("cache.passes", 12, 1, 64, "passes",
+                     "Irradiance cache: maximum number of passes of building.", "Most passes"),
+      real_option("cache.stop", "0.02", 0, 1, "",
+                  "Irradiance cache: building ends when at most this share of the paths finds no record; "
+                  "those paths are path traced.",
+                  "Stop at"),
   };
 }
 
-/// Where the picture asks for them.
+/// Candidates in the picture.
 std::vector<OptionInfo> candidate_rows() {
   return {
-      real_option(
-          "cache.candidates", "1", 0, 16, "a cell",
-          "Irradiance cache: candidates for records, on every scale, in a cell of the picture in which "
-          "geometry or irradiance changes fully; few fall on smooth walls. 0: every pixel that no record "
-          "serves asks.",
-          "Candidates"),
-      real_option(
-          "cache.irradiance_weight", "1", 0, 1000, "",
-          "Irradiance cache: how much a relative difference of irradiance between neighbouring cells counts "
-          "as detail in later passes; 0: not at all.",
-          "Light weighs"),
+      real_option("cache.candidates", "1", 0, 16, "a cell",
+                  "Irradiance cache: candidates for records in a picture cell of full detail, at every "
+                  "scale; flat walls get few. 0: every pixel without a record is a candidate.",
+                  "Candidates"),
+      real_option("cache.irradiance_weight", "1", 0, 1000, "",
+                  "Irradiance cache: weight of the relative difference of irradiance between neighbouring "
+                  "cells as detail, in later passes; 0: ignored.",
+                  "Light weighs"),
   };
 }
 
-/// What a person sees of it.
+/// Display.
 std::vector<OptionInfo> shown_rows() {
   return {
-      without_restart(choice_option(
-          "cache.pause", "off", {"off", "pass", "stage"}, "",
-          "Irradiance cache: building waits after every pass, or every stage of it, for cache.step or "
-          "cache.run. In the window and its scripts alone: batch rendering goes on.")),
+      without_restart(
+          choice_option("cache.pause", "off", {"off", "pass", "stage"}, "",
+                        "Irradiance cache: pauses building after every pass or stage, until cache.step or "
+                        "cache.run. Only in the window and its scripts; batch rendering ignores it.")),
       without_restart(boolean_option(
           "overlay.records", "false",
-          "Shows over the picture the irradiance cache's records as discs of their validity.", "Records")),
-      without_restart(choice_option(
-          "overlay.records_by", "pass", {"pass", "origin", "rays", "distance", "error"}, "",
-          "What records are coloured by: the pass that placed them, what asked for them, their rays, "
-          "the harmonic "
-          "mean of the distances that they see, their error.",
-          "Coloured by")),
+          "Draws the records of the irradiance cache over the picture, as discs of their validity.",
+          "Records")),
+      without_restart(
+          choice_option("overlay.records_by", "pass", {"pass", "origin", "rays", "distance", "error"}, "",
+                        "Colour of drawn records: the pass that placed them, the origin of their candidate, "
+                        "their rays, the harmonic mean distance of the surfaces around, or their error.",
+                        "Coloured by")),
       without_restart(boolean_option("overlay.normals", "false",
-                                     "Shows over the picture the normals of the irradiance cache's "
-                                     "records, as short lines from their centres.",
+                                     "Draws the normals of the irradiance cache's records over the picture, "
+                                     "as short lines from their centres.",
                                      "Normals")),
       without_restart(choice_option(
           "overlay.placement", "off", {"off", "stage", "candidates", "clusters", "chosen"}, "",
-          "Shows over the picture how the last pass of building chose the places of the irradiance "
-          "cache's records: the candidates that asked, their clusters with what is tried, or what of "
-          "that is chosen; stage: as far as building has come.",
+          "Draws how the last pass of building chose the places of records: all candidates, their clusters "
+          "with the tried places, or the chosen places; stage: the current state of building.",
           "Placement")),
       without_restart(boolean_option("overlay.overlap", "false",
-                                     "Shows over the picture how many records serve each pixel.", "Overlap")),
-      without_restart(choice_option(
-          "overlay.discontinuity", "off", {"off", "geometry", "irradiance"}, "",
-          "Shows over the picture how much geometry, or the irradiance that the present records give, "
-          "changes there: by this the irradiance cache picks candidates in the picture.",
-          "Detail of")),
-      without_restart(
-          integer_option("overlay.discontinuity_level", 0, 0, 12, "",
-                         "Level of the discontinuity's pyramid that is shown: its cells are 2 to that power "
-                         "pixels wide.",
-                         "Level")),
+                                     "Draws the number of records that serve each pixel, as a heat map.",
+                                     "Overlap")),
+      without_restart(choice_option("overlay.discontinuity", "off", {"off", "geometry", "irradiance"}, "",
+                                    "Draws the detail of geometry, or of the present irradiance, from which "
+                                    "candidates in the picture are selected.",
+                                    "Detail of")),
+      without_restart(integer_option(
+          "overlay.discontinuity_level", 0, 0, 12, "",
+          "Level of the detail pyramid that is drawn; its cells are 2^level pixels wide.", "Level")),
   };
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// The tables of options and benches of the irradiance cache (info.h).
+// Option table and benches of the irradiance cache (info.h).
 #include "solvers/info.h"
 
 namespace lucerna::irradiance_cache {

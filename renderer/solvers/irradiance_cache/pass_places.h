@@ -1,6 +1,5 @@
 #pragma once
-// What becomes of the places that a pass asks for: candidates, some of which are tried, some of which are
-// chosen. Kept for somebody who watches until the next pass begins.
+// Places of a pass for display: candidates, tried ones and chosen ones. Kept until the next pass begins.
 #include <cstdint>
 #include <vector>
 
@@ -9,7 +8,7 @@
 
 namespace lucerna::irradiance_cache {
 
-/// `radii` are of what is tried, `chosen` indices of it; each is empty until its stage has ended.
+/// `radii`: of the tried places; `chosen`: indices into them. Each is empty until its stage has ended.
 class PassPlaces {
  public:
   Placement candidates;
@@ -23,9 +22,9 @@ class PassPlaces {
     tried.clear(), chosen.clear(), radii.clear();
     changed();
   }
-  /// Whoever changes any of it calls this, so that who watches looks anew.
+  /// Call after any change, so that the display is updated.
   void changed() { ++version_; }
-  /// Reads the candidates from the device when there have been changes.
+  /// Reads the candidates from the device if they have changed.
   PlacementShown shown() {
     if (shown_version_ != version_) shown_ = candidates.choice(), shown_version_ = version_;
     return {shown_.candidates, shown_.cluster, tried, radii, chosen, version_};
@@ -33,7 +32,7 @@ class PassPlaces {
 
  private:
   uint64_t version_ = 0;
-  Choice shown_;  // the candidates as they were last asked for
+  Choice shown_;  // candidates of the last read
   uint64_t shown_version_ = ~0ull;
 };
 

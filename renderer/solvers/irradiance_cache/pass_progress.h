@@ -1,6 +1,5 @@
 #pragma once
-// How far building has come: what of the picture has been asked, and how long stages have taken. No device:
-// pure state.
+// Progress of building: probed part of the picture, and times of the stages. Pure state; no device.
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -11,23 +10,25 @@
 
 namespace lucerna::irradiance_cache {
 
-/// How the picture is looked at, in this pass and in those before.
+/// Probing of the picture with paths, in this pass and before.
 struct PictureProbing {
-  ProbedBlocks blocks;                 ///< of the picture, that this pass looks along
-  schedule::UniformSchedule schedule;  ///< of paths along these; it holds only while `begun`
-  /// Paths of this pass that asked for a record, by shared::k_origin_*, and paths: of the whole picture.
+  ProbedBlocks blocks;                 ///< blocks that this pass probes
+  schedule::UniformSchedule schedule;  ///< of their paths; valid only while `begun`
+  /// Paths of this pass that found no record, by shared::k_origin_*, and all paths; extrapolated to the whole
+  /// picture.
   std::array<double, 3> uncovered{};
   double paths = 0;
-  bool begun = false;         ///< probing, in this pass
-  bool screen_done = false;   ///< the screen-space stage, in this pass
+  bool begun = false;         ///< probing has begun in this pass
+  bool screen_done = false;   ///< the screen-space stage of this pass is done
   bool camera_moved = false;  ///< since the last pass began
-  uint32_t paths_before = 0;  ///< a pixel, of the passes before: each looks along paths of its own
-  /// Paths ask beyond the picture's lookups too in the first passes, where the cache reads itself.
+  uint32_t paths_before = 0;  ///< per pixel, in earlier passes; each pass uses new paths
+  /// In the first passes of a cache that reads itself, vertices beyond the picture's lookups become
+  /// candidates too.
   bool probes_beyond = true;
-  /// This pass is the last: few ask, but these may stand side by side.
+  /// This is the last pass: few paths find gaps, but these may be adjacent.
   bool filling = false;
 
-  /// Passes are counted from the beginning.
+  /// Counts passes from 0 again.
   void restart(bool beyond) {
     paths_before = 0;
     probes_beyond = beyond;
@@ -35,19 +36,19 @@ struct PictureProbing {
   }
 };
 
-/// Further light for records that have some, once building is complete.
+/// Refinement: more rays for existing records after building is complete.
 struct Refining {
   bool under_way = false;
-  uint32_t level = 0;  ///< records that have had the rays of levels up to this one are looked at next
-  float noise = 1;     ///< what records may have, over that of building
+  uint32_t level = 0;  ///< records with the rays of levels up to this one are tested next
+  float noise = 1;     ///< noise bound relative to that of building
 };
 
-/// Times the stages of a pass by what the pass has taken so far.
+/// Measures the stages of a pass as differences of the pass's totals.
 class StageClock {
  public:
-  /// A pass begins.
+  /// Call when a pass begins.
   void restart() { ms_before_ = 0, rays_before_ = 0; }
-  /// A stage of it has ended.
+  /// Call when a stage ends; returns its figures.
   StageDone end(BuildStage stage, const CachePass& pass) {
     const double ms = pass.total_ms();
     const StageDone done{
@@ -57,7 +58,7 @@ class StageClock {
   }
 
  private:
-  double ms_before_ = 0;  // of this pass, at the end of the stage that ended last
+  double ms_before_ = 0;  // totals of this pass at the end of the latest stage
   uint64_t rays_before_ = 0;
 };
 

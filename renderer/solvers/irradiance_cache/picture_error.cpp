@@ -11,10 +11,10 @@ using namespace shared;
 namespace {
 
 constexpr const char* k_stage = "records' error";
-constexpr uint32_t k_paths = 2;  ///< a pixel
+constexpr uint32_t k_paths = 2;  ///< per pixel
 
-/// The frame of a picture whose pixels are `side` of the film's along each side, and may stick out over its
-/// right and lower border.
+/// Frame of a picture whose pixels are `side` film pixels wide, and may extend over the right and lower
+/// border.
 Frame coarser(Frame f, uint32_t side) {
   const uint32_t across = (f.width + side - 1) / side, down = (f.height + side - 1) / side;
   const float x = float(across * side) / float(f.width), y = float(down * side) / float(f.height);

@@ -1,29 +1,29 @@
 #pragma once
-// What the records' own errors make of the picture: errors that all samples of a pixel have in common, so
-// that the film's halves do not tell of them and no further sample takes them away.
+// Error of the picture from the errors of records. These errors are common to all samples of a pixel, so the
+// difference of the film's halves does not contain them, and more samples do not reduce them.
 //
-// A picture reads records linearly. What a region R of it (a pixel, a tile, all) is off by is
+// A picture is linear in the records it reads. The error of a region R (a pixel, a tile, everything) is
 //   delta_R = sum_k c_k(R) e_k,
-// where e_k is what record k is off by and c_k(R) the mean over R's paths of their throughput times k's
-// weight in the interpolation. Pixels that read one record err together, so that variances of pixels do not
-// add up.
+// where e_k is the error of record k and c_k(R) the mean, over R's paths, of their throughput times k's
+// interpolation weight. Pixels that read the same record have correlated errors, so variances of pixels do
+// not add up.
 //
-// Noise: e_k = sigma_k xi_k, with the standard error that record k keeps and xi of mean 0 and variance 1,
-// independent from record to record. In each of k_record_lanes lanes every xi_k is drawn anew as a fixed
-// sign; paths are sent through the picture, every lane is summed over R, and the mean over the lanes of the
-// square of that is Var(delta_R) = sum_k c_k^2 sigma_k^2 (M. Hutchinson's estimator, 1989): the lanes are its
-// degrees of freedom. Two independent paths a pixel, whose sums are multiplied, keep the paths' own noise out
-// of the square.
+// Noise: e_k = sigma_k xi_k, with the standard error stored in record k, and independent xi_k of mean 0 and
+// variance 1. In each of k_record_lanes lanes every xi_k is a random sign. Paths are traced through the
+// picture and every lane is summed over R; the mean square over the lanes is Var(delta_R) = sum_k c_k^2
+// sigma_k^2 (M. Hutchinson's estimator, 1989). The number of lanes is the number of degrees of freedom. The
+// sums of two independent paths per pixel are multiplied, which keeps the paths' own noise out of the square.
 //
-// Records whose rays end in other records err with them. In the mean such a record's light is that of its
-// rays, so that paths which pass the first lookup over and go on as the rays do read what the record has
-// read: the errors are propagated over all further lookups, as often as light is.
+// Records whose rays end in other records inherit their errors. On average such a record's light is that of
+// its rays, so paths that pass the first lookup and continue like those rays read what the record has read:
+// errors propagate over all further lookups.
 //
-// Interpolation: what the records around k say of the light at its place, less what k says, tells with its
-// sign how the light bends there and so by what k is off at any distance (leave_one_out.comp); that is
-// propagated along the same paths and summed the same way. The noise in it, mostly cancelled over a region
-// because each record comes in once with either sign, is known by the same lanes and taken off the square.
-// Where a record is alone, or all around miss the same thing, it does not tell.
+// Interpolation: the leave-one-out residual of record k, the prediction of its neighbours minus its own
+// value, measures the curvature of the light and thus k's error at any distance, with its sign
+// (leave_one_out.comp). It is propagated along the same paths and summed in the same way. Its noise, which
+// mostly cancels over a region because each record occurs with both signs, is estimated with the same lanes
+// and subtracted from the square. The residual misses errors of a record without neighbours, and errors that
+// all neighbours share.
 #include <functional>
 
 #include "film/film.h"
@@ -34,16 +34,15 @@ namespace lucerna::irradiance_cache {
 
 class PictureError {
  public:
-  /// Pixels of the film that have one of the pixels that are traced, at most so many; of larger pictures one
-  /// stands for several.
+  /// Maximum number of traced pixels; in larger pictures one stands for several.
   static constexpr uint32_t k_most_pixels = 240'000;
 
   /// `defines`: Cache::defines().
   PictureError(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& defines);
 
-  /// What the pass is done with: the paths' frame of the picture, the records that are evaluated, whether
-  /// they read each other; binding of what lookup.glsl reads; the cache's note of where paths read,
-  /// `candidates`, and what writes the cache frame that says what they note: k_probe_*.
+  /// Inputs: frame of the picture's paths; number of evaluated records, and whether they read each other;
+  /// bindings of lookup.glsl; `candidates` with the notes of the paths; and a function that writes the cache
+  /// frame with the kind of notes: k_probe_*.
   struct Work {
     transport::Wavefront& wavefront;
     film::Film& film;
@@ -56,10 +55,10 @@ class PictureError {
     std::function<void(uint32_t probing)> write_frame;
     std::function<bool()> cancel;
   };
-  /// Forgets how far the picture has been gone through.
+  /// Restarts at the first pixel.
   void begin() { done_ = 0, residuals_for_ = 0; }
-  /// Goes through the next pixels, as many as there are slots, and through the last tells the film;
-  /// afterwards the wavefront's frame is `frame` again. False when it was cancelled.
+  /// Processes the next pixels, as many as there are slots; the last call completes the film's errors.
+  /// Afterwards the wavefront's frame is `frame` again. False if cancelled.
   bool step(const Work& work);
   uint64_t bytes() const { return residuals_.bytes() + first_.bytes(); }
 
@@ -72,7 +71,7 @@ class PictureError {
   gpu::Buffer residuals_, first_, blocks_;
   gpu::Resources resources_;
   uint32_t done_ = 0;           // blocks
-  uint32_t residuals_for_ = 0;  // records that have residuals
+  uint32_t residuals_for_ = 0;  // number of records with residuals
 };
 
 }  // namespace lucerna::irradiance_cache

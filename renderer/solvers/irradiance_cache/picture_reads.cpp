@@ -12,7 +12,7 @@ using namespace shared;
 namespace {
 
 constexpr const char* k_stage = "importance";
-constexpr uint32_t k_paths = 2;  ///< a pixel
+constexpr uint32_t k_paths = 2;  ///< per pixel
 
 }  // namespace
 
@@ -35,7 +35,7 @@ void PictureReads::begin(const Frame& frame) {
   for (uint32_t k = 2; pixels() > k_most_pixels; ++k)
     frame_.width = std::max(frame.width / k, 1u), frame_.height = std::max(frame.height / k, 1u);
   done_ = 0;
-  gpu::make_texel_room(device_, places_, "places that look up", uint64_t{pixels()} * k_paths * sizeof(vec4));
+  gpu::make_texel_room(device_, places_, "places of lookups", uint64_t{pixels()} * k_paths * sizeof(vec4));
   begun_ = true;
 }
 
@@ -47,7 +47,8 @@ bool PictureReads::see(transport::Wavefront& wavefront, const gpu::Buffer& candi
   for (uint32_t b = done_; b < end; ++b) item.blocks.push_back({b, 0});
   gpu::Stream& stream = wavefront.stream();
   next_ = next;
-  if (next) gpu::make_texel_room(device_, next_places_, "places that records' rays look up", places_.bytes());
+  if (next)
+    gpu::make_texel_room(device_, next_places_, "places of lookups by records' rays", places_.bytes());
   for (const auto& [probing, to] :
        {std::pair{k_probe_reads, &places_}, std::pair{k_probe_next, &next_places_}}) {
     if (probing == k_probe_next && !next) continue;

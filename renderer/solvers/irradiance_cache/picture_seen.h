@@ -1,5 +1,5 @@
 #pragma once
-// What the cache has seen of the picture that it is built for.
+// What the cache has measured in the picture it is built for.
 #include <vector>
 
 #include "solvers/irradiance_cache/discontinuity.h"
@@ -8,13 +8,12 @@
 
 namespace lucerna::irradiance_cache {
 
-/// `screen` and `reads` are of one picture, and forgotten together when it is another.
+/// `screen` and `reads` belong to one picture and are reset together.
 struct PictureSeen {
-  Discontinuity screen;  ///< where it changes
-  PictureReads reads;    ///< where it reads records
-  std::vector<float>
-      importance;      ///< how much of it reads each of the records that were evaluated when it was asked
-  PictureError error;  ///< what the records' errors make of it
+  Discontinuity screen;           ///< where it changes
+  PictureReads reads;             ///< where it reads records
+  std::vector<float> importance;  ///< of the records that were evaluated at that time (picture_reads.h)
+  PictureError error;             ///< errors from the records
 
   PictureSeen(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t most_records,
               const gpu::Defines& defines)

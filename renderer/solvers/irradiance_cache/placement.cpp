@@ -14,8 +14,8 @@ using namespace shared;
 namespace {
 
 constexpr const char* k_stage = "placement";
-/// Choosings at most: the first leaves what clusters that were cut for their number could not see of each
-/// other.
+/// Maximum number of rounds of choosing. The first cuts clusters by size, and clusters cut apart cannot see
+/// each other's candidates.
 constexpr uint32_t k_rounds = 6;
 
 Place place_of(const vec4& place, const vec4& facing, uint32_t medium) {
@@ -28,8 +28,9 @@ Place place_of(const vec4& place, const vec4& facing, uint32_t medium) {
           .reach = place.w};
 }
 
-/// When there are more than `most`: whole ranks (the first of every cluster, the second, ...) while they fit,
-/// and of the next one evenly over the clusters. `having`: by cluster; returns how many of each.
+/// Limits the choice to `most`: whole ranks (the first of every cluster, the second, ...) while they fit; the
+/// next rank is spread evenly over the clusters. `having`: places by cluster; returns how many of each to
+/// keep.
 std::vector<size_t> share_out(const std::vector<size_t>& having, size_t most) {
   std::vector<size_t> quota(having.size(), 0);
   for (size_t left = most, rank = 0; left > 0; ++rank) {
@@ -54,7 +55,7 @@ gpu::Buffer small_buffer(gpu::Device& device, const char* name, uint64_t bytes,
   return gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory, .texel = true});
 }
 
-/// Sums of flags before each, and in all.
+/// Prefix sums of flags, and their total.
 struct Sums {
   sort::PrefixSum prefix_sum;
   gpu::Buffer total;
@@ -64,17 +65,17 @@ struct Sums {
   void encode(gpu::Stream& stream, const gpu::Buffer& flags, const gpu::Buffer& before, uint32_t count) {
     prefix_sum.encode(stream, flags, before, {.most = count}, &total, 0, k_stage);
   }
-  /// Once the stream has run.
+  /// Valid once the stream has run.
   uint32_t sum() const { return *static_cast<const uint32_t*>(total.mapped()); }
 };
 
-/// The first `size` of each list are candidates, in the order in which they were collected.
+/// The first `size` entries of each list are candidates, in order of collection.
 struct Candidates {
   gpu::Device& device;
   gpu::Buffer places, facings, media;
   uint32_t size = 0;
 
-  /// Room for that many; what there is stays.
+  /// Makes room for that many; existing ones stay.
   void reserve(gpu::Stream& stream, uint32_t candidates) {
     for (auto [buffer, name, each] : {std::tuple{&places, "candidates", sizeof(vec4)},
                                       {&facings, "candidates' normals", sizeof(vec4)},
@@ -117,12 +118,12 @@ struct Candidates {
   }
 };
 
-/// Appends what asks to the candidates.
+/// Appends candidates.
 struct Collector {
   gpu::Device& device;
   gpu::Kernel count_candidates, from_paths, from_screen;
   gpu::Buffer counts;         // of each block, by origin
-  gpu::Buffer taken, before;  // a slot, or a point of the picture
+  gpu::Buffer taken, before;  // per slot, or per point of the picture
   gpu::Resources resources;
 
   Collector(gpu::Device& d, gpu::ShaderCompiler& compiler)
@@ -141,7 +142,7 @@ struct Collector {
     return push;
   }
 
-  /// What `flags` mark, by a kernel that reads them. Returns how many.
+  /// Collects the entries that `flags` mark, with a kernel that reads them. Returns their number.
   uint32_t append(gpu::Stream& stream, Sums& sums, Candidates& to, const gpu::Kernel& kernel,
                   const gpu::Buffer& flags, CollectPush push) {
     gpu::make_texel_room(device, before, "candidates before", uint64_t{push.count} * 4);
@@ -179,7 +180,7 @@ struct ChoosingKernels {
 
 struct ChoosingBuffers {
   gpu::Buffer grid, run_bounds, count;
-  gpu::Buffer entries[3];  // keys of the candidates, sorted; then of those that are left, in turn
+  gpu::Buffer entries[3];  // keys of the candidates, sorted; then those of the remaining ones, alternating
   gpu::Buffer head_flags, head_sums, cluster_starts, ranks;
 
   explicit ChoosingBuffers(gpu::Device& d)
@@ -211,7 +212,7 @@ struct ChoosingBuffers {
   }
 };
 
-/// Clusters of what is left after the last round, and its entries.
+/// Clusters of the candidates that remain after the last round, and their entries.
 struct Round {
   const gpu::Buffer* entries = nullptr;
   uint32_t left = 0, clusters = 0;
@@ -226,7 +227,7 @@ struct Chooser {
   gpu::Resources resources;
   // Of the last choice:
   const gpu::Buffer* sorted = nullptr;
-  std::vector<uint32_t> first_starts;  // clusters begin there
+  std::vector<uint32_t> first_starts;  // where clusters begin
   std::vector<uint32_t> picks;         // source indices, in Morton order
 
   Chooser(gpu::Device& d, gpu::ShaderCompiler& compiler)
@@ -237,7 +238,7 @@ struct Chooser {
     first_starts.clear(), picks.clear();
   }
 
-  /// Of `n` candidates, more than 0, all that are drawn get a rank on the device.
+  /// Ranks all chosen ones of `n` > 0 candidates on the device.
   Round run(gpu::Stream& stream, Sums& sums, const Candidates& candidates, const ChoiceOptions& o) {
     uint32_t n = candidates.size;
     ChoosingBuffers& b = buffers;
@@ -281,7 +282,7 @@ struct Chooser {
     }
   }
 
-  /// Of those that have a rank, no more than `most`.
+  /// The ranked ones, at most `most`.
   void pick(const Round& last, size_t most) {
     const uint32_t n = last.left, clusters = last.clusters;
     std::vector<SortEntry64> entries(n);
@@ -349,7 +350,7 @@ std::vector<std::array<uint32_t, 3>> Placement::collect(gpu::Stream& stream, con
   gpu::make_room(
       c.device, c.counts,
       {.name = "candidate counts", .bytes = counts.size() * sizeof counts[0], .memory = gpu::Memory::host});
-  gpu::make_texel_room(c.device, c.taken, "slots that ask", uint64_t{slots} * 4);
+  gpu::make_texel_room(c.device, c.taken, "slots with candidates", uint64_t{slots} * 4);
   c.resources.set("candidate_texels", candidates);
   c.resources.set("Taken", c.taken);
   c.resources.set("CandidateCounts", c.counts);

@@ -1,7 +1,7 @@
 #pragma once
-// Which of the places that ask for a record get one: candidates are gathered on the device, put
-// in Morton order, cut into clusters, and of each cluster some are drawn until each candidate is covered.
-// What is chosen, some thousand places, comes to the host.
+// Chooses the candidates that become records. Candidates are collected on the device, sorted in Morton order
+// and cut into clusters; from each cluster places are drawn until every candidate is covered. The host reads
+// only the chosen places, some thousands.
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -13,63 +13,63 @@
 
 namespace lucerna::irradiance_cache {
 
-/// How far a candidate stands for others: the greatest of what applies to it.
+/// Reach of a candidate: the maximum of these.
 struct ReachOptions {
-  float spacing = 0.1f;      ///< [m]; of what paths ask for
-  float spacing_beyond = 0;  ///< [m]; of what other records ask for (k_origin_recursive)
-  /// This share of the distance from `eye`, or of 1 m where the view is parallel.
+  float spacing = 0.1f;      ///< [m]; of candidates from paths
+  float spacing_beyond = 0;  ///< [m]; of candidates from other records' rays (k_origin_recursive)
+  /// Fraction of the distance from `eye`, or of 1 m if the view is parallel.
   float spacing_of_distance = 0;
   vec3 eye{0};
   bool parallel = false;
 };
 
 struct ChoiceOptions {
-  float normal_tolerance =
-      0.015f;           ///< a chosen place covers those whose normals differ by no more, as 1 - cos
-  uint32_t seed = 1;    ///< of the order in which places are drawn
-  uint32_t most = ~0u;  ///< places to choose at most; then every cluster gets its share in turn
+  float normal_tolerance = 0.015f;  ///< largest difference of normals that a chosen place covers, as 1 - cos
+  uint32_t seed = 1;                ///< of the random order of drawing
+  uint32_t most = ~0u;  ///< maximum number of places; if exceeded, clusters get their share in turn
 };
 
-/// The candidates of a pass and what became of them.
+/// Candidates of a pass and the choice among them.
 struct Choice {
-  std::vector<Place> candidates;  ///< in Morton order, equal codes in the order in which they were collected
-  std::vector<uint32_t> cluster;  ///< of each candidate; from 0 on, rising
+  std::vector<Place> candidates;  ///< in Morton order; equal codes in order of collection
+  std::vector<uint32_t> cluster;  ///< cluster of each candidate, rising from 0
   std::vector<uint32_t> chosen;   ///< indices of candidates, rising
 };
 
 class Placement {
  public:
-  /// What is collected of a picture that it has been laid over (discontinuity.h).
+  /// Points of the screen-space stage to collect (discontinuity.h).
   struct Screen {
-    const gpu::Buffer &surfaces, &taken, &levels;  ///< surface_texels; 0 or 1 a point; its level
+    const gpu::Buffer &surfaces, &taken,
+        &levels;  ///< surface_texels; 0 or 1 for each point; level of each point
     uint32_t points = 0;
     float pixel = 0;    ///< shared::DetailPush::pixel
-    float cell = 0.5f;  ///< what a candidate stands for, of the width of its level's cells
+    float cell = 0.5f;  ///< reach of a candidate, in cells of its level
   };
 
   Placement(gpu::Device& device, gpu::ShaderCompiler& compiler);
   ~Placement();
-  /// Forgets all candidates.
+  /// Removes all candidates.
   void clear();
-  uint32_t size() const;  ///< candidates
+  uint32_t size() const;  ///< number of candidates
   uint64_t bytes() const;
   /// Adds the candidates that paths have left in the first `slots` slots of `candidates`
-  /// (shared::k_candidate_texels), block by block of 64 pixels with their `samples` paths each, so that the
-  /// order does not depend on how many blocks are looked along at once; those that the camera sees straight
-  /// only with `screen_too`. Returns of each block how many slots hold one, by shared::k_origin_*, those that
-  /// were left out too. The stream is run. Throws Error when there is no memory for them.
+  /// (shared::k_candidate_texels), block by block of 64 pixels with `samples` paths each, so the order does
+  /// not depend on the number of blocks in one call. Candidates at directly visible surfaces only with
+  /// `screen_too`. Returns for each block the number of slots with a candidate by shared::k_origin_*,
+  /// including skipped ones. Runs the stream. Throws Error: memory.
   std::vector<std::array<uint32_t, 3>> collect(gpu::Stream& stream, const gpu::Buffer& candidates,
                                                uint32_t slots, uint32_t samples, bool screen_too,
                                                const ReachOptions& reach);
-  /// Adds the points that are taken, in raster order; returns how many.
+  /// Adds the points that are taken, in raster order; returns their number.
   uint32_t collect(gpu::Stream& stream, const Screen& screen, const ReachOptions& reach);
   /// For tests: adds these, whose reach is set.
   void add(gpu::Stream& stream, std::span<const Place> places);
-  /// In Morton order; the same for the same candidates on any device. A place covers those of its cluster
-  /// that are no farther than both reaches. The stream is run.
+  /// Returns places in Morton order; the same for the same candidates on any device. A place covers those of
+  /// its cluster within both reaches. Runs the stream.
   std::vector<Place> choose(gpu::Stream& stream, const ChoiceOptions& options);
-  /// As choose() has last seen the candidates; before, those there are in the order in which they were
-  /// collected, without clusters. Reads them from the device.
+  /// Candidates as of the last choose(); before it, in order of collection and without clusters. Reads them
+  /// from the device.
   Choice choice() const;
   uint32_t clusters() const;  ///< of the last choice; 0 before
 
@@ -79,18 +79,18 @@ class Placement {
 };
 
 struct ThinningOptions {
-  /// Of its radius: where a record that is kept makes others superfluous. The less, the more overlap.
+  /// Fraction of its radius within which a kept record removes others. Smaller: more overlap.
   float share = 0.6f;
-  float normal_tolerance = 0.015f;  ///< as the lookup has it
-  /// Records that other records' rays ask for (k_origin_recursive) go where they are narrower [m]: rays go on
-  /// there, for less than it takes to cover what is narrow.
+  float normal_tolerance = 0.015f;  ///< as in lookups
+  /// Records for other records' rays (k_origin_recursive) are dropped if narrower [m]: tracing rays on costs
+  /// less than covering narrow geometry.
   float least_beyond = 0;
 };
 
-/// Of records whose radii are known those that are needed, the widest first: indices in rising order. A
-/// record goes when another that is kept would serve its place with a weight of at least 1 - share. On the
-/// host: it is a decision after the other, over what has been chosen.
-/// `off_planes`: how far off the plane between its own and a place's tangent plane each serves [m].
+/// Indices, rising, of the records to keep, widest first: a record is dropped if a kept one would serve its
+/// place with a weight of at least 1 - share. Runs on the host, because decisions are sequential.
+/// `off_planes`: largest served distance of each record from the plane midway between its own and a place's
+/// tangent plane [m].
 std::vector<uint32_t> thin_out(std::span<const Place> places, std::span<const float> radii,
                                std::span<const float> off_planes, const ThinningOptions& options);
 

@@ -12,12 +12,13 @@ using namespace shared;
 
 namespace {
 
-/// Points drawn at most: of a picture's pixels, all of which may ask in the first pass, one in some.
+/// Maximum number of drawn points: in the first pass nearly all pixels may be candidates, and some are
+/// skipped.
 constexpr size_t k_most_points = 1u << 20;
 static_assert(2 * k_most_points <= k_most_strokes);
-/// Dots of candidates, in pixels: as wide as the room between them allows.
+/// Radius of candidate dots [pixels]: as wide as their spacing allows.
 constexpr float k_least_dot = 0.6f, k_most_dot = 1.5f, k_dot_of_room = 0.25f;
-/// ... and of what is chosen.
+/// ... and of chosen places.
 constexpr float k_least_tried = 1.3f, k_most_tried = 2.2f, k_tried_of_room = 0.2f;
 
 }  // namespace
@@ -63,7 +64,7 @@ struct PlacementView::Impl {
   gpu::Buffer places, points, discs;
   gpu::Resources resources;
   overlay::Painter painter;
-  uint64_t version = 0;  // of what is in `places`, and how it was to be shown
+  uint64_t version = 0;  // of `places`, and how it was shown
   PlacementShow drawn = PlacementShow::off;
   uint32_t count = 0, rings = 0;
 

@@ -1,7 +1,6 @@
 #pragma once
-// Draws how the places of records are chosen over the picture: what has been asked for, how that was cut into
-// clusters, what of it is tried and what becomes a record. What is hidden stays hidden
-// (overlay/painter.h).
+// Draws the choice of record places over the picture: candidates, their clusters, tried places and chosen
+// ones. Hidden places stay hidden (overlay/painter.h).
 #include <memory>
 #include <string>
 
@@ -11,8 +10,8 @@
 
 namespace lucerna::irradiance_cache {
 
-/// The points to draw, those with a ring first; their number is returned by `rings`. No more than `most`:
-/// candidates are left out evenly, then of what is tried the last. Pure.
+/// Points to draw, those with a ring first; `rings` returns their number. At most `most`: candidates are
+/// thinned evenly first, then the last tried places are dropped. Pure.
 std::vector<shared::PlacedPoint> placement_points(PlacementShow drawn, const PlacementShown& placement,
                                                   size_t most, uint32_t& rings);
 
@@ -21,8 +20,8 @@ class PlacementView {
   /// Both must outlive it.
   PlacementView(gpu::Device& device, gpu::ShaderCompiler& compiler);
   ~PlacementView();
-  /// Over the film's picture, which is dimmed where there is anything to draw; the stream is run. Throws
-  /// Error when a kernel does not compile.
+  /// Draws over the film's picture, dimming it if there is anything to draw. The stream has been submitted.
+  /// Throws Error if a kernel does not compile.
   void draw(const overlay::Canvas& canvas, const Cache& cache, PlacementShow show);
 
  private:

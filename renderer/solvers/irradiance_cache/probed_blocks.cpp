@@ -19,7 +19,7 @@ void ProbedBlocks::begin(uint32_t across, uint32_t down, uint32_t pass) {
     for (uint32_t x = 0; x < across; ++x) {
       const bool quiet = !all && !near_uncovered(x, y);
       rest += quiet;
-      // One of each 2x2, and in four turns all.
+      // One of each 2x2 blocks; all within four passes.
       if (quiet && (x % 2 + 2 * (y % 2)) != pass % 4) continue;
       seen += quiet;
       list_.push_back(y * across + x);

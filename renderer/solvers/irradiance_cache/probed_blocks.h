@@ -1,8 +1,8 @@
 #pragma once
-// Which blocks of the picture a pass looks along. Most of it has all its records after a few passes, and
-// paths sent there again find nothing: so later passes look where paths have asked in the last one, at the
-// blocks around those, and at one of four of the rest, which takes turns. What is not looked at is stood for
-// by that fourth, so that how much of the picture asks is estimated without bias. No device: pure state.
+// Selects the blocks of the picture that a pass probes. After a few passes most blocks have all their
+// records, and more paths there find no gaps. Later passes therefore probe blocks where paths found gaps in
+// the last pass, the blocks around those, and one in four of the rest, in turn. The probed fourth represents
+// the rest, so the share of uncovered paths is estimated without bias. Pure state; no device.
 #include <cstdint>
 #include <vector>
 
@@ -10,27 +10,27 @@ namespace lucerna::irradiance_cache {
 
 class ProbedBlocks {
  public:
-  /// Passes that look all over the picture: most of it asks in them.
+  /// Passes that probe the whole picture, most of which is uncovered.
   static constexpr uint32_t k_all_over = 2;
 
-  /// The pass of that number begins, over a picture of that many blocks.
+  /// Starts that pass, over a picture of that many blocks.
   void begin(uint32_t across, uint32_t down, uint32_t pass);
 
-  /// Those looked at, in raster order.
+  /// The probed blocks, in raster order.
   const std::vector<uint32_t>& list() const { return list_; }
-  /// How many blocks the one at this place of the list stands for: at least 1.
+  /// Number of blocks that the one at this place of the list represents: at least 1.
   double stands_for(uint32_t place) const { return quiet_[place] ? share_ : 1; }
-  /// Paths have asked there, in what is the last pass when the next begins.
+  /// Marks a block with uncovered paths, for the next pass.
   void note(uint32_t block) { uncovered_[block] = true; }
-  /// The pass is over: what was noted counts from now on.
+  /// Ends the pass: the marks take effect.
   void end() { uncovered_before_ = uncovered_; }
 
  private:
   uint32_t across_ = 0, down_ = 0;
   std::vector<uint32_t> list_;
   std::vector<bool> quiet_;                         // by place in the list: one of the rest
-  double share_ = 1;                                // blocks of the rest that each of these stands for
-  std::vector<bool> uncovered_, uncovered_before_;  // by block: in this pass, in the last
+  double share_ = 1;                                // blocks of the rest that each of these represents
+  std::vector<bool> uncovered_, uncovered_before_;  // by block: in this pass, in the last one
 };
 
 }  // namespace lucerna::irradiance_cache

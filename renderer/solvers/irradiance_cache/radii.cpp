@@ -9,10 +9,10 @@ using namespace shared;
 namespace {
 
 constexpr const char* k_stage = "records";
-/// Of metric `hessian`, over `error`: makes about as many records as the split sphere does with the same.
+/// Metric `hessian`: scale of `error`, so that it makes about as many records as the split-sphere metric.
 constexpr float k_hessian_reach = 0.5f;
-/// Of metric `hessian`, over the nearest thing: how far a place that is tried would serve. The first level
-/// has more rays, which meet nearer things.
+/// Metric `hessian`: bound over the nearest distance, for tried places. The first level has more rays, which
+/// hit nearer geometry.
 constexpr float k_tried_near = 0.8f;
 
 }  // namespace

@@ -1,6 +1,6 @@
 #pragma once
-// How far records serve, on the device: by how far things are, or by how light bends too; then held to what
-// the records around know.
+// Radii of validity of records, on the device: from distances, or from the curvature of light too; then
+// clamped by the neighbours' distances.
 #include <functional>
 
 #include "solvers/irradiance_cache/cache.h"
@@ -8,32 +8,31 @@
 
 namespace lucerna::irradiance_cache {
 
-/// All of it runs the stream. `bind` is what lookup.glsl reads.
+/// All functions run the stream. `bind` binds lookup.glsl.
 class Radii {
  public:
   using Bind = std::function<void(gpu::Resources&)>;
-  /// Records that get radii, and what of them is not by their own rays.
+  /// Records to process, and bounds that do not come from their own rays.
   struct Wanted {
     uint32_t first = 0, count = 0;
     float most = 0;  ///< [m]
-    /// Where the nearest thing is nearer than that times the least radius, they crowd (records.h); 0:
-    /// nowhere.
+    /// Records become crowded (records.h) if geometry is nearer than this times the minimum radius; 0: never.
     float crowd = 0;
   };
 
   /// `options` must outlive it. `defines`: Cache::defines().
   Radii(gpu::Device& device, gpu::ShaderCompiler& compiler, const RadiusOptions& options,
         uint32_t most_records, const gpu::Defines& defines);
-  /// Whether radii are by the light, of which pilot rays tell.
+  /// True if radii depend on light, measured by pilot rays.
   bool by_light() const { return options_.metric == Metric::hessian; }
-  /// Greatest radius, of ellipses the lesser, over the distance of the nearest thing: of what is only tried.
+  /// Upper bound of the (minor) radius over the nearest distance, for places that are only tried.
   float tried_near() const;
 
-  /// What pilots of these records tell is pooled with what those around them do; all are in the octree. Only
-  /// where radii are by the light.
+  /// Averages the pilot results of these records with their neighbours'; all must be in the octree. Only if
+  /// radii depend on light.
   void pool(gpu::Stream& stream, const Bind& bind, uint32_t first, uint32_t count);
   void set_by_distance(gpu::Stream& stream, const Bind& bind, const Wanted& wanted);
-  /// `dark`: as dark_luminance() has it, of what pilots tell.
+  /// `dark`: as dark_luminance(), from pilot results.
   void set_by_light(gpu::Stream& stream, const Bind& bind, const Wanted& wanted, float scene_radius,
                     float dark);
   /// As Clamping::clamp().
@@ -43,8 +42,8 @@ class Radii {
 
  private:
   const RadiusOptions& options_;
-  gpu::Kernel distance_, ellipse_, pooling_, pool_keep_;  // the last three only where radii are by the light
-  gpu::Buffer pooled_;                                    // the same
+  gpu::Kernel distance_, ellipse_, pooling_, pool_keep_;  // the last three only if radii depend on light
+  gpu::Buffer pooled_;                                    // likewise
   gpu::Resources resources_;
   Clamping clamping_;
 };

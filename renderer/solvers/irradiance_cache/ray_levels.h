@@ -1,6 +1,6 @@
 #pragma once
-// Rays of the records of a pass: a first level for all, then levels of four times as many for those that are
-// still too noisy. No device: pure state.
+// Ray levels of the records of a pass: a first level for all, then levels of four times as many rays for
+// those still too noisy. Pure state; no device.
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
@@ -12,21 +12,21 @@
 
 namespace lucerna::irradiance_cache {
 
-/// The records that a stage goes through, in their order, and how many of them it is done with.
+/// The records that a stage processes, in order, and the number already done.
 class RecordQueue {
  public:
-  /// Those from `first` to `end`; none is done.
+  /// Queues records `first` to `end`.
   void set(uint32_t first, uint32_t end) {
     list_.resize(end - first);
     std::iota(list_.begin(), list_.end(), first);
     done_ = 0;
   }
-  /// Those; none is done.
+  /// Queues these records.
   void set(std::vector<uint32_t> records) { list_ = std::move(records), done_ = 0; }
-  /// All of them once more.
+  /// Queues the same records again.
   void rewind() { done_ = 0; }
   const std::vector<uint32_t>& all() const { return list_; }
-  /// The next ones, `most` at most; advance() says how many of these are done.
+  /// The next ones, at most `most`; call advance() with the number done.
   std::span<const uint32_t> next(size_t most) const {
     const std::span<const uint32_t> left = std::span(list_).subspan(done_);
     return left.first(std::min(left.size(), most));
@@ -40,8 +40,8 @@ class RecordQueue {
   size_t done_ = 0;
 };
 
-/// Level k has 4^k times the rays of the first. One of more rays than can be summed at once is done in rounds
-/// of as many: rays_before() is what each record in the queue has had, in all levels and rounds so far.
+/// Level k has 4^k times the rays of the first. A level with more rays than fit at once is done in rounds:
+/// rays_before() is the number of rays that each queued record has had in all levels and rounds so far.
 class RayLevels {
  public:
   /// `rays`: of the first level.
@@ -56,9 +56,9 @@ class RayLevels {
   uint32_t rays_before() const { return before_; }
   bool in_first_round() const { return level_ == 0 && in_level_ == 0; }
 
-  /// From the first ray on, for the records of another pass.
+  /// Restarts at the first level, for another pass.
   void restart() { level_ = in_level_ = before_ = 0; }
-  /// All records have had a round; true when that was the last of the level.
+  /// Call when all records have had a round; true if it was the last of the level.
   bool end_round() {
     before_ += round_rays();
     in_level_ += round_rays();
@@ -66,9 +66,9 @@ class RayLevels {
   }
   void end_level() { in_level_ = 0; }
   void next() { ++level_; }
-  /// For records that have had the rays of all levels up to this one, which is complete.
+  /// Sets the level to continue with: records have had the rays of all levels up to `level`.
   void resume(uint32_t level) { level_ = level, in_level_ = 0, before_ = rays_up_to(level); }
-  /// That a record has had when it is done with a level: its own and those before.
+  /// Rays of a record after a complete level, including earlier levels.
   uint32_t rays_up_to(uint32_t level) const {
     return uint32_t(first_ * (((uint64_t{1} << 2 * (level + 1)) - 1) / 3));
   }

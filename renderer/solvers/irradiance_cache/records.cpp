@@ -82,7 +82,7 @@ uint32_t Records::most_records(const gpu::Device& device) {
 Records::Records(gpu::Device& device, uint32_t capacity, uint32_t groups)
     : capacity_(capacity), groups_(std::max(groups, 1u)) {
   if (capacity > most_records(device))
-    throw_error("irradiance cache", "room for {} records asked; this device can bind {}", capacity,
+    throw_error("irradiance cache", "{} records requested; this device can bind {}", capacity,
                 most_records(device));
   records_ = gpu::Buffer(device, {.name = "cache records", .bytes = capacity * k_place_bytes, .texel = true});
   irradiance_ =

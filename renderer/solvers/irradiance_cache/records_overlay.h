@@ -13,11 +13,11 @@ class RecordsOverlay {
  public:
   /// `defines`: Cache::defines().
   RecordsOverlay(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& defines);
-  /// The scales are to hold what all but a few of these lie between.
+  /// Sets the colour scales to the range of nearly all of these values.
   void set_scales(const std::vector<Records::Figures>& figures);
   /// As Cache::scale().
   std::pair<float, float> scale(uint32_t color) const;
-  /// `bind`: what lookup.glsl reads; `bind_sight`: as Cache::bind_sight().
+  /// `bind`: binds lookup.glsl; `bind_sight`: as Cache::bind_sight().
   void draw(const overlay::Canvas& canvas, const Cache::Overlay& overlay,
             const std::function<void(gpu::Resources&)>& bind,
             const std::function<shared::SightGrid(gpu::Resources&)>& bind_sight);

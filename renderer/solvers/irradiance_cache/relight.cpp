@@ -1,4 +1,4 @@
-// Records that outlive a change: relit where they are, or taken over by a cache made for other lookups.
+// Records that survive a change: relit in place, or adopted by a cache made for other lookups.
 #include <algorithm>
 #include <bit>
 #include <utility>
@@ -11,7 +11,7 @@ using namespace shared;
 
 void Cache::Impl::replace_records(const RawRecords& raw) {
   tables.records.restore(raw);
-  // Passes end where the number of the next record's is another.
+  // A pass ends where the next record has another number.
   const auto pass_of = [&](uint32_t r) {
     return std::bit_cast<uint32_t>(raw.places[size_t{r} * k_record_texels + 2].w) & k_record_pass;
   };
@@ -25,7 +25,7 @@ void Cache::Impl::replace_records(const RawRecords& raw) {
 bool Cache::Impl::relight_first_places() {
   if (ranges.placed() > 0 || status.relighting.records > 0 || progress.stage == Stage::done) return false;
   if (progress.stage >= Stage::measure && radii.by_light()) {
-    // Which of those that are tried are kept is by the light, too.
+    // The choice among the tried places depends on the light, too.
     tables.records.truncate(0);
     tables.records.append(places.tried, status.pass);
     progress.stage = Stage::measure;
@@ -45,12 +45,12 @@ void Cache::Impl::relight(const std::optional<std::vector<vec3>>& factors, uint3
   forget_refining();
   if (status.relighting.records == 0) {
     progress.stopped_before = status.stop == StopReason::dark ? StopReason::building : status.stop;
-    // A pass that has its first level has places and radii, and is complete when it is relit. Of one before
-    // that nothing is left; its places are asked for again.
+    // A pass with a first level has places and radii; relighting completes it. Without a first level it is
+    // dropped, and its places become candidates again.
     if (ranges.complete_pass()) ++status.pass;
   }
   ranges.keep_complete();
-  // Of records that were being relit, the light before is known where there is a preview of it.
+  // For records still being relit, the light before is known only from a preview.
   if (previews && preview.known(factors) && (preview.active() || status.relighting.records == 0))
     preview.begin(tables, ranges.placed(), *factors, sky_group);
   else
@@ -62,7 +62,7 @@ void Cache::Impl::relight(const std::optional<std::vector<vec3>>& factors, uint3
   ranges.lose_light();
   held = gathers;
   status.stop = StopReason::building;
-  // Relit once more before they were complete, they have not had all their rays.
+  // If relit again before completion, they have not had all their rays.
   const uint64_t rays = std::max(status.relighting.records > 0 ? status.relighting.rays : 0, status.rays);
   status.records = 0, status.relighting = {.records = ranges.placed(), .share = 0, .rays = rays},
   status.rays = 0;
@@ -75,13 +75,13 @@ void Cache::Impl::relight_pass() {
   if (ranges.evaluated() < ranges.placed()) {
     const uint32_t begin = ranges.evaluated(), end = ranges.next_end();
     if (!status.passes.empty() && status.passes.back().relit && status.passes.back().rays == 0)
-      status.passes.pop_back();  // that one waited in the dark
+      status.passes.pop_back();  // that one has waited without light
     status.passes.push_back(
         {.number = tables.records.read(begin).pass, .relit = true, .records = end - begin});
     queue_until(end);
     progress.clock.restart();
     progress.levels.restart();
-    // Ellipses are by the light, which is another.
+    // Ellipses depend on the light, which has changed.
     progress.stage = radii.by_light() ? Stage::measure : Stage::evaluate;
     return;
   }
@@ -89,9 +89,8 @@ void Cache::Impl::relight_pass() {
   preview.end();
   if (progress.stopped_before == StopReason::building) return next_pass();
   if (!radii.by_light()) return finish(progress.stopped_before);
-  // Ellipses are by the light: where they no longer reach is asked for as if it had come into view. Not
-  // beyond the picture's lookups: the gaps that building has left there cost time, not accuracy, and would be
-  // filled a little more with every change of the light.
+  // Ellipses depend on the light: gaps between them become candidates, as after a camera move. Not beyond the
+  // picture's lookups: gaps there cost time, not accuracy, and each change of the light would add records.
   restart_passes(false);
   next_pass();
 }
@@ -130,7 +129,7 @@ solvers::Invalidation Cache::adopt(transport::Wavefront& wavefront, const Cache&
   if (count > 0) c.build_octree(wavefront);
   c.overlay.set_scales(c.tables.records.figures());
   c.write_frame();
-  const bool relit = o.status.relighting.records > 0;  // and some are not yet
+  const bool relit = o.status.relighting.records > 0;  // and some are not yet relit
   const StopReason stop = relit ? o.progress.stopped_before : o.status.stop;
   if (stop != StopReason::building) c.finish(stop);
   solvers::Invalidation lacks;
@@ -138,7 +137,7 @@ solvers::Invalidation Cache::adopt(transport::Wavefront& wavefront, const Cache&
   lacks.light = relit || (c.gathers.parts & ~c.held.parts) != 0 ||
                 ((c.gathers.recursive != c.held.recursive || c.gathers.elsewhere != c.held.elsewhere) &&
                  (c.gathers.parts & tertiary) != 0);
-  // Paths that gather ask for no records.
+  // Gathering paths make no candidates.
   for (size_t s = 0; s < k_gather_state; ++s)
     lacks.coverage |= c.tables.picture_routes[s] != k_no_routes && o.tables.picture_routes[s] == k_no_routes;
   return lacks;

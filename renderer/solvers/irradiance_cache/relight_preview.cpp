@@ -31,10 +31,9 @@ void RelightPreview::make_room(uint32_t count) {
   if (groups_ > 1)
     old_shares_ = gpu::Buffer(
         device_,
-        {.name = "cache shares of groups before", .bytes = room * records_->group_bytes(), .texel = true});
+        {.name = "cache group shares before", .bytes = room * records_->group_bytes(), .texel = true});
   if (groups_ > 1)
-    group_factors_ =
-        gpu::Buffer(device_, {.name = "cache factors of groups", .bytes = groups_ * sizeof(vec4)});
+    group_factors_ = gpu::Buffer(device_, {.name = "cache group factors", .bytes = groups_ * sizeof(vec4)});
 }
 
 bool RelightPreview::known(const std::optional<std::vector<vec3>>& factors) const {

@@ -17,11 +17,11 @@ namespace {
 using namespace solvers;
 using Items = std::vector<PanelItem>;
 
-constexpr size_t k_passes_shown = 16;   // a camera that moves much adds many
+constexpr size_t k_passes_shown = 16;   // frequent camera moves add many
 constexpr size_t k_weights_shown = 6;   // on the card
 constexpr size_t k_least_columns = 13;  // of the histogram
 
-/// Key of a command, as a person presses it.
+/// Key of a command in the window.
 char key_of(const char* command) { return find_command(info(), command)->shortcut; }
 
 const CachePass* last_pass(const CacheStatus& s) { return s.passes.empty() ? nullptr : &s.passes.back(); }
@@ -40,24 +40,23 @@ std::string preparing(const CacheReport& r) {
 
 void add_overlap_rows(Items& items, const std::optional<Overlap>& overlap) {
   if (!overlap || overlap->pixels == 0) {
-    for (const char* name : {"Overlap", "Gathered by paths", "Not served"})
-      items.push_back(ValueRow{name, k_dash, "Known when the picture has its first samples.", Tone::faint});
+    for (const char* name : {"Overlap", "Gathered by paths", "Pixels without records"})
+      items.push_back(
+          ValueRow{name, k_dash, "Available after the first samples of the picture.", Tone::faint});
     return;
   }
   const Overlap& o = *overlap;
-  items.push_back(ValueRow{
-      "Overlap", fmt::format("{:.1f} on average, {} at most", o.mean, o.most),
-      "Records that serve a point, over the pixels that one serves at least, as the camera sees them."});
-  items.push_back(ValueRow{
-      "Gathered by paths", share_text(double(o.gathered), double(o.pixels)),
-      "Pixels so near to something else that light is not interpolated there: paths gather it, and end "
-      "in records one vertex later (cache.gather)."});
-  items.push_back(
-      ValueRow{"Not served", share_text(double(o.pixels - o.served - o.gathered), double(o.pixels)),
-               "Pixels showing something diffuse that no record serves: it is path traced there."});
+  items.push_back(ValueRow{"Overlap", fmt::format("{:.1f} on average, {} at most", o.mean, o.most),
+                           "Records that serve a pixel, over the pixels with at least one record."});
+  items.push_back(ValueRow{"Gathered by paths", share_text(double(o.gathered), double(o.pixels)),
+                           "Pixels near edges, where light is not interpolated: paths gather it and end in "
+                           "records one vertex later (cache.gather)."});
+  items.push_back(ValueRow{"Pixels without records",
+                           share_text(double(o.pixels - o.served - o.gathered), double(o.pixels)),
+                           "Pixels with a diffuse surface that no record serves; they are path traced."});
 }
 
-/// How many pixels 0, 1, 2 ... records serve, in the colours of the overlay.
+/// Histogram of the number of records that serve a pixel, in the colours of the overlay.
 Histogram overlap_columns(const Overlap& o) {
   const std::vector<uint32_t>& bins = o.histogram;
   size_t used = 1;
@@ -90,35 +89,34 @@ PanelSection numbers(const CacheReport& r, const OptionValues& settings, const s
   PanelSection section{.title = info().label, .note = state, .items = {}};
   Items& items = section.items;
   items.push_back(ValueRow{"Records", fmt::format("{} of {}", count_text(s.records), count_text(r.room)),
-                           "Complete records, and how many there is room for (cache.max_records)."});
-  items.push_back(
-      ValueRow{"Passes", fmt::format("{} of {}", s.pass, settings.text("cache.passes")),
-               "Passes that have placed records, since the building began or the camera has moved, and how "
-               "many there may be."});
-  uint64_t rays = 0;  // of the records that are complete
+                           "Complete records, and their maximum number (cache.max_records)."});
+  items.push_back(ValueRow{
+      "Passes", fmt::format("{} of {}", s.pass, settings.text("cache.passes")),
+      "Complete passes since building began or the camera moved, and their maximum number (cache.passes)."});
+  uint64_t rays = 0;  // of complete records
   for (const CachePass& p : s.passes) rays += p.complete ? p.rays : 0;
-  items.push_back(ValueRow{
-      "Rays of records",
-      s.records > 0 ? fmt::format("{}, {} each", amount_text(double(s.rays)),
-                                  count_text(std::round(double(rays) / s.records)))
-                    : amount_text(double(s.rays)),
-      "Rays over the records' hemispheres, without those of the paths that they begin; on average."});
-  items.push_back(ValueRow{
-      "Memory", megabytes_text(double(s.bytes) / (1 << 20)),
-      fmt::format("Device memory, taken for as many records as there is room for: {} bytes each with its "
-                  "sphere, and the octree, in whose leaves a record is listed {:.1f} times on average.",
-                  shared::k_record_bytes, s.references)});
+  items.push_back(ValueRow{"Rays of records",
+                           s.records > 0 ? fmt::format("{}, {} each", amount_text(double(s.rays)),
+                                                       count_text(std::round(double(rays) / s.records)))
+                                         : amount_text(double(s.rays)),
+                           "Rays over the records' hemispheres, and their mean per record; later rays of "
+                           "their paths not included."});
+  items.push_back(
+      ValueRow{"Memory", megabytes_text(double(s.bytes) / (1 << 20)),
+               fmt::format("Device memory, allocated for the maximum number of records: {} bytes per record, "
+                           "and the octree, whose leaves list a record {:.1f} times on average.",
+                           shared::k_record_bytes, s.references)});
   add_overlap_rows(items, r.overlap);
   if (const CachePass* last = last_pass(s))
     items.push_back(
-        ValueRow{"Asked in the last pass", share_text(double(last->uncovered), double(last->paths)),
-                 fmt::format("{} of {} paths found no record and asked for one, {} of them behind the first "
-                             "surface. Building stops when no more ask than {:.2f} %.",
+        ValueRow{"New candidates, last pass", share_text(double(last->uncovered), double(last->paths)),
+                 fmt::format("{} of {} paths found no record, {} of them behind the first surface. Building "
+                             "stops when at most {:.2f} % find none.",
                              count_text(double(last->uncovered)), count_text(double(last->paths)),
                              count_text(double(last->uncovered_world)), 100 * settings.real("cache.stop"))});
   items.push_back(Gap{4});
   if (s.waits)
-    items.push_back(Paragraph{fmt::format("Building waits: {} goes on to the next stage, {} to the end.",
+    items.push_back(Paragraph{fmt::format("Building is paused: {} runs the next stage, {} all stages.",
                                           key_of("step"), key_of("run")),
                               Tone::accent});
   else if (s.stop == StopReason::building)
@@ -130,25 +128,24 @@ PanelSection numbers(const CacheReport& r, const OptionValues& settings, const s
   return section;
 }
 
-/// Leads building from stage to stage.
+/// Controls and figures of the stages of building.
 PanelSection steps(const CacheReport& r) {
   const CacheStatus& s = r.status;
-  PanelSection section{.title = "Steps of building", .note = "", .items = {}};
+  PanelSection section{.title = "Stages of building", .note = "", .items = {}};
   Items& items = section.items;
   items.push_back(ChoiceButtons{.key = "cache.pause",
                                 .labels = {"No pause", "Each pass", "Each stage"},
                                 .short_labels = {"Off", "Pass", "Stage"},
-                                .help = "R builds anew."});
+                                .help = "R builds it again."});
   items.push_back(Gap{4});
   const bool building = s.stop == StopReason::building;
   items.push_back(CommandButtons{
       {{.command = "step",
-        .help = building
-                    ? "Goes on to the end of the next stage and waits there."
-                    : "The cache is complete. R builds it anew, a turn of the camera adds what is missing.",
+        .help = building ? "Runs the next stage and pauses."
+                         : "The cache is complete. R builds it again; a camera move adds missing records.",
         .enabled = building},
        {.command = "run",
-        .help = building ? "Goes on without a pause until the cache is complete." : "The cache is complete.",
+        .help = building ? "Builds without a pause until the cache is complete." : "The cache is complete.",
         .enabled = building}}});
   items.push_back(Gap{8});
   StepStrip strip{.steps = {}, .last = s.last ? int(s.last->stage) : -1};
@@ -156,17 +153,17 @@ PanelSection steps(const CacheReport& r) {
   items.push_back(std::move(strip));
   if (s.last) {
     const StageDone& last = *s.last;
-    items.push_back(ValueRow{s.waits ? "Waits after" : "Ended last", stage_words(last),
-                             "The stage of building that has ended last.",
+    items.push_back(ValueRow{s.waits ? "Paused after" : "Last stage", stage_words(last),
+                             "The most recent complete stage of building.",
                              s.waits ? Tone::accent : Tone::normal});
     items.push_back(
-        ValueRow{"It took",
+        ValueRow{"Duration",
                  last.rays > 0 ? fmt::format("{}, {} rays", ms_text(last.ms), amount_text(double(last.rays)))
                                : ms_text(last.ms),
-                 "Device time, and wall time of what the host did; rays from records."});
+                 "Device time, and wall time of host work; rays of records."});
   } else {
-    items.push_back(ValueRow{"Ended last", k_dash, "No stage of building has ended yet.", Tone::faint});
-    items.push_back(ValueRow{"It took", k_dash, "", Tone::faint});
+    items.push_back(ValueRow{"Last stage", k_dash, "No stage of building is complete yet.", Tone::faint});
+    items.push_back(ValueRow{"Duration", k_dash, "", Tone::faint});
   }
   const CachePass* pass = last_pass(s);
   const auto count = [&](const char* name, double n, bool known, const char* help) {
@@ -174,10 +171,11 @@ PanelSection steps(const CacheReport& r) {
   };
   const bool chosen = pass && pass->clusters > 0;
   count("Candidates", pass ? double(pass->uncovered) : 0, pass != nullptr,
-        "Places where paths of this pass found no record.");
-  count("Clusters", pass ? pass->clusters : 0, chosen, "That they were cut into.");
-  count("Tried", pass ? pass->tried : 0, chosen, "Of the candidates.");
-  count("Chosen", pass ? pass->records : 0, pass && pass->records > 0, "Of what was tried: new records.");
+        "Paths of this pass that found no record.");
+  count("Clusters", pass ? pass->clusters : 0, chosen, "Clusters of the candidates.");
+  count("Tried", pass ? pass->tried : 0, chosen, "Candidates drawn from the clusters and measured.");
+  count("Chosen", pass ? pass->records : 0, pass && pass->records > 0,
+        "Tried candidates that became records.");
   return section;
 }
 
@@ -193,22 +191,22 @@ PanelSection overlays(const OptionValues& settings) {
     if (!settings.boolean(view)) continue;
     section.items.push_back(Gap{4});
     section.items.push_back(
-        Paragraph{"Rest the pointer in the picture to see which records serve there.", Tone::faint});
+        Paragraph{"Rest the pointer on the picture to see which records serve there.", Tone::faint});
     break;
   }
   return section;
 }
 
-/// A row a pass: what it placed and what that took.
+/// One row per pass: its results and time.
 Table passes(const CacheStatus& s) {
-  Table table{.columns = {"", "records", "asked", "rays", "time"}, .droppable = 3, .rows = {}};
+  Table table{.columns = {"", "records", "candidates", "rays", "time"}, .droppable = 3, .rows = {}};
   uint32_t most = 1;
   for (const CachePass& p : s.passes) most = std::max(most, p.records);
   const size_t from = s.passes.size() > k_passes_shown ? s.passes.size() - k_passes_shown : 0;
   for (size_t i = from; i < s.passes.size(); ++i) {
     const CachePass& p = s.passes[i];
     std::string help = fmt::format(
-        "Pass {}: {} of {} paths asked for a record, {} of them behind the first surface; {} were placed, "
+        "Pass {}: {} of {} paths found no record, {} of them behind the first surface; {} records placed "
         "with {} rays.",
         i + 1, count_text(double(p.uncovered)), count_text(double(p.paths)),
         count_text(double(p.uncovered_world)), count_text(p.records), count_text(double(p.rays)));
@@ -225,7 +223,7 @@ Table passes(const CacheStatus& s) {
   return table;
 }
 
-/// What each step of building took.
+/// Time of each step of building.
 void add_times(Items& items, const CacheStatus& s) {
   std::array<double, k_build_steps.size()> ms{};
   double total = 0;
@@ -233,9 +231,8 @@ void add_times(Items& items, const CacheStatus& s) {
     for (size_t i = 0; i < ms.size(); ++i) ms[i] += p.ms[i];
     total += p.total_ms();
   }
-  items.push_back(
-      ValueRow{"Building took", ms_text(total),
-               "Device time of all passes, and wall time of what the host did (its tracer too)."});
+  items.push_back(ValueRow{"Time of building", ms_text(total),
+                           "Device time of all passes, and wall time of host work (including its tracer)."});
   Parts parts;
   for (size_t i = 0; i < ms.size(); ++i)
     parts.parts.push_back({.name = k_step_texts[i].name,
@@ -252,7 +249,7 @@ void add_origins(Legend& legend) {
   for (uint32_t i = 0; i < k_origins.size(); ++i) legend.marks.push_back({shared::ramp_hue(i), k_origins[i]});
 }
 
-/// What records are coloured by.
+/// Colour legend of records.
 Legend record_legend(const CacheReport& r) {
   Legend legend;
   switch (r.color) {
@@ -266,14 +263,14 @@ Legend record_legend(const CacheReport& r) {
       return legend;
     }
     case shared::k_record_by_origin:
-      legend.title = "Records, by what asked for them";
+      legend.title = "Records, by the origin of their candidate";
       add_origins(legend);
       return legend;
     case shared::k_record_by_rays:
       legend.title = "Records, by their rays";
       break;
     case shared::k_record_by_distance:
-      legend.title = "Records, by the mean distance they see";
+      legend.title = "Records, by mean distance of the surfaces around";
       break;
     default:
       legend.title = "Records, by their error (irradiance)";
@@ -288,7 +285,7 @@ Legend record_legend(const CacheReport& r) {
   return legend;
 }
 
-/// What has become of places.
+/// Legend of the states of places.
 Legend placement_legend(const CacheReport& r) {
   Legend legend;
   const CachePass* pass = last_pass(r.status);
@@ -296,7 +293,7 @@ Legend placement_legend(const CacheReport& r) {
     return pass ? fmt::format("{} {}", count_text(n), name) : std::string(name);
   };
   if (r.placement == PlacementShow::candidates) {
-    legend.title = "Candidates, by what asks for a record";
+    legend.title = "Candidates, by origin";
     add_origins(legend);
   } else if (r.placement == PlacementShow::clusters) {
     legend.title = "Candidates, by their cluster";
@@ -306,7 +303,7 @@ Legend placement_legend(const CacheReport& r) {
                               i + 1 < k_inks ? "" : counted("clusters", pass ? pass->clusters : 0)});
     legend.marks.push_back({shared::k_tried_ink, counted("tried", pass ? pass->tried : 0)});
   } else {
-    legend.title = "Places that were tried, with their radii";
+    legend.title = "Tried places with their radii";
     if (pass && pass->records > 0) {
       legend.marks.push_back({shared::k_chosen_ink, counted("chosen", pass->records)});
       legend.marks.push_back({shared::k_rejected_ink, counted("rejected", pass->tried - pass->records)});
@@ -317,7 +314,7 @@ Legend placement_legend(const CacheReport& r) {
   return legend;
 }
 
-/// How many records serve a pixel.
+/// Number of records that serve a pixel.
 Legend overlap_legend() {
   Legend legend{.title = "Records that serve a pixel", .ramp = shared::k_ramp_viridis};
   constexpr auto most = static_cast<int>(shared::k_overlap_scale);
@@ -330,7 +327,7 @@ Legend overlap_legend() {
   return legend;
 }
 
-/// How much geometry or irradiance changes in a cell.
+/// Detail of geometry or irradiance in a cell.
 Legend detail_legend(const std::string& of, int64_t level) {
   return {.title = fmt::format("Detail of {}, cells of {} pixel{}", of, 1u << level, level == 0 ? "" : "s"),
           .ramp = shared::k_ramp_magma,
@@ -355,7 +352,7 @@ std::string vector_text(const vec3& v, int decimals) {
                      real_text(double{v.z}, decimals));
 }
 
-/// In five characters, whatever the size.
+/// In five characters, whatever the magnitude.
 std::string figure_text(float v) {
   const float a = std::abs(v);
   if (v == 0 || (a >= 100 && a < 1e5f)) return fmt::format("{:.0f}", v);
@@ -364,12 +361,12 @@ std::string figure_text(float v) {
   return fmt::format("{:.0f}e{}", double{v} / std::pow(10.0, power), power);
 }
 
-/// A gradient by channel, as the length of its luminance's.
+/// Length of the luminance gradient.
 float gradient_length(const std::array<vec3, 3>& by_channel) {
   return glm::length(0.2126f * by_channel[0] + 0.7152f * by_channel[1] + 0.0722f * by_channel[2]);
 }
 
-/// The fields of the record in whose disc the pixel lies.
+/// Fields of the record whose disc covers the pixel.
 void add_fields(Card& card, uint32_t index, const Record& r) {
   using Room = Card::Room;
   const auto add = [&](auto line) { card.lines.push_back({std::move(line), Room::much}); };
@@ -394,7 +391,7 @@ void add_fields(Card& card, uint32_t index, const Record& r) {
                  : figure_text(r.error));
   add(Card::Rule{.line = false});
   add(Card::FigureHeads{"Irradiance", {"R", "G", "B", "/rad", "/m"}});
-  // Parts are numbered as components, but for the first: the sky's light, which is primary.
+  // Parts have the numbers of components, except the first: sky light, which is primary.
   static constexpr std::array<const char*, shared::k_part_count> k_parts{"environm.", "secondary", "tertiary",
                                                                          "caustic"};
   bool any = false;
@@ -409,29 +406,29 @@ void add_fields(Card& card, uint32_t index, const Record& r) {
         {figure_text(e.value.x), figure_text(e.value.y), figure_text(e.value.z),
          figure_text(gradient_length(e.rotation)), figure_text(gradient_length(e.translation))}});
   }
-  if (!any) add(Card::Note{r.crowded ? "none: paths gather it here" : "no light", Tone::faint});
+  if (!any) add(Card::Note{r.crowded ? "none: paths gather here" : "no light", Tone::faint});
   add(Card::Rule{.line = true});
 }
 
-/// Which records serve there, with which weights.
+/// Records that serve there, with their weights.
 void add_weights(Card& card, const Inspection& found, bool building) {
   const auto note = [&](std::string text, Tone tone = Tone::dim) {
     card.lines.push_back({Card::Note{std::move(text), tone}});
   };
-  if (found.lookup == shared::k_lookup_none) return note("Nothing diffuse: no record is asked for.");
+  if (found.lookup == shared::k_lookup_none) return note("Not diffuse: no lookup here.");
   if (found.lookup == shared::k_lookup_too_steep) {
     note("The normal map is too steep for records.", Tone::warning);
-    return note("It is path traced here.", Tone::warning);
+    return note("Path traced here.", Tone::warning);
   }
   if (found.gathers) {
-    note("Too near to something else to interpolate.");
+    note("Near an edge: not interpolated.");
     return note("Paths gather the light here.");
   }
   if (found.count == 0)
-    return note(building ? "No record serves here yet." : "No record serves here: it is path traced.",
+    return note(building ? "No record serves here yet." : "No record serves here: path traced.",
                 building ? Tone::dim : Tone::warning);
   note(fmt::format("Served by {} record{}", found.count, found.count == 1 ? "" : "s"));
-  // Where but one would be left over it is shown, too.
+  // A single remaining record is shown instead of a summary.
   const size_t shown = found.serving.size() <= k_weights_shown + 1 ? found.serving.size() : k_weights_shown;
   for (size_t i = 0; i < shown; ++i)
     card.lines.push_back({Card::Weight{count_text(found.serving[i].record), found.serving[i].weight,
@@ -449,7 +446,7 @@ solvers::Report make_report(const CacheReport& data, const OptionValues& setting
   const CacheStatus& s = data.status;
   const bool building = s.stop == StopReason::building;
   Report report{.solver = info().name, .ready = !building, .waits = s.waits};
-  if (s.waits) report.to_go_on = "building of the cache waits (cache.pause); cache.run goes on";
+  if (s.waits) report.to_go_on = "building of the cache is paused (cache.pause); cache.run continues";
   report.preparing = preparing(data);
   if (const auto left = forecast_of(s, settings.real("cache.stop")); left && !s.waits)
     report.progress = {left->done, left->left_ms};

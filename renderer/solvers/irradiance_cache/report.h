@@ -1,6 +1,6 @@
 #pragma once
-// What a person is told of an irradiance cache: its figures as the renderer has them, and all words, tables,
-// legends and colours that are made of them. Whoever draws these knows nothing of records.
+// Report of the irradiance cache: figures from the renderer, and the texts, tables, legends and colours made
+// of them.
 #include <optional>
 #include <utility>
 
@@ -12,19 +12,19 @@ namespace lucerna::irradiance_cache {
 
 struct CacheReport {
   CacheStatus status;
-  PlacementShow placement = PlacementShow::off;  ///< what of it lies over the picture; never `stage`
-  uint32_t placed = 0;                           ///< records so far, those of the pass in progress too
-  uint32_t room = 0;                             ///< records that there is room for
-  /// Of the pixels of the picture, as their first samples see the scene; none while it is being built.
+  PlacementShow placement = PlacementShow::off;  ///< what is drawn over the picture; never `stage`
+  uint32_t placed = 0;                           ///< records so far, including the current pass
+  uint32_t room = 0;                             ///< capacity in records
+  /// Over the pixels of the picture, as their first samples see the scene; nullopt while building.
   std::optional<Overlap> overlap;
-  uint32_t color = 0;                   ///< shared::k_record_by_*: what the overlay colours records by
-  std::pair<float, float> scale{1, 2};  ///< ends of that scale (Cache::scale)
-  /// Where somebody looks, 0..1 to the right and down; and what is there.
+  uint32_t color = 0;                   ///< shared::k_record_by_*: colour of the overlay
+  std::pair<float, float> scale{1, 2};  ///< ends of the colour scale (Cache::scale)
+  /// Inspected place, 0..1 to the right and down, and the result.
   std::optional<vec2> looked_at;
   Inspection inspection;
 };
 
-/// `settings` has the solver's options (info().options), as the figures were made with.
+/// `settings` contains the solver's options (info().options) used for the figures.
 solvers::Report make_report(const CacheReport& data, const OptionValues& settings);
 
 }  // namespace lucerna::irradiance_cache

@@ -45,19 +45,19 @@ paths::LookupRoutes routes_of_records(const Task& task) {
                               task.effects.specular || task.effects.solid_glass || task.effects.thin_glass);
 }
 
-/// Tertiary light behind a cached secondary component is another solver's, which looks it up: then it does so
-/// for the rays of records as well.
+/// True if another solver computes the tertiary light behind a cached secondary component by lookups: it then
+/// serves records' rays too.
 bool elsewhere(const Task& task) {
   constexpr uint32_t k_tertiary = 1u << 2;
   return (task.provided & task.enabled & ~task.own & picture_routes(task).parts & k_tertiary) != 0;
 }
 
-/// What paths bring of what the rays of records gather; lookups are others' where `elsewhere`.
+/// Parts that paths compute for records' rays; with `elsewhere` another solver provides lookups.
 paths::LookupRoutes routes_of_rays(const Task& task) {
   constexpr uint32_t k_tertiary = 1u << 2;
   paths::LookupRoutes records = routes_of_records(task);
   if (!elsewhere(task)) return records;
-  // Behind ED the components are the parts, so that the rays are those of a picture of them.
+  // Behind ED the components are the parts, so records' rays are paths of a picture of these components.
   paths::LookupRoutes rays = paths::photon_routes(task.automaton, records.parts, k_tertiary);
   rays.parts = records.parts;
   return rays;
@@ -80,7 +80,7 @@ solvers::Routing routing(const Task& task) {
           .through = routes.elsewhere ? 1u << 2 : 0};
 }
 
-/// Texels brighter than this times the sky's mean are a sun, where records hold the sky's light.
+/// Texels brighter than this times the sky's mean are the sun, if records store sky light.
 float sun_threshold(const Task& task) {
   if (!task.settings.boolean("cache.environment")) return 0;
   const uint32_t parts = paths::lookup_routes(task.automaton, task.enabled, task.own, true).parts;
@@ -142,7 +142,7 @@ CacheView CacheSolver::view(const Picture& picture) const {
   CacheView view;
   view.paths_frame = picture.frame;
   view.paths_enabled = picture.task.enabled;
-  // The records' paths begin behind one diffuse event: components are then the numbers of the parts.
+  // Records' paths begin behind one diffuse event, so components have the numbers of parts.
   view.records_frame = picture.frame_for(
       {.lookups = ray_routes_,
        .fallback = record_routes_.parts,
@@ -167,7 +167,7 @@ void CacheSolver::adopt(transport::Wavefront& wavefront, const solvers::Solver& 
 
 void CacheSolver::begin(const Picture& picture, solvers::Invalidation invalidated) {
   invalidated |= std::exchange(lacks_, solvers::k_invalidates_nothing);
-  // Other lights may be of other groups, or the same.
+  // The edit may have changed the groups of lights.
   const uint64_t before = std::exchange(grouping_, light_grouping(picture.flat));
   if (cache_.records().groups() > 1) invalidated.light |= before != grouping_;
   overlap_.reset();
@@ -210,8 +210,8 @@ void CacheSolver::warn_of_full_cache() {
   const uint32_t at = full ? cache_.status().records : 0;
   if (full && at != full_at_)
     log::warning(
-        "the irradiance cache is full with {} records: where none serves, light is path traced, which is as "
-        "right and slower; cache.max_records gives it more room",
+        "the irradiance cache is full ({} records); pixels without records are path traced: correct but "
+        "slower. Raise cache.max_records",
         at);
   full_at_ = at;
 }

@@ -1,6 +1,5 @@
 #pragma once
-// The irradiance cache as the renderer sees it: cache.h with its options read from the settings, its views
-// and its report.
+// The irradiance cache as a solver: cache.h with options from the settings, views and report.
 #include <memory>
 
 #include "solvers/irradiance_cache/cache.h"
@@ -13,13 +12,12 @@ namespace lucerna::irradiance_cache {
 
 const solvers::SolverType& type();
 
-/// Tells which light is of which group, where groups are kept in short and so records keep their shares; 0:
-/// they are not.
+/// Hash of the assignment of lights to groups, for compact groups, where records store shares; 0: no shares.
 uint64_t light_grouping(const upload::FlatScene& flat);
 
 class CacheSolver final : public solvers::Solver {
  public:
-  /// Throws Error as Cache.
+  /// Throws Error like Cache.
   CacheSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const solvers::Task& task);
 
   const solvers::SolverInfo& info() const override;
@@ -52,7 +50,7 @@ class CacheSolver final : public solvers::Solver {
   void draw(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
   std::shared_ptr<const solvers::Report> report(const overlay::Canvas& canvas,
                                                 const solvers::Picture& picture, bool sampled) override;
-  /// What report() is made of.
+  /// Input of report().
   CacheReport state(const overlay::Canvas& canvas, const solvers::Picture& picture, bool sampled);
   nlohmann::ordered_json statistics(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
   std::map<std::string, double> figures() const override;
@@ -69,27 +67,27 @@ class CacheSolver final : public solvers::Solver {
  private:
   CacheView view(const solvers::Picture& picture) const;
   Inspector& inspector();
-  /// How many records serve the picture's pixels; looked at once a picture.
+  /// Statistics of records per pixel; computed once per picture.
   const Overlap& overlap(const overlay::Canvas& canvas, const solvers::Picture& picture);
   void warn_of_full_cache();
 
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
-  /// Of the picture's paths; of the rays of records, in records; of these, whoever looks up.
+  /// Frames of the picture's paths; of the records' rays, in records; and components that look up.
   paths::LookupRoutes picture_routes_, record_routes_, ray_routes_;
   Metric metric_;
   bool gathers_;
   Cache cache_;
-  /// What of an adopted cache does not serve here; of a new one all.
+  /// What is invalid in an adopted cache; everything in a new one.
   solvers::Invalidation lacks_ = solvers::k_invalidates_all;
-  uint64_t grouping_ = 0;                          ///< light_grouping() of what records hold
-  std::unique_ptr<Inspector> inspector_;           ///< made when it is called for
-  std::unique_ptr<PlacementView> placement_view_;  ///< the same
+  uint64_t grouping_ = 0;                          ///< light_grouping() of the records
+  std::unique_ptr<Inspector> inspector_;           ///< made at the first use
+  std::unique_ptr<PlacementView> placement_view_;  ///< likewise
   std::optional<vec2> looked_at_;
   Inspection inspection_;
-  std::optional<Overlap> overlap_;  ///< of the picture begun last
+  std::optional<Overlap> overlap_;  ///< of the current picture
   bool interactive_ = false;
-  uint32_t full_at_ = 0;  ///< records at which a person was last told that there is no room for more
+  uint32_t full_at_ = 0;  ///< number of records at the last warning that the cache is full
 };
 
 }  // namespace lucerna::irradiance_cache

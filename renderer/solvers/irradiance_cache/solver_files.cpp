@@ -1,4 +1,4 @@
-// The cache kept as a file: what it was made of, and what must agree with that.
+// Cache files: saving, and loading with a check of what the records were made with.
 #include <set>
 
 #include "base/log.h"
@@ -9,7 +9,7 @@
 namespace lucerna::irradiance_cache {
 namespace {
 
-/// Options that decide how many records there are, not what one holds.
+/// Options that affect the number of records, not their contents.
 const std::set<std::string> k_amounts{"cache.max_records", "cache.passes", "cache.stop", "cache.candidates",
                                       "cache.irradiance_weight"};
 
@@ -29,7 +29,7 @@ MadeWith current_provenance(const Cache& cache, const OptionValues& settings,
   return made_with;
 }
 
-/// All that decides which records this picture asks for, as text.
+/// Everything that determines which records this picture needs, as text.
 std::string view_text(const OptionValues& settings, const solvers::Provenance& provenance) {
   std::string text = fmt::format("{} seed {}", provenance.view, settings.text("seed"));
   for (const std::string& key : k_amounts)
@@ -64,20 +64,20 @@ void CacheSolver::load(const std::string& file, transport::Wavefront& wavefront,
   CacheFile saved = read_cache(file);
   const uint32_t room = cache_.records().capacity();
   check_fits(saved, current_provenance(cache_, settings, provenance), room, file);
-  // Of the view that it was complete for it lacks nothing, unless only room was missing then.
+  // It is complete for the view it was saved for, unless it was full then.
   const bool full = saved.status.stop == StopReason::records;
   const bool complete =
       saved.view == view_text(settings, provenance) && (!full || saved.records.size() == room);
   const uint32_t count = saved.records.size();
-  // Places serve whatever groups there are; where these are others begin() has their light gathered anew.
+  // Places serve any grouping of lights; if it differs, begin() gathers their light again.
   grouping_ = saved.grouping;
   const bool regroups = cache_.records().groups() > 1 && grouping_ != light_grouping(picture.flat);
   cache_.restore(wavefront, std::move(saved.records), saved.status, complete);
   log::info(
       "{}: {} records{}{}", file, count,
-      regroups   ? "; their light is gathered anew by groups of lights"
+      regroups   ? "; their light is gathered again by light groups"
       : complete ? ", complete for this view"
-                 : "; what this view is missing is added",
+                 : "; missing records of this view are added",
       saved.made_with.seed == settings.text("seed") ? "" : " (made with seed " + saved.made_with.seed + ")");
 }
 

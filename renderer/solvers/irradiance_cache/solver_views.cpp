@@ -1,4 +1,4 @@
-// What the cache shows of itself: over the picture, in its report, in figures.
+// Display of the cache: overlays, report, statistics.
 #include <algorithm>
 
 #include "solvers/irradiance_cache/report.h"
@@ -30,7 +30,7 @@ void CacheSolver::draw(const Canvas& canvas, const Picture& picture) {
   const auto placement = PlacementShow(settings.choice("overlay.placement"));
   if (placement != PlacementShow::off) {
     if (!placement_view_) placement_view_ = std::make_unique<PlacementView>(device_, compiler_);
-    // Below the others, for it dims the picture.
+    // Drawn first, because it dims the picture.
     placement_view_->draw(canvas, cache_, placement);
   }
   const auto color = uint32_t(settings.choice("overlay.records_by"));

@@ -1,5 +1,5 @@
 #pragma once
-// The stages that building goes through, and where it waits for somebody who watches. No device: pure state.
+// Stages of building and where it pauses. Pure state; no device.
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -12,16 +12,16 @@
 
 namespace lucerna::irradiance_cache {
 
-/// Of a pass, in their order. Evaluation is a stage for each level of rays; `octree` comes behind the first.
+/// Stages of a pass in order. Evaluation is one stage for each ray level; `octree` follows the first.
 enum class BuildStage {
-  probe,     ///< the places where records are missing are known: candidates
-  choose,    ///< they are cut into clusters, and it is known which of them are tried
-  measure,   ///< how far things are around these, and so how wide their records would be
-  thin,      ///< which of them are chosen
-  evaluate,  ///< a level of their rays is gathered
-  octree     ///< they have radii, and are found
+  probe,     ///< finds places without records: candidates
+  choose,    ///< cuts them into clusters and selects the ones to try
+  measure,   ///< measures distances around them, and so the radii of their records
+  thin,      ///< selects the ones to keep
+  evaluate,  ///< traces one level of rays
+  octree     ///< sets radii and builds the octree
 };
-/// What a step is called, and what it does.
+/// Name and description of a step.
 struct StepText {
   const char *name, *help;
 };
@@ -33,13 +33,14 @@ constexpr std::array<const char*, N> names_of(const StepText (&texts)[N]) {
 }
 
 inline constexpr StepText k_stage_texts[] = {
-    {"probe", "Paths from the camera ask where they find no record: candidates."},
+    {"probe", "Camera paths find places without records: candidates."},
     {"choose",
-     "Candidates in Morton order are cut into clusters; of each, points are tried until all are covered."},
-    {"measure", "A few rays from what is tried: how wide would its records be?"},
-    {"thin", "What a wider one makes superfluous is rejected, the rest chosen."},
-    {"evaluate", "Rays over the hemispheres of the records, a level of four times as many after the other."},
-    {"octree", "Records have got their radii, and an octree in which they are found."},
+     "Candidates are sorted in Morton order and cut into clusters; from each, places are drawn until all are "
+     "covered."},
+    {"measure", "A few rays from each tried place: the radius of its record."},
+    {"thin", "Places that a wider record covers are rejected, the rest is chosen."},
+    {"evaluate", "Rays over the hemispheres of the records, in levels of four times as many."},
+    {"octree", "Radii of the records, and the octree for lookups."},
 };
 static_assert(std::size(k_stage_texts) == size_t(BuildStage::octree) + 1);
 inline constexpr auto k_build_stages = names_of(k_stage_texts);
@@ -49,39 +50,39 @@ struct StageDone {
   BuildStage stage = BuildStage::probe;
   uint32_t level = 0;  ///< of evaluate: from 1
   uint32_t pass = 0;   ///< as CachePass::number
-  double ms = 0;       ///< that it took, as CachePass::ms
-  uint64_t rays = 0;   ///< from records, in it
+  double ms = 0;       ///< duration, as CachePass::ms
+  uint64_t rays = 0;   ///< rays of records in this stage
 };
 
 /// "probe, pass 1", "evaluate 256 rays" and the like.
 std::string stage_words(const StageDone& done);
 
-/// Where building waits: the values of the setting cache.pause, in its order.
+/// Where building pauses: the values of the setting cache.pause, in its order.
 enum class PauseAfter { off, pass, stage };
 
-/// Decides when building waits. It never waits once it is complete.
+/// Decides when building pauses. It never pauses once complete.
 class Pauses {
  public:
-  /// Holds from the next end of a stage on; to change it to `off` also ends a pause.
+  /// Takes effect at the next end of a stage; `off` also ends a pause.
   void set(PauseAfter after) {
     if (after_ != after && after == PauseAfter::off) waits_ = false;
     after_ = after;
   }
   PauseAfter after() const { return after_; }
-  /// Goes on to the end of the next stage and waits there, whatever is set.
+  /// Continues to the end of the next stage and pauses there, whatever is set.
   void step() { waits_ = running_ = false, single_ = true; }
-  /// Goes on until building is complete, whatever is set.
+  /// Continues until building is complete, whatever is set.
   void run() { waits_ = single_ = false, running_ = true; }
 
-  /// A stage has ended; `last`: of its pass.
+  /// Call when a stage has ended; `last`: of its pass.
   void ended(bool last) {
     const bool requested = !running_ && (after_ == PauseAfter::stage || (after_ == PauseAfter::pass && last));
     waits_ = single_ || requested;
     single_ = false;
   }
-  /// What it waited behind is dropped: there is something to do again.
+  /// Call when the state of the pause is dropped: there is work again.
   void dropped() { waits_ = false; }
-  /// Building is complete: what was asked for is over, what is set stays for the next.
+  /// Call when building is complete: single-step requests end, the setting stays.
   void complete() { waits_ = single_ = running_ = false; }
   bool waits() const { return waits_; }
 
@@ -90,27 +91,27 @@ class Pauses {
   bool waits_ = false, single_ = false, running_ = false;
 };
 
-/// What the pass that is being built, or else the last one, has done with the places that were asked for, as
-/// far as it has come. Each list is empty before it is known. Valid until the cache is changed.
+/// Places of the current or last pass, as far as known; a list is empty before its stage has ended. Valid
+/// until the cache changes.
 struct PlacementShown {
   std::span<const Place> candidates;
-  std::span<const uint32_t> cluster;  ///< of each candidate
+  std::span<const uint32_t> cluster;  ///< cluster of each candidate
   std::span<const Place> tried;       ///< some of the candidates
-  std::span<const float> radii;       ///< of what is tried [m]
-  std::span<const uint32_t> kept;     ///< what is chosen: indices of what is tried, in rising order
-  uint64_t version = 0;               ///< another number where any of them has changed
+  std::span<const float> radii;       ///< radii of the tried places [m]
+  std::span<const uint32_t> kept;     ///< chosen ones: rising indices into `tried`
+  uint64_t version = 0;               ///< changes with any of them
 };
 
 /// The values of the setting overlay.placement, in its order.
 enum class PlacementShow {
   off,
-  stage,       ///< as much as is known
-  candidates,  ///< places asked for, by what asked
-  clusters,    ///< the same by their clusters, and what of them is tried
-  chosen       ///< what was tried, chosen or not, with the radii
+  stage,       ///< everything known so far
+  candidates,  ///< candidates by origin
+  clusters,    ///< candidates by cluster, and the tried ones
+  chosen       ///< tried ones, kept or dropped, with their radii
 };
 
-/// What of it there is to be drawn: never `stage`, and `off` where nothing has been asked for.
+/// What to draw: never `stage`; `off` if there are no candidates.
 PlacementShow placement_drawn(PlacementShow show, const PlacementShown& placement);
 
 }  // namespace lucerna::irradiance_cache

@@ -1,4 +1,4 @@
-// Which of the places that were tried are needed: thin_out().
+// Selects the tried places to keep: thin_out().
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -24,8 +24,8 @@ std::vector<uint32_t> thin_out(std::span<const Place> places, std::span<const fl
   std::vector<uint32_t> order(places.size()), kept;
   std::iota(order.begin(), order.end(), 0u);
   std::stable_sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) { return radii[a] > radii[b]; });
-  // Grids of those kept, one for each power of two of what they cover: cells are as wide as that at most, so
-  // that whatever covers a point is centred in its cell or one of the 26 around it.
+  // Grids of the kept places, one for each power of two of their radius. Cells are at least that wide, so a
+  // place that covers a point is in the point's cell or one of the 26 around it.
   struct Cell {
     int level;
     int64_t x, y, z;

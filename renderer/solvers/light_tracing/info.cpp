@@ -8,65 +8,61 @@ using namespace solvers;
 
 std::vector<OptionInfo> option_rows() {
   return {
-      with_zero(integer_option(
-                    "light.per_round", 0, 0, 1 << 24, "paths",
-                    "Light tracing: paths from lights in a round, of which there is one for every sample of "
-                    "the picture; 0: as many as the picture has pixels, 16,384 to 1,048,576.",
-                    "Paths a round"),
+      with_zero(integer_option("light.per_round", 0, 0, 1 << 24, "paths",
+                               "Light tracing: light paths in a round; there is one round for every sample "
+                               "of the picture. 0: one per pixel, 16,384 to 1,048,576.",
+                               "Paths per round"),
                 "automatic"),
       boolean_option("light.aim", "true",
-                     "Light tracing: aims light paths at what mirrors or refracts smoothly, by what a pilot "
-                     "finds that each pair of lamp and caster brings to the picture.",
+                     "Light tracing: aims light paths at casters (specular surfaces), by the contributions "
+                     "of each pair of lamp and caster in a pilot.",
                      "Aim at casters"),
-      without_restart(boolean_option(
-          "overlay.light_paths", "false",
-          "Shows paths from the lights as they are traced: faint up to the first surface, then in the colour "
-          "of their light.",
-          "Show light paths")),
-      without_restart(with_zero(
-          integer_option("overlay.light_paths_of", 0, 0, 65535, "",
-                         "Of the lamp of this number alone, in the scene's order; 0: of all lights.",
-                         "Paths of lamp"),
-          "all")),
+      without_restart(boolean_option("overlay.light_paths", "false",
+                                     "Draws light paths as they are traced: faint up to the first surface, "
+                                     "then in the colour of their light.",
+                                     "Show light paths")),
+      without_restart(
+          with_zero(integer_option(
+                        "overlay.light_paths_of", 0, 0, 65535, "",
+                        "Number of the only lamp whose paths are drawn, in the scene's order; 0: all lights.",
+                        "Paths of lamp"),
+                    "all")),
       without_restart(boolean_option("overlay.light_aim", "false",
-                                     "Shows what light paths are aimed at: a box around each caster, and "
-                                     "lines from lights to casters, by "
-                                     "the share of the paths.",
+                                     "Draws the targets of aimed light paths: a box around each caster, and "
+                                     "lines from lights to casters, coloured by the share of the paths.",
                                      "Show aim")),
   };
 }
 
-/// A round is another as soon as the picture begins anew; what is told here is whether lights and casters may
-/// be those that there are.
+/// Every picture has new rounds; these rows state whether lights and casters stay valid.
 std::vector<ChangeRow> change_rows() {
   return {
-      {Change::camera, k_invalidates_nothing, "lights and casters are the same, whoever looks"},
+      {Change::camera, k_invalidates_nothing, "lights and casters do not depend on the view"},
       {Change::size, k_invalidates_nothing, "lights and casters are the same"},
       {Change::lamp, k_invalidates_light, "other lights"},
       {Change::environment, k_invalidates_light, "other lights"},
-      {Change::colour, k_invalidates_light, "of a material, or its emission: other lights and casters"},
+      {Change::colour, k_invalidates_light, "material colour or emission: other lights and casters"},
       {Change::material, k_invalidates_light, "other casters"},
       {Change::shape, k_invalidates_all, "other surfaces"},
-      {Change::shaders, k_invalidates_all, "whatever they compute"},
-      {Change::restart, k_invalidates_all, "asked for: all anew"},
-      {"components.", k_invalidates_all, "which light is brought"},
-      {"samples", k_invalidates_nothing, "of the picture alone"},
-      {"sampling.", k_invalidates_nothing, "of the picture alone"},
-      {"film.", k_invalidates_nothing, "how it is shown"},
-      {"show.", k_invalidates_nothing, "how it is shown"},
-      {"preview.", k_invalidates_nothing, "how it is shown"},
-      {"overlay.", k_invalidates_nothing, "how it is shown"},
-      {"relight.", k_invalidates_light,
-       "groups of the lights, and their light where groups are not kept apart"},
-      {"about", k_invalidates_nothing, "words"},
-      {"camera", k_invalidates_nothing, "lights and casters are the same, whoever looks"},
+      {Change::shaders, k_invalidates_all, "shaders may compute anything"},
+      {Change::restart, k_invalidates_all, "requested by the user"},
+      {"components.", k_invalidates_all, "computed components"},
+      {"samples", k_invalidates_nothing, "affects the picture only"},
+      {"sampling.", k_invalidates_nothing, "affects the picture only"},
+      {"film.", k_invalidates_nothing, "display only"},
+      {"show.", k_invalidates_nothing, "display only"},
+      {"preview.", k_invalidates_nothing, "display only"},
+      {"overlay.", k_invalidates_nothing, "display only"},
+      {"relight.", k_invalidates_light, "grouping of lights, and their light if groups are not separate"},
+      {"about", k_invalidates_nothing, "text only"},
+      {"camera", k_invalidates_nothing, "lights and casters do not depend on the view"},
       {"tracer", k_invalidates_nothing, "all tracers find the same surfaces"},
-      {"path.batch", k_invalidates_nothing, "how work is cut"},
-      {"lights.", k_invalidates_nothing, "paths from the eye alone"},
-      {"path.classes", k_invalidates_nothing, "by which kernels hits are shaded"},
-      {"path.", k_invalidates_light, "how far paths go"},
-      {"seed", k_invalidates_light, "other paths, as good as these"},
-      {"light.", k_invalidates_light, "how many paths, and where they go"},
+      {"path.batch", k_invalidates_nothing, "size of work items"},
+      {"lights.", k_invalidates_nothing, "affects eye paths only"},
+      {"path.classes", k_invalidates_nothing, "choice of shading kernels"},
+      {"path.", k_invalidates_light, "length of paths"},
+      {"seed", k_invalidates_light, "other, equally valid paths"},
+      {"light.", k_invalidates_light, "number and targets of paths"},
   };
 }
 
@@ -78,9 +74,9 @@ const SolverInfo& info() {
       .label = "Light",
       .title = "light tracing",
       .help =
-          "Light tracing: paths from the lights are joined to the camera where they leave mirrors and glass "
-          "for a surface that it sees straight; sharp and without bias. What it sees of that light in "
-          "mirrors and through glass is path traced, or with light+photons looked up.",
+          "Light tracing: light paths are connected to the camera at diffuse surfaces that mirrors or glass "
+          "light and the camera sees directly; sharp and unbiased. Mirror images of that light are path "
+          "traced, or with light+photons looked up.",
       .serves = {false, false, false, true},
       .unbiased = true,
       .directly_visible_only = true,

@@ -1,5 +1,5 @@
 #pragma once
-// What light tracing says of itself.
+// Description of light tracing.
 #include "solvers/info.h"
 
 namespace lucerna::light_tracing {

@@ -1,5 +1,5 @@
 #pragma once
-// What light tracing tells a person.
+// Report of light tracing.
 #include "overlay/light_paths.h"
 #include "solvers/light_tracing/splats.h"
 #include "solvers/report.h"
@@ -7,16 +7,16 @@
 namespace lucerna::light_tracing {
 
 struct LightTracingReport {
-  double lights_power = 0;                                            ///< luminance of all lights' flux [W]
-  bool sends = true;                                                  ///< paths: else nothing focuses light
-  bool ready = true;                                                  ///< the pilot is done
-  uint64_t rounds = 0, paths = 0, joined = 0, escaped = 0, dark = 0;  ///< of the picture
+  double lights_power = 0;  ///< luminance of all lights' flux [W]
+  bool sends = true;        ///< traces light paths; false: nothing in the scene focuses light
+  bool ready = true;        ///< the pilot is complete
+  uint64_t rounds = 0, paths = 0, joined = 0, escaped = 0, dark = 0;  ///< totals of the picture
   RoundFigures last;
   uint32_t casters = 0;
-  double unaimed = 1;                     ///< share of the paths
-  std::vector<overlay::AimedPair> aimed;  ///< greatest share first
+  double unaimed = 1;                     ///< unaimed share of the paths
+  std::vector<overlay::AimedPair> aimed;  ///< largest share first
   bool aim_shown = false;
-  double sent_per_s = 0;  ///< 0: not yet known
+  double sent_per_s = 0;  ///< 0: not measured yet
   uint64_t bytes = 0;
 };
 

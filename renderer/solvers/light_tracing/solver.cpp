@@ -15,9 +15,9 @@ using solvers::Cancel, solvers::Picture, solvers::Task;
 
 namespace {
 
-constexpr uint32_t k_least_paths = 1u << 14, k_most_paths = 1u << 20;  // where their number is left to us
+constexpr uint32_t k_least_paths = 1u << 14, k_most_paths = 1u << 20;  // automatic number of paths
 
-/// Whether anything in the scene scatters otherwise than diffusely.
+/// True if the scene has specular or glossy surfaces.
 bool focuses(const Task& task) {
   const upload::Effects& e = task.effects;
   return e.specular || e.solid_glass || e.thin_glass;
@@ -28,9 +28,9 @@ std::unique_ptr<solvers::Solver> make(gpu::Device& device, gpu::ShaderCompiler& 
   return std::make_unique<LightTracingSolver>(device, compiler, task);
 }
 
-/// What sums are counted in: so little of what a path brings that lies as far away as the scene's core is
-/// wide that one that lies thirty thousand times nearer still fits, and one that lies as many times farther
-/// away is some units.
+/// Integer step of the sums. Small compared to a path's contribution at a distance of the width of the
+/// scene's core, and coarse enough that a contribution at a thirty-thousandth of that distance still fits; at
+/// thirty thousand times the distance it is a few steps.
 float unit_of(const Picture& picture, double power, uint32_t paths) {
   const Frame& f = picture.frame;
   const double area = 4.0 * double(glm::length(f.camera_right)) * double(glm::length(f.camera_up)) /
@@ -89,7 +89,7 @@ void LightTracingSolver::begin(const Picture& picture, solvers::Invalidation inv
   const bool aims = sends_ && lights_.power() > 0 && picture.task.settings.boolean("light.aim");
   const bool stale = invalidated.any() || aims != aims_ || !transport::same_view(picture.frame, aimed_for_);
   aims_ = aims;
-  // Whoever only looks from elsewhere finds the same casters.
+  // The casters do not depend on the view.
   if (invalidated.light || invalidated.places || !aims) casters_.clear(), casters_known_ = false;
   if (!stale) return;
   aimed_ = false, casters_set_ = false;

@@ -1,6 +1,5 @@
 #pragma once
-// Light tracing as the renderer sees it: a round of paths from the lights for every sample, joined to the
-// camera.
+// Light tracing as a solver: one round of light paths for every sample, connected to the camera.
 #include "overlay/light_paths.h"
 #include "solvers/light_tracing/report.h"
 #include "solvers/light_tracing/splats.h"
@@ -12,7 +11,7 @@ const solvers::SolverType& type();
 
 class LightTracingSolver final : public solvers::Solver {
  public:
-  /// Throws Error as Splats.
+  /// Throws Error like Splats.
   LightTracingSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const solvers::Task& task);
 
   const solvers::SolverInfo& info() const override;
@@ -21,7 +20,7 @@ class LightTracingSolver final : public solvers::Solver {
   bool serves(const solvers::Task& task) const override;
 
   void begin(const solvers::Picture& picture, solvers::Invalidation invalidated) override;
-  /// Whether it is known which casters light paths are aimed at, and with which shares.
+  /// True once the casters, and the shares of paths aimed at them, are known.
   bool ready() const override { return !aims_ || aimed_; }
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
@@ -44,21 +43,21 @@ class LightTracingSolver final : public solvers::Solver {
 
   gpu::Device& device_;
   paths::LookupRoutes routes_;
-  bool sends_;  ///< there may be light that is bundled
+  bool sends_;  ///< the scene may focus light
   Splats splats_;
   overlay::LightPathsPainter paths_view_;
   transport::LightSource lights_;
-  bool lit_ = false;    ///< lights_ are the scene's
-  bool begun_ = false;  ///< splats_ are of this picture
+  bool lit_ = false;    ///< lights_ are up to date
+  bool begun_ = false;  ///< splats_ belong to this picture
 
   bool aims_ = false;   ///< there may be casters
-  bool aimed_ = false;  ///< shares are those of this picture
+  bool aimed_ = false;  ///< shares belong to this picture
   std::vector<Box> casters_;
-  bool casters_known_ = false, casters_set_ = false;  ///< set: in lights_, in equal shares
-  std::vector<overlay::AimedPair> pairs_;             ///< with their shares
+  bool casters_known_ = false, casters_set_ = false;  ///< set: in lights_, with equal shares
+  std::vector<overlay::AimedPair> pairs_;             ///< aimed pairs with their shares
   shared::Frame aimed_for_{};
 
-  uint32_t last_sample_ = 0;  ///< whose round is complete, in this picture
+  uint32_t last_sample_ = 0;  ///< sample of the latest complete round of this picture
   uint64_t rounds_ = 0, paths_ = 0, joined_ = 0, escaped_ = 0, dark_ = 0;  ///< of this picture
   double trace_s_ = 0;
 };

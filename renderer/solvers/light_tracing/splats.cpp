@@ -112,14 +112,14 @@ Splats::Went Splats::batch(transport::Wavefront& wavefront, const transport::Lig
                                         .arrival = &kernels.arrival};
   const Timer timer;
   if (!emitter_.trace(wavefront, lights, round, traced_, count, work, picture, enabled, cancel)) {
-    // Part of its light has arrived.
+    // Part of its light has arrived already.
     tracing_ = false, band_ = 0;
     clear(wavefront);
     return Went::cancelled;
   }
   counts_.read(counts, sizeof counts);
   next_.joined += counts[k_splats_joined];
-  // The same paths serve all bands.
+  // All bands use the same paths.
   if (band_ == 0) next_.escaped += emitter_.escaped(), next_.dark += emitter_.dark();
   next_.trace_s += timer.seconds();
   traced_ += count;

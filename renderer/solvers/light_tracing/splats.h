@@ -1,8 +1,8 @@
 #pragma once
-// What the light paths of one round bring straight to the camera's pixels (shaders/shared/splat.h).
+// Light that the light paths of one round contribute to the camera's pixels (shaders/shared/splat.h).
 //
-// Bit-identical, however threads run and however many paths are in flight: light is summed in whole numbers.
-// A picture of more pixels than a storage buffer holds is summed in bands, each by the same light paths.
+// Bit-identical for any thread timing and any number of paths in flight: light is summed as integers. A
+// picture with more pixels than a storage buffer holds is summed in bands, each from the same light paths.
 #include <array>
 
 #include "shaders/shared/splat.h"
@@ -10,41 +10,41 @@
 
 namespace lucerna::light_tracing {
 
-/// Of the last complete round.
+/// Of the latest complete round.
 struct RoundFigures {
   uint32_t round = 0, paths = 0;
-  uint32_t joined = 0;   ///< vertices that lie in the picture, were nothing between
-  uint32_t pixels = 0;   ///< that have got light
+  uint32_t joined = 0;   ///< vertices inside the picture, before the visibility test
+  uint32_t pixels = 0;   ///< pixels that received light
   uint32_t escaped = 0;  ///< paths that left the scene
-  uint32_t dark = 0;     ///< paths that began where their light has no light
-  double trace_s = 0;    ///< wall time of it
+  uint32_t dark = 0;     ///< paths that started where their light does not emit
+  double trace_s = 0;    ///< wall time
 };
 
 class Splats {
  public:
-  /// `scene_defines`: of the kernels that know the scene. `groups`: that of lights are kept in short, so that
-  /// it is drawn whose a pixel's light is (SplatOwners). Throws Error: a kernel does not compile (located),
-  /// no memory.
+  /// `scene_defines`: of kernels that read the scene. `groups`: the film has compact groups, so one group per
+  /// pixel and channel is drawn at random (SplatOwners). Throws Error: a kernel does not compile (located),
+  /// memory.
   Splats(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& scene_defines,
          const paths::Automaton& automaton, bool groups);
 
-  /// SplatBlock, splat_picture: as they are until a picture of another size begins.
+  /// Binds SplatBlock and splat_picture; valid until a picture of another size begins.
   void bind(gpu::Resources& resources) const;
-  /// A picture of that size begins, of that component; nothing is brought to it until a round is complete.
-  /// `unit`: that sums are counted in, of radiance.
+  /// Starts a picture of that size and component; it receives no light until a round is complete. `unit`:
+  /// radiance per integer step of the sums.
   void begin(transport::Wavefront& wavefront, uint32_t width, uint32_t height, uint32_t component,
              float unit);
-  /// The next round is to begin anew.
+  /// Restarts the next round.
   void restart() { tracing_ = false, complete_ = false, band_ = 0; }
 
-  /// One batch of the round, as many paths as the wavefront has slots; with the last the round is complete,
-  /// and paths from the camera bring it. The wavefront's frame is then `picture`, of `enabled` components,
-  /// again. False when it was cancelled: it will be done again.
+  /// Traces one batch of the round, as many paths as the wavefront has slots. The last batch completes the
+  /// round, and camera paths then add its light. Afterwards the wavefront has frame `picture` with `enabled`
+  /// components again. False if cancelled: it will be repeated.
   bool trace(transport::Wavefront& wavefront, const transport::LightSource& lights,
              const transport::LightRound& round, const shared::Frame& picture, uint32_t enabled,
              const std::function<bool()>& cancel);
-  /// The same of a pilot, whose light goes nowhere but here: what each stratum of emission brings to the
-  /// picture, up to a factor. Nothing when it was cancelled, or is not yet complete.
+  /// Traces a batch of a pilot, whose light is only measured: returns the contribution of each emission
+  /// stratum to the picture, up to a common factor. nullopt if cancelled or not yet complete.
   std::optional<std::vector<double>> weigh(transport::Wavefront& wavefront,
                                            const transport::LightSource& lights,
                                            const transport::LightRound& round, const shared::Frame& picture,
@@ -63,7 +63,7 @@ class Splats {
   Went batch(transport::Wavefront& wavefront, const transport::LightSource& lights,
              const transport::LightRound& round, const Kernels& kernels, const shared::Frame& picture,
              uint32_t enabled, const std::function<bool()>& cancel);
-  void write_frame(bool whole = false);  ///< whole: of all bands
+  void write_frame(bool whole = false);  ///< whole: covers all bands
   uint32_t bands() const { return (frame_.width * frame_.height - 1) / band_pixels_ + 1; }
   uint32_t pixels_of_band() const;
   void resolve(transport::Wavefront& wavefront);
@@ -75,16 +75,16 @@ class Splats {
   gpu::Defines scene_defines_;
   bool groups_;
   transport::LightEmitter emitter_;
-  Kernels summed_, weighed_;  ///< weighed_: when it is first called for
+  Kernels summed_, weighed_;  ///< weighed_: compiled at the first use
   gpu::Kernel resolve_;
   gpu::Buffer counts_, block_, round_, picture_, contributions_;
-  /// LongSum of each pixel of a band: red, green, blue. One buffer of all would be the largest that a picture
-  /// needs.
+  /// LongSum of each pixel of a band: red, green, blue. One buffer for all three would be the largest buffer
+  /// of a picture.
   std::array<gpu::Buffer, 3> sums_;
-  gpu::Buffer owners_;        ///< of groups_
-  gpu::Buffer band_picture_;  ///< where there are several bands
+  gpu::Buffer owners_;        ///< if groups_
+  gpu::Buffer band_picture_;  ///< if there are several bands
   uint32_t band_pixels_ = 1, band_ = 0;
-  bool shown_ = false;  ///< picture_ is that of a round
+  bool shown_ = false;  ///< picture_ contains a round
   shared::SplatFrame frame_{};
   RoundFigures figures_, next_;
   bool tracing_ = false, complete_ = false;

@@ -11,13 +11,13 @@ namespace {
 
 constexpr const char* k_stage = "octree";
 
-/// Invocations of the kernels that work through runs, as a rule and at most.
+/// Usual and maximum number of invocations of the kernels that process runs.
 uint32_t wanted_for(const gpu::Device& device) { return device.info().is_cpu ? 1024 : 16384; }
 uint32_t runs_for(const gpu::Device& device) { return device.info().is_cpu ? 4096 : 16384; }
 uint32_t group_for(const gpu::Device& device) { return device.info().is_cpu ? 8 : 64; }
 
-/// Levels by which leaves may be split. What is counted must fit into 32 bits: all spheres in all cells of
-/// their leaf, and the leaf's own one.
+/// Levels by which leaves may be split. Counts must fit into 32 bits: all spheres in all cells of their leaf,
+/// and the leaf's mark.
 uint32_t most_split(const shared::OctreeHeader& header) {
   uint32_t levels = shared::k_octree_most_split;
   while (((uint64_t{1} << 3 * levels) + 1) * header.references > std::numeric_limits<uint32_t>::max())
@@ -25,7 +25,7 @@ uint32_t most_split(const shared::OctreeHeader& header) {
   return levels;
 }
 
-/// The cells' codes lie above those of whole leaves, and a reference must have room to say so.
+/// Codes of cells lie above those of leaves, and a reference needs a bit for that.
 uint64_t codes(const shared::OctreeHeader& header) {
   return (uint64_t{1} << 3 * header.level) + header.split_cells;
 }
@@ -84,21 +84,21 @@ Octree::Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeO
   leaf_cells_ = buffer("cells of leaves", (options.crowd > 0 ? references : 1) * sizeof(uint32_t));
   unused_ = buffer("unused count", sizeof(uint32_t));
   references_ = &pairs_[0];
-  // Until something is built: no cells, and a table of which every slot is free.
+  // Before the first build: no cells, and a table of free slots.
   header_.inverse_leaf = 1, header_.slots = 2, header_.slot_shift = 31;
   header_buffer_.write(&header_, sizeof(header_));
   const uvec4 free[2] = {{shared::k_octree_no_leaf, 0, 0, 0}, {shared::k_octree_no_leaf, 0, 0, 0}};
   slots_.write(free, sizeof(free));
 }
 
-/// One build: the stream it is encoded into, what its kernels read and are told.
+/// Context of one build: its stream, resources and push constants.
 struct Octree::Work {
   gpu::Stream& stream;
   gpu::Resources resources{};
   shared::OctreePush push{};
 
   void run(const gpu::Kernel& kernel, uint32_t groups) {
-    // Those that use no push constant have none.
+    // Kernels without push constants get none.
     stream.dispatch(kernel, resources, &push, kernel.push_constant_bytes(), groups, k_stage);
   }
 };
@@ -163,8 +163,8 @@ void Octree::bind_spheres(Work& work, const gpu::Buffer& spheres, const sort::Co
                core_.empty() ? vec3(-1) : core_.hi};
 }
 
-/// Chooses the level of the leaves by the room there is, and writes a reference for each leaf that a sphere
-/// overlaps, in the order of the spheres.
+/// Chooses the leaf level by the available memory, and writes a reference for each leaf that a sphere
+/// overlaps, in sphere order.
 void Octree::write_references(Work& work, const sort::Count& count) {
   work.run(bounds_, groups_);
   work.run(grid_, 1);
@@ -179,9 +179,9 @@ void Octree::write_references(Work& work, const sort::Count& count) {
   header_buffer_.read(&header_, sizeof(header_));
 }
 
-/// Makes leaves of the sorted references, and the table that finds them.
+/// Makes leaves from the sorted references, and the hash table.
 void Octree::cut_into_leaves(Work& work) {
-  // What the sort leaves behind has room for one leaf a reference, and so for all.
+  // The sort's spare buffer has room for one leaf per reference, which is enough.
   const gpu::Buffer& leaves = references_ == &pairs_[0] ? pairs_[1] : pairs_[0];
   work.resources.set("octree_references", *references_);
   work.resources.set("Leaves", leaves);
@@ -195,14 +195,13 @@ void Octree::cut_into_leaves(Work& work) {
   if (work.push.most_split == 0) work.run(expand_, groups_);
 }
 
-/// Splits leaves that list many spheres into cells of their own, by fewer levels where there is no room for
-/// all references of that.
+/// Splits leaves with many spheres into cells, by fewer levels if memory does not suffice for all references.
 void Octree::split_crowded(Work& work, const sort::Count& written) {
   gpu::Stream& stream = work.stream;
   const uint32_t groups = gpu::groups_for(header_.references, 64);
   shared::OctreeHeader now;
   for (; work.push.most_split > 0; --work.push.most_split) {
-    work.run(crowd_, groups);  // there are no more leaves
+    work.run(crowd_, groups);  // there are no more leaves than references
     prefix_sum_.encode(stream, leaf_cells_, leaf_cells_,
                        {header_.references, &header_buffer_, offsetof(shared::OctreeHeader, leaves)},
                        &header_buffer_, offsetof(shared::OctreeHeader, split_cells), k_stage);
@@ -216,7 +215,7 @@ void Octree::split_crowded(Work& work, const sort::Count& written) {
   }
   header_.split = work.push.most_split;
   work.push.most_split = 0;
-  if (header_.split == 0) {  // there is room for no level at all
+  if (header_.split == 0) {  // memory does not suffice for any level
     work.run(expand_, groups_);
     return;
   }
@@ -240,7 +239,7 @@ void Octree::bind(gpu::Resources& resources) const {
 }
 
 uint32_t Octree::most_references(const gpu::Device& device) {
-  // The largest buffer is that of the slots: a power of two, more than there are references.
+  // The table of slots is the largest buffer: a power of two above the number of references.
   const uint64_t slots = std::bit_floor(device.info().limits.max_storage_buffer / sizeof(uvec4));
   return uint32_t(std::min<uint64_t>(slots, 1u << 27) - 1);
 }

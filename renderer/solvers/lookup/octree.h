@@ -1,14 +1,12 @@
 #pragma once
-// The multiple-reference octree: spheres in, for every point the list of the spheres that may contain it.
-// Shared by all solvers that look things up by place: cache records with their radii, photons with the gather
-// radius.
+// Multiple-reference octree: finds the spheres that may contain a point. Shared by solvers that look up by
+// position: cache records with their radii, photons with the gather radius.
 //
-// Only leaves exist, all of one level, each with the list of every sphere that overlaps it, so that a query
-// is one hash lookup and one loop (shaders/lib/octree.glsl, where the contract of a query stands). Where that
-// is asked for, leaves that list many spheres much smaller than most are split into leaves of a finer level,
-// and a query there is two lookups. Everything is built on the device: references are counted, placed by a
-// prefix sum, written, sorted by the Morton code of their leaf, and cut into leaves. No order comes from
-// atomics: two builds of the same spheres are the same byte for byte.
+// It stores only leaves, all of one level, each with the list of every sphere that overlaps it, so a lookup
+// is one hash lookup and one loop (contract: shaders/lib/octree.glsl). Optionally, leaves with many small
+// spheres are split into leaves of a finer level; a lookup there takes two hash lookups. It is built on the
+// device: references are counted, placed by a prefix sum, written, sorted by the Morton code of their leaf,
+// and cut into leaves. No order depends on atomics: two builds of the same spheres are byte-identical.
 #include "base/math.h"
 #include "gpu/stream.h"
 #include "shaders/shared/octree.h"
@@ -16,30 +14,30 @@
 
 namespace lucerna::lookup {
 
-inline constexpr uint32_t k_most_spheres = 1u << 24;  ///< they are counted in float
+inline constexpr uint32_t k_most_spheres = 1u << 24;  ///< counted in float
 
 struct OctreeOptions {
-  uint32_t spheres = 0;     ///< most that a build may be given, at most k_most_spheres
-  uint32_t references = 0;  ///< memory for that many; about 8 to 12 a sphere where all are of a size
-  /// Leaves are no larger than this times the mean diameter of the spheres (and larger than half of that, the
-  /// level permitting). Changes speed and memory, never a result.
+  uint32_t spheres = 0;     ///< maximum spheres of a build, at most k_most_spheres
+  uint32_t references = 0;  ///< memory for references; about 8 to 12 per sphere if all have similar sizes
+  /// Maximum leaf size over the mean diameter of the spheres (the minimum is half of that, if levels permit).
+  /// Affects speed and memory, never results.
   float leaf_scale = 1;
-  /// Keep copies of the spheres in the order of the lists (16 bytes a reference), for octree_copy().
+  /// Stores copies of the spheres in list order (16 bytes per reference), for octree_copy().
   bool copies = false;
-  /// Each sphere is listed once, in the leaf of its centre: the plain grid that the bench compares with.
-  /// Queries must then visit the neighbours.
+  /// Lists each sphere only in the leaf of its centre: the plain grid that the bench compares with. Lookups
+  /// must then visit neighbouring leaves.
   bool single_reference = false;
-  /// Spheres are asked for only near a plane through their centre: builds are given Discs, and points farther
-  /// off may not find them. Fewer leaves list them, so that leaves can be smaller.
+  /// Spheres are only looked up near a plane through their centre: builds take Discs, and farther points may
+  /// miss them. Fewer leaves list each sphere, so leaves can be smaller.
   bool discs = false;
-  /// Leaves that list more spheres than that are split, by up to shared::k_octree_most_split levels, until
-  /// they are as `leaf_scale` says of the spheres that they list themselves; half of the references are kept
-  /// for that. 0: none is. Not with `single_reference`.
+  /// Leaves with more spheres than this are split, by up to shared::k_octree_most_split levels, until
+  /// `leaf_scale` fits the spheres that they list; half of the references are reserved for it. 0: no
+  /// splitting. Not with `single_reference`.
   uint32_t crowd = 0;
 };
 
-/// Where discs lie: sphere i is found where |dot(x - centre, normal)| <= thickness * radius, its normal being
-/// texel stride * i + at, unit.
+/// Discs: sphere i is found where |dot(x - centre, normal)| <= thickness * radius; its unit normal is texel
+/// stride * i + at.
 struct Discs {
   const gpu::Buffer& normals;
   uint32_t stride = 1, at = 0;
@@ -48,42 +46,40 @@ struct Discs {
 
 class Octree {
  public:
-  /// Throws Error when the device cannot hold it, naming the most references that it can.
+  /// Throws Error if the device cannot hold it; the message contains the maximum number of references.
   Octree(gpu::Device& device, gpu::ShaderCompiler& compiler, const OctreeOptions& options);
 
-  /// Builds it from `spheres`, a texel buffer of (centre, radius) in metres. Spheres whose radius is
-  /// negative, or that are not finite, are left out; indices are places in the buffer. Runs the stream, with
-  /// all that was recorded before, and reads the header back twice: when the level is known, because it says
-  /// how many bits are to be sorted by, and at the end; and for every number of levels that it tries to split
-  /// crowded leaves by.
+  /// Builds from `spheres`, a texel buffer of (centre, radius) in metres. Spheres with a negative radius or
+  /// nonfinite values are left out; indices are positions in the buffer. Runs the stream, including
+  /// everything recorded before. Reads the header back twice: when the level is known, because it determines
+  /// the bits to sort by, and at the end; and once for every split level that is tried.
   ///
-  /// Where memory does not suffice for the level that the spheres call for, the finest that fits is taken:
-  /// lists grow longer, results stay the same, and the header says so (`level` < `wanted_level`, `needed` >
-  /// `capacity`). Only when not even one leaf can list every sphere, `overflow` is not 0, and the spheres of
-  /// the highest indices are missing.
-  /// `discs`: if and only if the options say that there are.
+  /// If memory does not suffice for the required level, the finest level that fits is used: lists are longer,
+  /// results are equal, and the header reports it (`level` < `wanted_level`, `needed` > `capacity`).
+  /// `overflow` is nonzero only if one leaf cannot list every sphere; then the spheres of the highest indices
+  /// are missing. `discs`: required if and only if the options use discs.
   ///
-  /// Where a core is set, the root holds what of the spheres' box lies in it: see set_core().
+  /// With a core, the root covers the part of the spheres' box inside it: see set_core().
   const shared::OctreeHeader& build(gpu::Stream& stream, const gpu::Buffer& spheres, const sort::Count& count,
                                     const Discs* discs = nullptr);
 
-  /// Of the builds to come: where most points are, without what stands far away, metres; empty: the root
-  /// holds all spheres. Without it a single far sphere makes all leaves so large that one lists thousands.
-  /// What lies beyond the core is found in the outermost leaves. Changes speed and memory, never a result.
+  /// For later builds: the box of most points, without distant outliers [m]; empty: the root covers all
+  /// spheres. Without it one distant sphere makes all leaves so large that one lists thousands. Points beyond
+  /// the core are found in the outermost leaves. Affects speed and memory, never results.
   void set_core(const Box& core) { core_ = core; }
   const Box& core() const { return core_; }
 
-  /// Of the last build.
+  /// Of the latest build.
   const shared::OctreeHeader& header() const { return header_; }
-  /// Whatever shaders/lib/octree.glsl needs. Call it after a build, and again after every other.
+  /// Binds everything that shaders/lib/octree.glsl needs. Call it after every build.
   void bind(gpu::Resources& resources) const;
   uint64_t bytes() const;  ///< device memory
 
-  /// What fits into the storage buffers of a device; on lavapipe 8 388 607.
+  /// Maximum references in the storage buffers of a device; 8 388 607 on lavapipe.
   static uint32_t most_references(const gpu::Device& device);
 
  private:
-  // The steps of build(), in its order.
+  // The steps of build(), in order.
   struct Work;
   void bind_spheres(Work& work, const gpu::Buffer& spheres, const sort::Count& count,
                     const Discs* discs) const;

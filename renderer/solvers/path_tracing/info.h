@@ -1,6 +1,5 @@
 #pragma once
-// Path tracing: the wavefront itself (transport/) brings its light; nothing is prepared and nothing looked
-// up.
+// Path tracing: the wavefront itself (transport/). No preparation and no lookups.
 #include "solvers/info.h"
 
 namespace lucerna::path_tracing {

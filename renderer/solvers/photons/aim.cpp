@@ -15,25 +15,26 @@ using solvers::Cancel, solvers::Picture, solvers::Task;
 namespace {
 
 constexpr uint32_t k_eye_paths = 1u << 14;
-constexpr double k_pilot_radius = 3;  // of its own pixels, which are wide
+constexpr double k_pilot_radius = 3;  // [pixels] of the pilot's small picture
 
-// Where light from afar gets in: rounds until so many paths have been of use, or so many rounds are done.
-// Where they are a large part of all, aiming brings nothing; of very few, boxes would tell of chance.
+// Entrances of distant light: pilot rounds run until this many paths contribute, or for this many rounds. If
+// such paths are a large part of all, aiming gains nothing; with very few, boxes would be random.
 constexpr uint32_t k_first_hit_paths = 1u << 16, k_most_first_hit_rounds = 8, k_first_hit_round = 0xffffff00u;
 constexpr size_t k_enough_hits = 512, k_least_hits = 16;
 constexpr double k_many = 0.2;
-/// After so many rounds with too few they are aimed at where paths from the eye go on behind lookups.
+/// After this many rounds with too few, paths are aimed at the places where eye paths continue behind
+/// lookups.
 constexpr uint32_t k_unaimed_first_hit_rounds = 2, k_reached_vertices = 3;
 constexpr uint32_t k_most_regions = 1u << 15;  // texels of delegated_regions
 
-constexpr double k_least_from_afar = 0.05;  // of all lights' power; less is not looked for
+constexpr double k_least_from_afar = 0.05;  // share of all lights' power; below it entrances are not searched
 
-/// The first hits of those of `paths` paths from afar that have brought something.
+/// First hits of the contributing ones among `paths` distant light paths.
 std::vector<transport::FirstHit> hits_of_use(std::span<const PhotonContribution> photons, uint32_t paths,
                                              const upload::FlatLights& lights) {
   struct Path {
     transport::FirstHit hit;
-    uint32_t events = ~0u;  ///< of the photon that it has left first
+    uint32_t events = ~0u;  ///< of its first stored photon
   };
   std::vector<Path> all(paths);
   for (const PhotonContribution& p : photons) {
@@ -49,8 +50,8 @@ std::vector<transport::FirstHit> hits_of_use(std::span<const PhotonContribution>
   return found;
 }
 
-/// Photons a square metre around a typical lookup: the median over lookups, of which there are at a photon as
-/// many as importance says; from the nearest photons there, each counted `gain` times.
+/// Photons per square metre around a typical lookup: the median over lookups, which are as dense as the
+/// importance at photons; from the nearest photons, each counted `gain` times.
 double typical_density(std::span<const PhotonContribution> photons, std::span<const double> gain) {
   constexpr size_t k_places = 128, k_nearest = 32;
   std::vector<const PhotonContribution*> seen;
@@ -61,7 +62,7 @@ double typical_density(std::span<const PhotonContribution> photons, std::span<co
     double density, lookups;
   };
   std::vector<Place> places;
-  std::vector<std::pair<float, float>> near(seen.size());  // distance squared, gain
+  std::vector<std::pair<float, float>> near(seen.size());  // squared distance, gain
   for (size_t k = 0; k < k_places; ++k) {
     const PhotonContribution& at = *seen[k * seen.size() / k_places];
     for (size_t i = 0; i < seen.size(); ++i) {
@@ -95,7 +96,7 @@ Frame PhotonSolver::small_frame(const Picture& picture) {
 }
 
 bool PhotonSolver::may_hide(const Picture& picture) const {
-  // What smooth mirrors and glass do with the light of lamps that have no size.
+  // Light of point lamps behind smooth mirrors and glass.
   const upload::Effects& e = picture.task.effects;
   if (!e.specular && !e.solid_glass && !e.thin_glass) return false;
   const std::span<const double> powers = lights_.powers();
@@ -124,7 +125,7 @@ void PhotonSolver::begin_aim(const Picture& picture, solvers::Invalidation inval
   if (stale) unreachable_found_ = false;
   begin_trials(picture, stale);
   aims_ = aims, shares_lights_ = shares_lights, spares_ = spares, weighs_ = weighs;
-  // Whoever only looks from elsewhere finds the same casters.
+  // The casters do not depend on the view.
   if (invalidated.light || invalidated.places || !bundles_) casters_.clear(), casters_known_ = false;
   if (!stale) return;
   aimed_ = false;
@@ -148,7 +149,7 @@ bool PhotonSolver::prepare(transport::Wavefront& wavefront, const Picture& pictu
   }
   switch (aim_step_) {
     case AimStep::casters: {
-      if (stands()) wavefront.rebind_lookup();  // what eye paths note is the rounds'
+      if (stands()) wavefront.rebind_lookup();  // eye paths record lookups of rounds
       if (bundles_ && !casters_known_)
         casters_ = transport::find_casters(picture.flat), casters_known_ = true;
       boxes_ = casters_;
@@ -175,9 +176,9 @@ bool PhotonSolver::prepare(transport::Wavefront& wavefront, const Picture& pictu
 bool PhotonSolver::note_importance(transport::Wavefront& wavefront, const Picture& picture,
                                    const Cancel& cancel) {
   const Frame frame = small_frame(picture);
-  // Paths that go on for this solver's own light alone. Where records bring it, looking it up behind surfaces
-  // as those around the picture's, paths do so in their place, whether there are records yet or not.
-  // Where light from afar is to be aimed they go on behind lookups, to where it has to arrive.
+  // Paths that continue only for this solver's light. If records compute it, with lookups behind surfaces
+  // like those around the picture's, paths do so instead, whether or not records exist yet. To aim distant
+  // light they continue behind lookups, to the places that it has to reach.
   Task task = picture.task;
   if (enters_ && !feeds_) task.own &= ~k_deep;
   solvers::Routing routing = routing_of(task);
@@ -212,7 +213,7 @@ void PhotonSolver::begin_sharing(const Picture& picture) {
   if (shares_lights_)
     lights_.choose_by(transport::light_weights(light_groups_.members, lights_.powers(), {}));
   map_.store_radiance(weighs_);
-  // Where nothing is aimed there is nothing to share out, but other things may be asked for.
+  // Nothing is aimed and no other result of the pilot is needed.
   aimed_ = boxes_.empty() && !needs_density() && !weighs_ && !shares_lights_ && !hides_;
 }
 
@@ -221,7 +222,7 @@ bool PhotonSolver::note_first_hits(transport::Wavefront& wavefront, const Pictur
   Round round = round_of(picture, k_first_hit_round + first_hit_rounds_);
   round.lookup = lookup_of(picture, small_frame(picture), k_pilot_radius);
   round.paths = k_first_hit_paths;
-  round.parts |= 1u;  // light straight from its source falls where paths arrive first
+  round.parts |= 1u;  // direct light marks the first surfaces of paths
   if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
   if (map_.traced() > 0) return true;
   const std::vector<transport::FirstHit> hits =
@@ -233,7 +234,7 @@ bool PhotonSolver::note_first_hits(transport::Wavefront& wavefront, const Pictur
   const bool by_chance = first_hit_rounds_ <= k_unaimed_first_hit_rounds;
   const bool many = by_chance && double(first_hits_.size()) > k_many * from_afar;
   if (!many && first_hits_.size() < k_enough_hits && first_hit_rounds_ < k_most_first_hit_rounds) {
-    // Too rare to be found by chance: from now on half of the paths go where it would be of use.
+    // Too rare to be found by chance: half of the further paths are aimed at the reached places.
     if (first_hit_rounds_ == k_unaimed_first_hit_rounds)
       lights_.aim(device_, picture.flat, reached_boxes_, 0.5);
     return true;
@@ -243,7 +244,7 @@ bool PhotonSolver::note_first_hits(transport::Wavefront& wavefront, const Pictur
       boxes_.insert(boxes_.end(), places.begin(), places.end());
     };
     if (first_hits_.size() >= k_least_hits) aim_at(transport::first_hit_boxes(std::move(first_hits_)));
-    // Where they were found by aiming alone there are others besides.
+    // If only aimed paths found entrances, there are others.
     if (!by_chance) aim_at(reached_boxes_);
   }
   first_hits_.clear();
@@ -266,7 +267,7 @@ bool PhotonSolver::share_out(transport::Wavefront& wavefront, const Picture& pic
                                                          : transport::k_least_unaimed_of_all;
   const std::vector<double> before(lights_.shares().begin(), lights_.shares().end());
   lights_.share_out(transport::aim_shares(contribution, least));
-  // A path that is not aimed is as much more likely now as its stratum and its light are.
+  // The probability of an unaimed path has changed by the factors of its stratum and its light.
   std::vector<double> by_entry(by_light.size(), 1.0);
   if (shares_lights_) {
     const auto weights = [&](std::span<const double> contribution) {
@@ -300,7 +301,7 @@ void PhotonSolver::choose_delegated_regions(const Picture& picture,
                                             std::span<const double> gain, uint32_t pilot_paths) {
   const Frame small = small_frame(picture);
   const std::vector<PhotonLookup> noted = map_.lookups();
-  // Typical of a picture that is waited for: radii fall slowly.
+  // Typical of a finished picture: radii fall slowly.
   const double radius = radius_law(picture.task.settings).at(k_typical_round);
   const uint32_t paths = round_of(picture, 0).paths;
   const EfficiencyPilot pilot{.lookups = std::span(noted).first(size_t{small.width} * small.height),
@@ -311,11 +312,11 @@ void PhotonSolver::choose_delegated_regions(const Picture& picture,
                               .paths = double(paths) / pilot_paths,
                               .around = lookup_of(picture, small, k_pilot_radius),
                               .round = lookup_of(picture, picture.frame, radius)};
-  // Where secondary or tertiary light is path traced paths go on behind the first diffuse vertex, and what
-  // they meet of caustics costs nothing more.
+  // If secondary or tertiary light is path traced, paths continue behind the first diffuse vertex and find
+  // caustics at no extra cost.
   const uint32_t behind = picture.frame.automaton[0] & 0xffu;
   const bool goes_on = (picture.frame.automaton[behind] >> 27 & 1u) != 0;
-  // Whether nothing else is looked up of what rounds store.
+  // True if rounds store nothing else that is looked up.
   const bool alone = picture.task.own == delegable_ && !unreachable_found_;
   const EfficiencyCosts costs{
       .base = k_cost_base + (goes_on ? k_cost_tail : 0),
@@ -324,7 +325,8 @@ void PhotonSolver::choose_delegated_regions(const Picture& picture,
       .paths = alone ? k_cost_light_path * paths / (double(picture.width) * picture.height) : 0};
   regions_ = choose_regions(caustic_moments(pilot), small.width, small.height, costs);
   if (regions_.delegated.size() >= k_most_regions) regions_ = {};
-  // So few photons do not say that no light is hidden from paths: photons go on to compute that.
+  // So few photons do not prove that paths can find all light: photons continue to compute the unreachable
+  // light.
   if (regions_.scarce && hides_) unreachable_found_ = true, route(picture.task);
   write_delegated_regions();
 }

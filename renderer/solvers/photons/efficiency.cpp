@@ -13,17 +13,17 @@ using namespace shared;
 
 namespace {
 
-constexpr uint32_t k_region = 2;  // pixels of the pilot's picture, across and down
-// Photons that a lookup has found, on average of a region, from which on they say what light comes there.
+constexpr uint32_t k_region = 2;  // pixels of the pilot's picture, per side
+// Mean number of photons per lookup of a region from which their estimate is used.
 constexpr double k_least_found = 4;
-constexpr double k_least_found_in_all = 256;  // ... in the whole picture
-constexpr uint32_t k_most_steps = 32;         // of improving the choice
+constexpr double k_least_found_in_all = 256;  // ... and in the whole picture
+constexpr uint32_t k_most_steps = 32;         // iterations of the optimization
 
 double radius_at(const PhotonFrame& f, const vec3& x) {
   return double(photon_radius_of(f.base + f.slope * glm::distance(x, f.eye), f.most, x));
 }
 
-/// Photons by cubes, at least as wide as the radius within which they are looked for.
+/// Photons by cubes at least as wide as the search radius.
 class Cubes {
  public:
   Cubes(std::span<const PhotonContribution> photons, double width) : width_(width) {
@@ -55,18 +55,18 @@ class Cubes {
 
 std::vector<Moments> caustic_moments(const EfficiencyPilot& pilot) {
   std::vector<Moments> all(pilot.lookups.size());
-  std::map<int, Cubes> levels;  // by the power of two that is as wide as a radius
+  std::map<int, Cubes> levels;  // by the power of two of the radius
   for (size_t i = 0; i < all.size(); ++i) {
     const PhotonLookup& l = pilot.lookups[i];
     if (l.carried <= 0) continue;
     const double around = radius_at(pilot.around, l.position), within = radius_at(pilot.round, l.position);
     const vec3 side = facet_unpack(l.facet);
-    double flux = 0, squares = 0, met = 0;  // of photons: sum of flux, of its square, of flux times radiance
+    double flux = 0, squares = 0, met = 0;  // sums over photons: flux, flux^2, flux times radiance
     Moments& m = all[i];
     const int level = std::ilogb(around) + 1;
     const auto cubes = levels.try_emplace(level, pilot.photons, std::ldexp(1.0, level)).first;
     cubes->second.near(l.position, [&](const PhotonContribution& p) {
-      if (p.unreachable != 0) return;  // photons compute it either way
+      if (p.unreachable != 0) return;  // computed by photons in any case
       const glm::dvec3 away = glm::dvec3(p.position) - glm::dvec3(l.position);
       if (glm::dot(away, away) >= around * around) return;
       if (std::abs(glm::dot(away, glm::dvec3(side))) >= double(k_photon_slab) * around) return;
@@ -76,9 +76,8 @@ std::vector<Moments> caustic_moments(const EfficiencyPilot& pilot) {
           met += f * double(p.radiance);
       ++m.found;
     });
-    // f_D = albedo / pi. A photon of the rounds counts by Epanechnikov's kernel, whose square has the
-    // integral 4 / (3 pi r^2); a path from the eye has the density cos / pi, and brings albedo times
-    // radiance.
+    // f_D = albedo / pi. A photon of the rounds is weighted by Epanechnikov's kernel, whose square has the
+    // integral 4 / (3 pi r^2); an eye path has the density cos / pi and contributes albedo times radiance.
     const double area = double(k_pi) * around * around, carried = double(l.carried);
     const double lambert = carried / double(k_pi);
     m.mean = lambert * flux / area;
@@ -126,8 +125,8 @@ Regions choose_regions(std::span<const Moments> moments, uint32_t width, uint32_
   mean /= regions;
   for (Region& r : all) r.weight = mean > 0 ? 1 / (r.mean * r.mean + mean * mean) : 0;
 
-  // Noise times cost of the whole, by who brings the caustics of each region. Costs are those of a region of
-  // one pixel; light paths are shared by all, and not sent at all where nobody looks them up.
+  // Noise times cost of the whole picture for a choice per region. Costs are per region of one pixel; light
+  // paths are shared by all regions, and not traced at all if no region uses them.
   const double base = costs.base, looked = costs.lookup, onward = costs.onward;
   struct Whole {
     double noise = 0, cost = 0;
@@ -146,11 +145,11 @@ Regions choose_regions(std::span<const Moments> moments, uint32_t width, uint32_
   };
   const Whole photons = whole(std::vector<bool>(all.size(), false));
   out.delegated.assign(all.size(), 0.0f);
-  // Few photons come where little light does, and are noise there; what is so rare that the pilot has missed
-  // it would be as rare in passes. So paths have these regions, which find all of this light (Moments).
+  // Few photons arrive where little light does, and are noisy there; light that is too rare for the pilot
+  // would be as rare in rounds. So paths compute these regions: they find all of this light (Moments).
   std::vector<bool> delegated(all.size());
   for (size_t i = 0; i < all.size(); ++i) delegated[i] = all[i].found < k_least_found;
-  // Photons reach a region further than they must: their way is the one without outliers.
+  // Photons reach beyond their region: remove outliers from the choice.
   const auto spread = [&](const std::vector<bool>& of) {
     std::vector<bool> result(of);
     for (int y = 0; y < h; ++y)
@@ -159,7 +158,7 @@ Regions choose_regions(std::span<const Moments> moments, uint32_t width, uint32_
     return result;
   };
   std::vector<bool> best = spread(delegated);
-  // Where the whole is best, each region has the way that adds less to noise and cost, relatively.
+  // At the optimum, each region uses the technique that adds less to noise and cost, relatively.
   Whole now = whole(delegated);
   for (uint32_t step = 0; step < k_most_steps; ++step) {
     std::vector<bool> better(all.size());

@@ -8,127 +8,115 @@ using namespace solvers;
 
 std::vector<OptionInfo> option_rows() {
   return {
-      with_zero(integer_option(
-                    "photons.per_round", 0, 0, 1 << 24, "paths",
-                    "Photons: paths from lights in a round, of which there is one for every sample of the "
-                    "picture, or in the first map of irradiance; 0: as many as the picture has pixels, at "
-                    "least 16384, for a map twice as many, at least 131072.",
-                    "Paths a round"),
-                "automatic"),
+      with_zero(
+          integer_option(
+              "photons.per_round", 0, 0, 1 << 24, "paths",
+              "Photons: light paths in a round, one round for every sample of the picture, or in the first "
+              "irradiance map. 0: one per pixel, at least 16384; for a map two per pixel, at least 131072.",
+              "Paths per round"),
+          "automatic"),
       real_option(
           "photons.radius", "1.5", 0.1, 1000, "pixels",
-          "Photons: radius of the first round, as the camera sees it. Less: less blur, and more grain.",
+          "Photons: radius in the first round, as seen from the camera. Smaller: less blur, more noise.",
           "First radius"),
-      real_option("photons.floor", "0.5", 0, 1000, "pixels",
-                  "Photons: least radius, from which on it shrinks no further.", "Least radius"),
+      real_option("photons.floor", "0.5", 0, 1000, "pixels", "Photons: minimum radius.", "Minimum radius"),
       real_option("photons.alpha", "0.6667", 0.01, 1, "",
-                  "Photons: how slowly the radius shrinks from round to round: grain falls with its power, "
-                  "blur with that of the rest to 1; 1: it does not shrink.",
-                  "Shrinking"),
+                  "Photons: exponent alpha of the shrinking radius: over n rounds the variance falls with "
+                  "n^-alpha, the bias with n^(alpha - 1). 1: constant radius.",
+                  "Radius exponent"),
       boolean_option(
           "photons.aim", "true",
-          "Photons: aims light paths at what mirrors or refracts smoothly, and those of the sun and the sky "
-          "at where their light gets in, by what a pilot finds that each pair of lamp and box brings to the "
-          "picture.",
+          "Photons: aims light paths at casters (specular surfaces), and those of the sun and the sky at "
+          "entrances of their light, by the contributions of each pair of lamp and box in a pilot.",
           "Aim light paths"),
-      boolean_option(
-          "photons.importons", "true",
-          "Photons: stores them where paths from the eye look, by a short pilot; elsewhere one in four, for "
-          "all.",
-          "Only where looked at"),
+      boolean_option("photons.importons", "true",
+                     "Photons: stores all photons near lookups of a short pilot; elsewhere Russian roulette "
+                     "with probability 1/4.",
+                     "Store by importance"),
       boolean_option("photons.efficiency", "true",
-                     "Photons: bring caustics only in those parts of the picture where a pilot finds that "
-                     "they have less noise for their time than paths from the eye; elsewhere these do. "
-                     "Likewise secondary and tertiary light of the whole picture, where those paths have "
-                     "less than half of the noise for their time.",
-                     "Only where worth it"),
-      boolean_option(
-          "photons.borders", "true",
-          "Photons: divides by the surface that there is around a place instead of by a whole disc, "
-          "so that borders and creases are not darker than they are.",
-          "Correct borders"),
-      choice_option(
-          "photons.irradiance_map", "all", {"off", "records", "all"}, "",
-          "Photons: where tertiary light is looked up behind a diffuse surface irradiance is known "
-          "beforehand, on pieces of surfaces that are as fine as there are photons; where these are "
-          "too few, the path goes on by itself. For the rays of the irradiance cache's records, or "
-          "for paths that gather as well. off: all photons around are added up, which is slow, and "
-          "noisy where they are sparse.",
-          "Irradiance map"),
+                     "Photons: compute caustics only in regions where they are more efficient (less variance "
+                     "× time) than path tracing in a pilot. Secondary and tertiary light are delegated to "
+                     "path tracing in the whole picture if its variance × time is less than half.",
+                     "Only where more efficient"),
+      boolean_option("photons.borders", "true",
+                     "Photons: divides by the actual surface area around a place instead of a full disc, so "
+                     "that borders and creases are not too dark.",
+                     "Correct borders"),
+      choice_option("photons.irradiance_map", "all", {"off", "records", "all"}, "",
+                    "Photons: lookups of tertiary light behind a diffuse surface read precomputed irradiance "
+                    "of surface cells, as fine as the photon density permits; in cells with too few photons "
+                    "the path continues. records: for rays of the irradiance cache; all: for gathering paths "
+                    "too. off: sums nearby photons, which is slow, and noisy where photons are sparse.",
+                    "Irradiance map"),
       integer_option("photons.nearest", 8, 2, 1024, "photons",
-                     "Photons: as many make up a piece of such a map at least, and as many again tell its "
-                     "light. Less: finer pieces, and more grain.",
-                     "Photons a piece"),
+                     "Photons: minimum number that determines a cell of the irradiance map; as many again "
+                     "determine its light. Smaller: finer cells, more noise.",
+                     "Photons per cell"),
       without_restart(choice_option(
           "overlay.photon_density", "off", {"off", "photons", "irradiance", "importance", "caustics"}, "",
-          "Shows over the picture how dense the photons of the last round lie, or what they "
-          "bring: a heat map on "
-          "surfaces, through glass and in mirrors as well, and under the pointer the disc within which "
-          "photons count, with those. "
-          "importance: how much of the picture hangs on photons there, by the pilot that "
-          "decides which are stored; worth: where photons bring caustics.",
-          "Show density")),
-      without_restart(boolean_option(
-          "overlay.photon_paths", "false",
-          "Shows paths from the lights as they are traced: faint up to the first surface, then in the colour "
-          "of their light.",
-          "Show light paths")),
-      without_restart(with_zero(
-          integer_option("overlay.photon_paths_of", 0, 0, 65535, "",
-                         "Of the lamp of this number alone, in the scene's order; 0: of all lights.",
-                         "Paths of lamp"),
-          "all")),
-      without_restart(boolean_option("overlay.photon_aim", "false",
-                                     "Shows what light paths are aimed at: a box around each caster and "
-                                     "where light from afar gets in, and lines from lights to these, by "
-                                     "the share of the paths.",
-                                     "Show aim")),
+          "Draws the density of the last round's photons or their irradiance: a heat map on surfaces, also "
+          "through glass and in mirrors, and under the pointer the disc of the lookup with its photons. "
+          "importance: importance of lookups in the pilot that decides which photons are stored; caustics: "
+          "share of the samples whose caustics photons compute.",
+          "Density")),
+      without_restart(boolean_option("overlay.photon_paths", "false",
+                                     "Draws light paths as they are traced: faint up to the first surface, "
+                                     "then in the colour of their light.",
+                                     "Show light paths")),
       without_restart(
-          choice_option("overlay.photons", "off", {"off", "flux", "bounce", "map", "light", "round"}, "",
-                        "Shows the photons of the last round where they lie, in colours: flux of their "
-                        "light, bounce by the number of surfaces before, map by the component that they "
-                        "bring, light by where they come from, round another one each round.",
-                        "Show photons")),
+          with_zero(integer_option(
+                        "overlay.photon_paths_of", 0, 0, 65535, "",
+                        "Number of the only lamp whose paths are drawn, in the scene's order; 0: all lights.",
+                        "Paths of lamp"),
+                    "all")),
+      without_restart(boolean_option(
+          "overlay.photon_aim", "false",
+          "Draws the targets of aimed light paths: a box around each caster and each entrance of distant "
+          "light, and lines from lights to these, coloured by the share of the paths.",
+          "Show aim")),
+      without_restart(choice_option("overlay.photons", "off",
+                                    {"off", "flux", "bounce", "map", "light", "round"}, "",
+                                    "Draws the photons of the last round. Colours: flux: colour of their "
+                                    "light; bounce: number of surfaces before; map: component that they "
+                                    "contribute to; light: their light source; round: changes every round.",
+                                    "Show photons")),
   };
 }
 
-/// Photons are another round's as soon as the picture begins anew; what is told here is whether the last ones
-/// may serve until then.
+/// Every picture has new rounds; these rows state whether the present photons stay usable until then.
 std::vector<ChangeRow> change_rows() {
   return {
-      {Change::camera, k_invalidates_nothing, "photons lie on surfaces, whoever looks"},
-      {Change::size, k_invalidates_nothing, "photons lie on surfaces, whoever looks"},
+      {Change::camera, k_invalidates_nothing, "photons do not depend on the view"},
+      {Change::size, k_invalidates_nothing, "photons do not depend on the view"},
       {Change::lamp, k_invalidates_light, "other light on the same surfaces"},
       {Change::environment, k_invalidates_light, "other light on the same surfaces"},
-      {Change::colour, k_invalidates_light,
-       "of a material, or its emission: other light on the same surfaces"},
+      {Change::colour, k_invalidates_light, "material colour or emission: other light on the same surfaces"},
       {Change::material, k_invalidates_light, "other light on the same surfaces"},
       {Change::shape, k_invalidates_all, "other surfaces"},
-      {Change::shaders, k_invalidates_all, "whatever they compute"},
-      {Change::restart, k_invalidates_all, "asked for: all anew"},
-      {"components.", k_invalidates_all, "which light is stored"},
-      {"samples", k_invalidates_nothing, "of the picture alone"},
-      {"sampling.", k_invalidates_nothing, "of the picture alone"},
-      {"film.", k_invalidates_nothing, "how it is shown"},
-      {"show.", k_invalidates_nothing, "how it is shown"},
-      {"preview.", k_invalidates_nothing, "how it is shown"},
-      {"overlay.", k_invalidates_nothing, "how it is shown"},
-      {"relight.", k_invalidates_light,
-       "groups of the lights, and their light where groups are not kept apart"},
-      {"about", k_invalidates_nothing, "words"},
-      {"camera", k_invalidates_nothing, "photons lie on surfaces, whoever looks"},
+      {Change::shaders, k_invalidates_all, "shaders may compute anything"},
+      {Change::restart, k_invalidates_all, "requested by the user"},
+      {"components.", k_invalidates_all, "stored components"},
+      {"samples", k_invalidates_nothing, "affects the picture only"},
+      {"sampling.", k_invalidates_nothing, "affects the picture only"},
+      {"film.", k_invalidates_nothing, "display only"},
+      {"show.", k_invalidates_nothing, "display only"},
+      {"preview.", k_invalidates_nothing, "display only"},
+      {"overlay.", k_invalidates_nothing, "display only"},
+      {"relight.", k_invalidates_light, "grouping of lights, and their light if groups are not separate"},
+      {"about", k_invalidates_nothing, "text only"},
+      {"camera", k_invalidates_nothing, "photons do not depend on the view"},
       {"tracer", k_invalidates_nothing, "all tracers find the same surfaces"},
-      {"path.batch", k_invalidates_nothing, "how work is cut"},
-      {"lights.", k_invalidates_nothing, "paths from the eye alone"},
-      {"path.classes", k_invalidates_nothing, "by which kernels hits are shaded"},
-      {"path.", k_invalidates_light, "how far paths go"},
-      {"seed", k_invalidates_light, "other photons, as good as these"},
-      {"photons.", k_invalidates_light, "how many photons, and within which radius they count"},
+      {"path.batch", k_invalidates_nothing, "size of work items"},
+      {"lights.", k_invalidates_nothing, "affects eye paths only"},
+      {"path.classes", k_invalidates_nothing, "choice of shading kernels"},
+      {"path.", k_invalidates_light, "length of paths"},
+      {"seed", k_invalidates_light, "other, equally valid photons"},
+      {"photons.", k_invalidates_light, "number and radius of photons"},
   };
 }
 
-/// Light that is bundled, alone: against a path-traced reference, for path tracing as long as for photons.
-/// The report extrapolates the time to an error by 1/t where path tracing does not reach it.
+/// Caustics alone, against a path-traced reference, in equal times for path tracing and photons. Where path
+/// tracing does not reach an error, the report extrapolates the time by 1/t.
 constexpr const char* k_caustics_matrix = R"({
   "name": "caustics",
   "repeats": 3,
@@ -152,7 +140,7 @@ constexpr const char* k_caustics_matrix = R"({
   ]
 })";
 
-/// Whole pictures in which caustics are the hard part, the other light by paths or by records.
+/// Whole pictures with difficult caustics; other light by paths or by records.
 constexpr const char* k_caustic_pictures_matrix = R"({
   "name": "caustic-pictures",
   "repeats": 3,
@@ -177,7 +165,7 @@ constexpr const char* k_caustic_pictures_matrix = R"({
   ]
 })";
 
-/// Secondary and tertiary light alone, by the choices of who computes them.
+/// Secondary and tertiary light alone, by each choice of solvers.
 constexpr const char* k_deep_matrix = R"({
   "name": "deep",
   "repeats": 3,
@@ -211,10 +199,9 @@ const SolverInfo& info() {
       .label = "Photons",
       .title = "the photons",
       .help =
-          "Photons: paths from the lights leave photons on surfaces, anew for every sample of the picture, "
-          "and "
-          "what lies within a shrinking radius counts; finds light behind glass and mirrors, blurs it a "
-          "little at first.",
+          "Photons: light paths store photons on surfaces, in a new round for every sample of the picture; "
+          "those within a shrinking radius are averaged. Finds light behind glass and mirrors; its blur "
+          "shrinks with the samples.",
       .serves = {false, true, true, true},
       .looked_up = true,
       .finds_points = true,
@@ -231,16 +218,15 @@ const SolverInfo& info() {
                 {.option = "overlay.photon_aim", .label = "Aim"}},
       .benches =
           {{"caustics",
-            "bundled light alone: path tracing against photons and light tracing, on glass and ring; "
-            "two hours",
+            "caustics alone: path tracing against photons and light tracing, on glass and ring; two hours",
             k_caustics_matrix},
            {"caustic-pictures",
-            "whole pictures of glass and ring: path tracing against caustics by photons and light "
-            "tracing, with other light by paths or records; two hours",
+            "whole pictures of glass and ring: path tracing against caustics by photons and light tracing, "
+            "with other light by paths or records; two hours",
             k_caustic_pictures_matrix},
            {"deep",
-            "light that has met diffuse surfaces before, by records, photons, and records or paths that "
-            "end in photons, in three interiors; an hour and a half",
+            "secondary and tertiary light in three interiors: by records, by photons, and by records or "
+            "paths that end in photons; an hour and a half",
             k_deep_matrix}},
       .against_bias = {"photons.radius", "photons.floor"},
   };

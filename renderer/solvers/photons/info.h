@@ -1,5 +1,5 @@
 #pragma once
-// What the photons say of themselves.
+// Description of photon mapping.
 #include "solvers/info.h"
 
 namespace lucerna::photons {

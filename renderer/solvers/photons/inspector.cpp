@@ -10,8 +10,8 @@ using namespace shared;
 
 namespace {
 
-constexpr float k_decades = 1e-3f;       // of the scale, from its end down
-constexpr double k_smooth_photons = 16;  // that what is drawn of a pixel is to be the mean of, about
+constexpr float k_decades = 1e-3f;       // lower end of the scale, relative to its upper end
+constexpr double k_smooth_photons = 16;  // photons in the mean that is drawn at a pixel, about
 constexpr uint32_t k_pixels_at_once = 1u << 15;
 constexpr long k_most_taps = 8;  // pixels to either side
 constexpr vec3 k_disc_ink{1.0f, 0.86f, 0.45f};
@@ -90,7 +90,7 @@ DensityScale PhotonInspector::draw_density(const overlay::Canvas& canvas,
 }
 
 void PhotonInspector::smooth(const overlay::Canvas& canvas, uint32_t photons) {
-  // As many pixels across as hold so many photons, were these even.
+  // As many pixels across as contain that many photons if these were uniform.
   const double across = std::sqrt(k_smooth_photons * double(canvas.pixels()) / std::max(1u, photons));
   const auto taps = uint32_t(std::clamp(std::lround(across), 1l, k_most_taps));
   for (gpu::Buffer* b : {&halfway_, &smoothed_})

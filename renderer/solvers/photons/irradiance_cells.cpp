@@ -14,14 +14,14 @@ using namespace shared;
 namespace {
 
 constexpr int k_morton_bits = 96;
-/// A piece is cut where each quarter has about as many photons as one must have.
+/// A cell is split if each quarter has about as many photons as a cell needs.
 constexpr uint32_t k_quarters = 4;
-/// Where so many photons that decide are to be expected by what lies around, and there is none, the surface
-/// is likely to lie hidden, below a wall or a thing that stands on it: its area is not counted, and it stays
-/// unknown. Where it is seen after all this costs noise and no light: what photons tell knows nothing of it.
+/// If a cell has no deciding photon although this many are expected from its surroundings, its surface is
+/// probably hidden below a wall or an object: its area is not counted, and it gets no data. If it is visible
+/// after all, this costs noise but no light: the lit half of the photons is independent of the decision.
 constexpr double k_hidden = 0.5;
 
-uint64_t spread(uint64_t x) {  // two zeros behind each of 21 bits
+uint64_t spread(uint64_t x) {  // inserts two zeros after each of 21 bits
   x = (x | x << 32) & 0x1f00000000ffffull;
   x = (x | x << 16) & 0x1f0000ff0000ffull;
   x = (x | x << 8) & 0x100f00f00f00f00full;
@@ -29,12 +29,12 @@ uint64_t spread(uint64_t x) {  // two zeros behind each of 21 bits
   return (x | x << 2) & 0x1249249249249249ull;
 }
 
-/// One of 54 sets of directions: a face of a cube, in three by three.
+/// One of 54 sets of directions: faces of a cube, each divided three by three.
 uint32_t facing(vec3 n) {
   const vec3 a = glm::abs(n);
   const int axis = a.x >= a.y && a.x >= a.z ? 0 : a.y >= a.z ? 1 : 2;
   const auto third = [&](float along) {
-    // By the angle, so that sets are about alike.
+    // By angle, so that the sets have similar sizes.
     const float angle = std::atan2(along, a[axis]) * (4 / k_pi);
     return angle < -1.0f / 3 ? 0u : angle < 1.0f / 3 ? 1u : 2u;
   };
@@ -86,7 +86,7 @@ SideOrder order_sides(const upload::FlatScene& flat, const std::vector<bool>& di
   return order;
 }
 
-/// Of a cluster: what has had too few photons so far.
+/// Leftovers of a cluster, with too few photons so far.
 struct IrradianceCellsBuilder::Rest {
   std::vector<std::pair<uint32_t, uint32_t>> ranges;  ///< of the order
   uint32_t deciding = 0;
@@ -104,8 +104,8 @@ IrradianceCellsBuilder::IrradianceCellsBuilder(const SideOrder& order, std::vect
 }
 
 uint32_t IrradianceCellsBuilder::half_of(const PhotonOnSide& p) {
-  // By paths, and not by a bit of their number: those of even number have all their random numbers in the
-  // same half.
+  // By hashed path number, not by one of its bits: paths of even number have all random numbers in the same
+  // half.
   uint32_t x = p.number >> k_photon_id_events;
   x = (x ^ x >> 16) * 0x7feb352du;
   x = (x ^ x >> 15) * 0x846ca68bu;
@@ -181,7 +181,7 @@ void IrradianceCellsBuilder::cut(uint32_t node, std::span<PhotonOnSide> photons,
     quarters[q.z].back().barycentric = q.x | q.y << 16;
   }
   if (deciding < k_quarters * nearest_) {
-    // One piece of those quarters that have any.
+    // One cell of those quarters that have any photons.
     Sum whole;
     for (uint32_t k = 0; k < 4; ++k) {
       Sum part = sum_of(quarters[k], piece.area / 4);
@@ -201,8 +201,8 @@ void IrradianceCellsBuilder::cut(uint32_t node, std::span<PhotonOnSide> photons,
   std::vector<Sum> pieces;
   Sum left;
   for (uint32_t k = 0; k < 4; ++k) cut(first + k, quarters[k], quarter, pieces, left);
-  // What the quarters have too little of goes together, or to the one that has least itself, unless that is
-  // too large a piece.
+  // Quarters with too few photons are merged with each other, or with the cell that has the fewest, unless
+  // the result is too large.
   if (!left.nodes.empty() && piece.longest <= widest_) {
     if (left.deciding < nearest_ && !pieces.empty()) {
       const auto least = std::min_element(pieces.begin(), pieces.end(),
@@ -224,7 +224,7 @@ void IrradianceCellsBuilder::cluster(uint32_t first, uint32_t last, int bit, Res
   };
   if (first == last) return;
   const double across = std::ldexp(double(order_.across), -((k_morton_bits - 1 - bit) / 3));
-  // Nothing in here has enough of what is left over.
+  // The leftovers in here have too few photons together.
   if (decided_[last] - decided_[first] < nearest_ || bit < 0) return leave();
   SideOrder::Key key = order_.keys[first].above(bit);
   (bit >= 48 ? key.high : key.low) |= 1;
@@ -236,13 +236,13 @@ void IrradianceCellsBuilder::cluster(uint32_t first, uint32_t last, int bit, Res
   Rest left;
   cluster(first, middle, bit - 1, left);
   cluster(middle, last, bit - 1, left);
-  if (across > widest_) return;  // too large a piece, as all around it
+  if (across > widest_) return;  // too large a cell, as everything around it
   if (left.deciding < nearest_) {
     rest.ranges.insert(rest.ranges.end(), left.ranges.begin(), left.ranges.end());
     rest.deciding += left.deciding;
     return;
   }
-  // One piece of all of them.
+  // One cell of all of them.
   Sum sum;
   sum.flux.assign(3 * (1 + size_t{groups_}), 0.0);
   const uint32_t own = add_nodes(1);
@@ -252,7 +252,7 @@ void IrradianceCellsBuilder::cluster(uint32_t first, uint32_t last, int bit, Res
     for (const auto& [from, to] : left.ranges)
       for (uint32_t i = from; i < to; ++i) f(i);
   };
-  double bare = 0;  // area of sides without any photon
+  double bare = 0;  // area of sides without photons
   const auto is_bare = [&](uint32_t i) {
     return rests_of_[i] == k_no_place && double(order_.longest[order_.sides[i] >> 1]) <= widest_;
   };
@@ -285,7 +285,7 @@ void IrradianceCellsBuilder::add_map(uint32_t lit_by) {
     std::vector<Sum> found;
     cut(root, std::span(photons_).subspan(from, to - from), whole, found, rest);
     for (const Sum& p : found) light(p);
-    // What is wholly known has no rest, and is not to be taken for a triangle without photons.
+    // A complete node has no leftovers and must not be mistaken for a triangle without photons.
     if (rest.nodes.empty() || whole.longest > widest_)
       rest = {.deciding = 0, .area = 0, .flux = std::vector<double>(3 * (1 + size_t{groups_})), .nodes = {}};
     rests_of_[order_.places[side]] = uint32_t(rests_.size());
@@ -294,7 +294,7 @@ void IrradianceCellsBuilder::add_map(uint32_t lit_by) {
   decided_.assign(order_.sides.size() + 1, 0);
   for (size_t i = 0; i < order_.sides.size(); ++i)
     decided_[i + 1] = decided_[i] + (rests_of_[i] != k_no_place ? rests_[rests_of_[i]].deciding : 0);
-  // Sides that face alike.
+  // Sides of similar orientation.
   Rest none;
   for (uint32_t from = 0, to = 0; from < order_.keys.size(); from = to) {
     const SideOrder::Key faces = order_.keys[from].above(k_morton_bits);

@@ -1,6 +1,6 @@
 #pragma once
-// Irradiance known beforehand where lookups of tertiary light take place, so that one is to find the piece of
-// surface on which it lies (shaders/photons/irradiance.glsl) instead of adding up all photons around.
+// Precomputed irradiance for lookups of tertiary light: a lookup finds the surface cell that contains it
+// (shaders/photons/irradiance.glsl) instead of summing nearby photons.
 #include <memory>
 
 #include "solvers/photons/irradiance_cells.h"
@@ -10,29 +10,29 @@ namespace lucerna::photons {
 
 class IrradianceMap {
  public:
-  /// `groups`: of lights that are kept apart in sums of their own; 0: none are. Throws Error: no memory.
+  /// `groups`: number of separate light groups; 0: none. Throws Error: memory.
   IrradianceMap(gpu::Device& device, uint32_t groups);
 
-  /// What it is to be.
+  /// Parameters of a map.
   struct Wanted {
-    uint32_t nearest = 0;  ///< IrradianceCellsBuilder's
+    uint32_t nearest = 0;  ///< of IrradianceCellsBuilder
     float widest = 0;
-    uint64_t states = 0;   ///< bits: of the eye path, in which tertiary light is looked up, and nothing else
-    bool gathers = false;  ///< IrradianceFrame::gathers
-    uint32_t max_depth = 64;  ///< scattering events of a path from the eye to a light, at most
+    uint64_t states = 0;      ///< bits: states of the eye path in which only tertiary light is looked up
+    bool gathers = false;     ///< IrradianceFrame::gathers
+    uint32_t max_depth = 64;  ///< maximum scattering events of a path from eye to light
   };
-  /// One piece of making it of a complete map that tells of its surfaces; until complete(). Lookups find what
-  /// there was before until then; with the last piece they are bound anew. Throws Error when memory is short.
+  /// Runs one work item of building from a complete photon map that stores surfaces, until complete().
+  /// Lookups use the old data until then; the last item rebinds them. Throws Error: memory.
   void make(transport::Wavefront& wavefront, const PhotonMap& map, const upload::FlatScene& flat,
             const Wanted& wanted);
-  /// It is to be made anew; until then lookups find what there was.
+  /// Starts over; lookups use the old data meanwhile.
   void restart() { complete_ = false, builder_.reset(); }
-  /// ... and until then nothing.
+  /// Starts over; lookups find no data meanwhile.
   void clear();
-  /// Surfaces are others.
+  /// Call when surfaces have changed.
   void invalidate() { clear(), order_.reset(); }
   bool complete() const { return complete_; }
-  /// Lookups find something, or at least that nothing is known.
+  /// True if lookups can read it, even if cells have no data.
   bool readable() const { return readable_; }
   void bind(gpu::Resources& resources) const;
   uint32_t pieces() const { return pieces_; }
@@ -44,9 +44,9 @@ class IrradianceMap {
   gpu::Device& device_;
   uint32_t groups_;
   std::unique_ptr<SideOrder> order_;
-  std::vector<bool> diffuse_;  ///< materials, by which it was made
+  std::vector<bool> diffuse_;  ///< materials that it was built with
   std::unique_ptr<IrradianceCellsBuilder> builder_;
-  uint32_t maps_ = 0;  ///< that it has so far
+  uint32_t maps_ = 0;  ///< number of complete maps
   gpu::Buffer roots_, nodes_, block_;
   uint32_t pieces_ = 0;
   bool complete_ = false, readable_ = false;

@@ -1,8 +1,7 @@
 #pragma once
-// Photons in the order of their cells, and the table that finds them (shaders/shared/photons/photons.h).
+// Photons sorted by cell, and the table that finds them (shaders/shared/photons/photons.h).
 //
-// The sort that puts them into their cells also puts those of one cell into the order of their numbers, so
-// that nothing hangs on the order in which they are given.
+// The sort also orders the photons of one cell by number, so the result does not depend on the input order.
 #include "shaders/shared/photons/photons.h"
 #include "sort/radix_sort.h"
 
@@ -13,16 +12,16 @@ class PhotonCells {
   /// Throws Error: a kernel does not compile (located).
   PhotonCells(gpu::Device& device, gpu::ShaderCompiler& compiler);
 
-  /// Makes room for so many, and fills in `lookup`'s count and mask. Whether buffers are others than before.
-  /// Throws Error when memory is short.
+  /// Allocates memory for that many, and sets `lookup`'s count and mask. True if buffers have been replaced.
+  /// Throws Error: memory.
   bool make_room(uint32_t count, shared::PhotonFrame& lookup);
-  /// Of the photons in `list`, with numbers `ids` of their own, as many as there was room made for; `lookup`:
-  /// a PhotonFrame, as filled in.
+  /// Sorts the photons in `list` with numbers `ids`, as many as prepare() allocated; `lookup`: buffer of that
+  /// PhotonFrame.
   void encode(gpu::Stream& stream, const gpu::Buffer& list, const gpu::Buffer& ids, const gpu::Buffer& lookup,
               uint32_t count);
-  const gpu::Buffer& photons() const { return map_; }  ///< shared::Photon each, cell by cell
-  const gpu::Buffer& table() const { return table_; }  ///< two words an entry: first, behind the last
-  /// shared::SortEntry64 each, of the photons put in order last.
+  const gpu::Buffer& photons() const { return map_; }  ///< shared::Photon, cell by cell
+  const gpu::Buffer& table() const { return table_; }  ///< two words per entry: first, one past the last
+  /// shared::SortEntry64 of the most recently sorted photons.
   const gpu::Buffer& sorted() const { return *sorted_; }
   uint32_t entries() const { return entries_in_table_; }
   uint64_t bytes() const;

@@ -129,7 +129,7 @@ void PhotonMap::write_lookup() {
   all.importance_counts = noted_.importance_counts, all.stores_radiance = noted_.stores_radiance;
   all.stores_surface = noted_.stores_surface;
   all.unreachable_parts = noted_.unreachable_parts, all.skips_unreachable = noted_.skips_unreachable;
-  // Where there has been no round, of what photons are stored by.
+  // Before the first round: the radii by which photons are stored.
   if (all.most <= 0) all.most = noted_.most;
   if (notes_held_) all.importance_mask = 0, all.lookups = all.vertices = 0;
   block_.write(&all, sizeof all);
@@ -201,7 +201,8 @@ bool PhotonMap::trace(transport::Wavefront& wavefront, const transport::LightSou
     const Went went = trace_batch(wavefront, lights, fitting, count, picture, enabled, cancel);
     if (went == Went::cancelled) return false;
     if (went == Went::too_many) {
-      // Half as many paths, from the first: how many fit depends on the round alone, not on its batches.
+      // Half as many paths, from the start: the number that fits depends on the round alone, not on its
+      // batches.
       fits_ = std::max(1u, fitting.paths / 2);
       tracing_ = false;
       log::warning(

@@ -1,5 +1,5 @@
 #pragma once
-// Photons as points over the picture.
+// Draws photons as points over the picture.
 #include "overlay/painter.h"
 #include "solvers/photons/photon_map.h"
 
@@ -7,10 +7,10 @@ namespace lucerna::photons {
 
 class PointsView {
  public:
-  /// Kernels are compiled when they are first called for. Both must outlive it.
+  /// Kernels are compiled at the first use. Both must outlive it.
   PointsView(gpu::Device& device, gpu::ShaderCompiler& compiler);
-  /// The photons of the last round, one in so many where there are more than can be drawn. `by`: 0 nothing,
-  /// shared::k_photons_by_*.
+  /// Draws the photons of the latest round, every n-th if there are too many. `by`: shared::k_photons_by_*;
+  /// 0: none.
   void draw(const overlay::Canvas& canvas, const PhotonMap& map, uint32_t by);
 
  private:

@@ -15,7 +15,7 @@ using namespace shared;
 
 namespace {
 
-/// What lies under the pointer.
+/// Card for the inspected place.
 Card make_card(const Inspected& found) {
   const PhotonInspectHeader& at = found.at;
   Card card;
@@ -23,9 +23,9 @@ Card make_card(const Inspected& found) {
   const auto row = [&](const char* name, std::string value) { add(Card::Row{name, std::move(value)}); };
   add(Card::Title{count_text(double(at.count)) + (at.count == 1 ? " photon" : " photons"),
                   fmt::format("{} mm", real_text(1e3 * double(at.radius), 2))});
-  row("Density", fmt::format("{} a m\u00b2", count_text(double(at.density))));
+  row("Density", fmt::format("{} per m\u00b2", count_text(double(at.density))));
   row("Irradiance", real_text(double(luminance(at.irradiance)), 3));
-  if (at.area < 0.999f) row("Surface in the disc", share_text(double(at.area), 1));
+  if (at.area < 0.999f) row("Surface in disc", share_text(double(at.area), 1));
   if (found.photons.empty()) return card;
   double sum = 0;
   for (const PhotonInspected& p : found.photons) sum += double(p.contribution);
@@ -42,7 +42,7 @@ Card make_card(const Inspected& found) {
   return card;
 }
 
-/// The radius of rounds 1, 2, 4, ...; those that the picture has had in the accent's ink.
+/// Radii of rounds 1, 2, 4, ...; completed ones in the accent colour.
 Histogram radius_columns(const PhotonReport& r) {
   constexpr uint32_t k_columns = 13;  // to round 4096
   constexpr vec3 k_had{0.44f, 0.64f, 0.87f}, k_to_come{0.38f, 0.38f, 0.42f};
@@ -55,12 +55,12 @@ Histogram radius_columns(const PhotonReport& r) {
                                  .ink = round <= r.rounds ? k_had : k_to_come,
                                  .label = name,
                                  .help = fmt::format("Round {}: {} pixels{}.", name, real_text(radius, 2),
-                                                     radius <= r.radius_law.floor ? ", the least" : "")});
+                                                     radius <= r.radius_law.floor ? ", the minimum" : "")});
   }
   return histogram;
 }
 
-/// Components (bits), as of light: "secondary and tertiary".
+/// Names of components (bits): "secondary and tertiary".
 std::string names_of(uint32_t components, bool begins = false) {
   std::string all;
   for (size_t c = 0; c < paths::k_component_count; ++c)
@@ -76,114 +76,108 @@ Report make_report(const PhotonReport& r) {
   Report report;
   report.solver = info().name;
   report.ready = r.ready;
-  if (!r.ready)
-    report.preparing = "photons: where they are looked for, what bundles light, and where it comes in";
+  if (!r.ready) report.preparing = "photons: finding lookups, casters and entrances";
   const bool all_delegated = r.tried != 0 && !r.sends_rounds;
-  report.state = all_delegated            ? "left to paths"
-                 : r.maps && r.pieces > 0 ? fmt::format("{} pieces", count_text(r.pieces))
+  report.state = all_delegated            ? "path traced"
+                 : r.maps && r.pieces > 0 ? fmt::format("{} cells", count_text(r.pieces))
                  : r.rounds == 0          ? "beginning"
                                           : fmt::format("round {}", r.last.round + 1);
   PanelSection map{.title = "Photons", .note = "", .items = {}};
   if (r.lights_power <= 0)
-    map.items.push_back(Paragraph{"Nothing in the scene shines, so that there are no photons."});
+    map.items.push_back(Paragraph{"The scene has no light, so there are no photons."});
   else if (!r.sends)
-    map.items.push_back(
-        Paragraph{"Nothing in the scene reflects or refracts otherwise than diffusely, so that there "
-                  "are no caustics: no photons are sent."});
+    map.items.push_back(Paragraph{
+        "The scene has no specular or glossy surface, so there are no caustics and no photons are traced."});
   if (r.maps)
     map.items.push_back(ValueRow{"Maps", count_text(double(r.rounds)),
-                                 "Of irradiance, one after the other: each of twice as many paths, for twice "
-                                 "as many samples of the picture."});
+                                 "Irradiance maps so far. Each has twice as many paths as the one before and "
+                                 "serves twice as many samples."});
   else
-    map.items.push_back(
-        ValueRow{"Rounds", count_text(double(r.rounds)), "One for every sample of the picture."});
-  map.items.push_back(ValueRow{r.maps ? "Paths" : "Paths a round", count_text(r.last.paths),
-                               "That began at lights, for the last one."});
+    map.items.push_back(ValueRow{"Rounds", count_text(double(r.rounds)), "One per sample of the picture."});
+  map.items.push_back(ValueRow{r.maps ? "Paths" : "Paths per round", count_text(r.last.paths),
+                               "Light paths of the last one."});
   if (r.last.paths < r.last.wanted)
     map.items.push_back(Paragraph{
-        fmt::format("{} light paths were asked for. Their photons do not fit into one buffer of this device.",
+        fmt::format("{} light paths are set, but their photons do not fit into one buffer of this device.",
                     count_text(r.last.wanted)),
         Tone::warning});
-  map.items.push_back(ValueRow{r.maps ? "Photons" : "Photons a round", count_text(r.last.photons),
-                               "That these left on surfaces."});
+  map.items.push_back(ValueRow{r.maps ? "Photons" : "Photons per round", count_text(r.last.photons),
+                               "Photons stored by these paths."});
   if (r.pieces > 0)
-    map.items.push_back(ValueRow{"Pieces of surface", count_text(r.pieces),
-                                 "Whose irradiance the last map knows. Where there are too few photons paths "
-                                 "go on by themselves."});
+    map.items.push_back(
+        ValueRow{"Surface cells", count_text(r.pieces),
+                 "Cells of the last map with irradiance. In cells with too few photons paths continue."});
   for (const auto& [part, name, help] :
-       {std::tuple{1u, "Secondary", "Of these: light that has met one diffuse surface before."},
-        {2u, "Tertiary", "Of these: light that has met several diffuse surfaces before."},
-        {3u, "Caustic", "Of these: light that has met mirrors and glass alone."}})
+       {std::tuple{1u, "Secondary", "Photons of light behind one diffuse surface."},
+        {2u, "Tertiary", "Photons of light behind several diffuse surfaces."},
+        {3u, "Caustic", "Photons of light behind specular surfaces only."}})
     if (r.last.by_part[part] > 0) map.items.push_back(ValueRow{name, count_text(r.last.by_part[part]), help});
   map.items.push_back(ValueRow{
-      "Stored a path", r.paths > 0 ? real_text(double(r.photons) / double(r.paths), 2) : "\xE2\x80\x93",
-      "Photons that a path leaves, on average over the picture's rounds."});
+      "Photons per path", r.paths > 0 ? real_text(double(r.photons) / double(r.paths), 2) : "\xE2\x80\x93",
+      "Mean number of stored photons per path, over the picture's rounds."});
   if (r.spared > 0)
-    map.items.push_back(ValueRow{"Left out", share_text(double(r.spared), double(r.spared + r.photons)),
-                                 "Of the photons: where nobody looks, of which a few are kept for all."});
+    map.items.push_back(ValueRow{"Not stored", share_text(double(r.spared), double(r.spared + r.photons)),
+                                 "Share of the photons removed by Russian roulette far from lookups."});
   map.items.push_back(ValueRow{"Left the scene", share_text(double(r.escaped), double(r.paths)),
-                               "Of the paths: that met nothing any more."});
+                               "Share of the paths that left the scene."});
   const auto of_round = [&](const char* name, uint64_t n, const char* help) {
     if (n > 0) map.items.push_back(ValueRow{name, share_text(double(n), double(r.last.paths)), help});
   };
-  of_round("Ended by roulette", r.last.roulette, "Of the paths of the last round.");
-  of_round("Ended by their length", r.last.depth,
-           "Of the paths of the last round: after as many events as paths may have (path.max_depth).");
+  of_round("Ended by roulette", r.last.roulette, "Share of the paths of the last round.");
+  of_round(
+      "Ended by length", r.last.depth,
+      "Share of the paths of the last round that reached the maximum number of events (path.max_depth).");
   if (r.last.paths > 0)
-    map.items.push_back(ValueRow{"Rays a path", real_text(double(r.last.rays) / double(r.last.paths), 2),
-                                 "Of the last round: from surface to surface, the first from the light."});
+    map.items.push_back(ValueRow{"Rays per path", real_text(double(r.last.rays) / double(r.last.paths), 2),
+                                 "Of the last round, including the first ray from the light."});
   if (r.dark > 0)
-    map.items.push_back(ValueRow{"Began in the dark", share_text(double(r.dark), double(r.paths)),
-                                 "Of the paths: where a lamp's texture or the sky is black."});
+    map.items.push_back(ValueRow{"Started dark", share_text(double(r.dark), double(r.paths)),
+                                 "Share of the paths that started at a black texel of a lamp or the sky."});
   if (!r.maps)
-    map.items.push_back(ValueRow{
-        "Radius", fmt::format("{} pixels{}", real_text(r.radius_pixels, 2), r.at_floor ? ", the least" : ""),
-        "Within which a photon counts, as the camera sees it; below over rounds."});
+    map.items.push_back(
+        ValueRow{"Radius",
+                 fmt::format("{} pixels{}", real_text(r.radius_pixels, 2), r.at_floor ? ", the minimum" : ""),
+                 "Radius of photons as seen from the camera; below: by round."});
   if (r.sends && !r.maps) map.items.push_back(radius_columns(r));
   if (r.limited && !r.maps)
     map.items.push_back(
-        Paragraph{"The radius asked for is wider than photons may be seen, and is held to a quarter of "
-                  "their distance.",
-                  Tone::warning});
+        Paragraph{"The radius is limited to a quarter of the distance from the camera.", Tone::warning});
   add_aim_rows(map.items, {r.casters, r.entrances}, r.unaimed, r.aimed);
   if (r.delegated != 0)
-    map.items.push_back(Paragraph{
-        fmt::format(
-            "A pilot has found that paths from the eye bring {} light with less noise for their time: "
-            "noise times cost is {} times less. So they do. Without 'Only where worth it' photons "
-            "bring it all the same.",
-            names_of(r.delegated), real_text(r.delegation_gain, 1)),
-        Tone::warning});
+    map.items.push_back(
+        Paragraph{fmt::format("In the pilot, path tracing of {} light was {}× more efficient, so it is used. "
+                              "Turn 'Only where more efficient' off to use photons anyway.",
+                              names_of(r.delegated), real_text(r.delegation_gain, 1)),
+                  Tone::warning});
   else if (r.tried != 0 && r.ready)
     map.items.push_back(ValueRow{names_of(r.tried, true), "by photons",
-                                 "A pilot has not found that paths from the eye would bring it with much "
-                                 "less noise for their time."});
+                                 "In the pilot, path tracing was not much more efficient."});
   if (r.weighs && r.ready) {
     map.items.push_back(
         ValueRow{"Caustics by photons", share_text(r.by_photons, 1),
-                 "Of the picture: elsewhere paths from the eye bring them with less noise for "
-                 "their time, as a pilot has found."});
+                 "Share of the picture; elsewhere path tracing was more efficient in the pilot."});
     if (r.by_photons < 1)
-      map.items.push_back(ValueRow{"Worth", fmt::format("{} times", real_text(r.efficiency_gain, 2)),
-                                   "By how much noise times cost of caustics is less than with photons "
-                                   "everywhere, as the pilot sees it."});
+      map.items.push_back(
+          ValueRow{"Efficiency gain", fmt::format("{}×", real_text(r.efficiency_gain, 2)),
+                   "Estimated efficiency gain for caustics (variance × time) over photons everywhere."});
   }
   const auto rate = [&](const char* name, double n, const char* help) {
     if (n > 0) map.items.push_back(ValueRow{name, count_text(n) + " / s", help});
   };
-  rate("Sent", r.emitted_per_s, "Paths from lights a second of the time in which they are traced.");
-  rate("Stored", r.stored_per_s, "Photons a second of that time.");
-  rate("Sorted", r.sorted_per_s, "Photons a second of the time in which a round is put in order.");
+  rate("Tracing rate", r.emitted_per_s, "Light paths per second of tracing time.");
+  rate("Storing rate", r.stored_per_s, "Stored photons per second of tracing time.");
+  rate("Sorting rate", r.sorted_per_s, "Photons per second of sorting time.");
   if (r.rounds > 0) {
     map.items.push_back(
-        ValueRow{r.maps ? "Tracing a map" : "Tracing a round", ms_text(1e3 * r.trace_s / double(r.rounds)),
-                 r.maps ? "On average over the picture's maps." : "On average over the picture's rounds."});
-    map.items.push_back(ValueRow{r.maps ? "Sorting a map" : "Sorting a round",
+        ValueRow{r.maps ? "Tracing time per map" : "Tracing time per round",
+                 ms_text(1e3 * r.trace_s / double(r.rounds)),
+                 r.maps ? "Mean over the picture's maps." : "Mean over the picture's rounds."});
+    map.items.push_back(ValueRow{r.maps ? "Sorting time per map" : "Sorting time per round",
                                  ms_text(1e3 * r.build_s / double(r.rounds)),
-                                 "Into the cells by which photons are found."});
+                                 "Mean time of sorting photons by cell."});
   }
-  map.items.push_back(
-      ValueRow{"Memory", megabytes_text(double(r.bytes) / 1e6), "Of photons and what finds them."});
+  map.items.push_back(ValueRow{"Memory", megabytes_text(double(r.bytes) / 1e6),
+                               "Memory of photons and their lookup structures."});
   report.sections.push_back(std::move(map));
   report.sections.push_back(
       {.title = "Settings",
@@ -193,7 +187,7 @@ Report make_report(const PhotonReport& r) {
                  OptionRow{"photons.irradiance_map"}, OptionRow{"photons.nearest"}, OptionRow{"photons.aim"},
                  OptionRow{"photons.importons"}, OptionRow{"photons.efficiency"}}});
   report.sections.push_back(
-      {.title = "Over the picture",
+      {.title = "Overlays",
        .note = "",
        .items = {OptionRow{"overlay.photons"}, OptionRow{"overlay.photon_density"},
                  OptionRow{"overlay.photon_paths"}, OptionRow{"overlay.photon_paths_of"},
@@ -206,16 +200,16 @@ Report make_report(const PhotonReport& r) {
     report.legends.push_back(std::move(legend));
   }
   if (r.view == shared::k_photons_by_bounce) {
-    Legend legend{.title = "Surfaces before", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
+    Legend legend{.title = "Bounces", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
     for (uint32_t bounce = 0; bounce < 6; ++bounce)
       legend.marks.push_back({shared::ramp_hue(bounce), fmt::format("{}{}", bounce, bounce == 5 ? "+" : "")});
     report.legends.push_back(std::move(legend));
   }
   if (r.density.of > 0 && r.density.hi > 0)
     report.legends.push_back(
-        {.title = r.density.of == k_density_of_photons      ? "Photons a m\u00b2, last round"
-                  : r.density.of == k_density_of_caustics   ? "Samples whose caustics photons bring"
-                  : r.density.of == k_density_of_importance ? "What hangs on photons there"
+        {.title = r.density.of == k_density_of_photons      ? "Photons per m\u00b2, last round"
+                  : r.density.of == k_density_of_caustics   ? "Samples whose caustics photons compute"
+                  : r.density.of == k_density_of_importance ? "Photon importance"
                                                             : "Irradiance of the last round's photons",
          .ramp = k_ramp_magma,
          .ticks = {},

@@ -16,30 +16,28 @@ using solvers::Picture, solvers::Task, solvers::Cancel;
 
 namespace {
 
-constexpr uint32_t k_least_paths = 1u << 14, k_most_paths = 1u << 20;  // where their number is left to us
+constexpr uint32_t k_least_paths = 1u << 14, k_most_paths = 1u << 20;  // automatic number of paths
 constexpr uint32_t k_most_light_groups = 64;
-// Of standing photons about so many serve a typical lookup, for what errs there is seen by all lookups
-// around; within one radius, whoever looks, at most as wide as for one photon a path on a cube that fits into
-// the scene's sphere.
+// A typical lookup finds about this many standing photons; errors there affect all lookups around. The radius
+// is constant, independent of the view, and at most as wide as for one photon per path on a cube inside the
+// scene's sphere.
 constexpr uint32_t k_standing_round = 0xfffffe00u;
 constexpr float k_standing_photons = 30;
-/// Paths of standing photons: for records, and for paths that gather, a pixel and at least, at first; then as
-/// many more as there are more samples.
+/// Light paths of standing photons: for records; and for gathering paths, per pixel, and at least, at first.
+/// Later maps have more, in proportion to the samples.
 constexpr uint32_t k_paths_for_records = 1u << 20, k_gather_paths_a_pixel = 2,
                    k_least_gather_paths = 1u << 17, k_most_gather_paths = 1u << 22;
-/// Pieces of a map of irradiance are at most about as large as so many of the discs that hold as many photons
-/// where lookups typically take place.
+/// Maximum size of irradiance cells, in discs that contain as many photons at typical lookups.
 constexpr float k_widest = 8;
-/// Of the picture's lesser half, what the radius is at most where the camera is orthographic; else
-/// k_photon_most_slope holds it.
+/// Maximum radius over half the smaller side of the picture for orthographic cameras; otherwise
+/// k_photon_most_slope limits it.
 constexpr float k_most_radius = 0.25f;
 
 paths::LookupRoutes routes_of(const Task& task) {
   return paths::photon_routes(task.automaton, task.enabled, task.own, task.directly_visible_by_other);
 }
 
-/// Parts of light that are looked up and that there are: of caustics only where something scatters otherwise
-/// than diffusely.
+/// Parts of light that are looked up and exist: caustics only if the scene has specular or glossy surfaces.
 uint32_t parts_of(const Task& task) {
   const upload::Effects& e = task.effects;
   const bool focuses = e.specular || e.solid_glass || e.thin_glass;
@@ -48,13 +46,14 @@ uint32_t parts_of(const Task& task) {
 
 constexpr uint8_t k_secondary = 1, k_tertiary = 2, k_caustic = 3;  // components
 
-/// Secondary light is looked up by somebody who prepares it by rays of his own, and tertiary light is ours.
+/// True if another solver traces rays to prepare secondary light for lookups, and this solver computes
+/// tertiary light.
 bool feeds(const Task& task) {
   return (task.own >> k_tertiary & 1u) != 0 && (task.consuming >> k_secondary & 1u) != 0;
 }
 
-/// Irradiance is to be known beforehand where tertiary light is looked up: behind a diffuse vertex, which is
-/// not so where secondary light is ours as well.
+/// True if tertiary light is read from an irradiance map: lookups are behind a diffuse vertex, which is not
+/// so if this solver computes secondary light too.
 bool prepares_irradiance(const Task& task) {
   enum : uint32_t { off, records, all };
   const auto requested = uint32_t(task.settings.choice("photons.irradiance_map"));
@@ -63,7 +62,7 @@ bool prepares_irradiance(const Task& task) {
          (task.own >> k_secondary & 1u) == 0;
 }
 
-/// All that is ours is known so.
+/// True if all own light is read from it.
 bool gathers_alone(const Task& task) { return prepares_irradiance(task) && task.own == 1u << k_tertiary; }
 
 /// States of the eye path in which lookups contribute tertiary light and nothing else.
@@ -81,8 +80,8 @@ uint64_t tertiary_states(const PhotonFrame& lookup) {
   return states;
 }
 
-/// Where light of these components that no path from the eye finds is looked up: at the first diffuse vertex,
-/// for the paths go on for all other light.
+/// Lookups of light of these components that no eye path finds: at the first diffuse vertex, because paths
+/// continue for all other light.
 paths::LookupRoutes unreachable_routes(const Task& task, uint32_t components) {
   constexpr uint32_t k_photon_components = 1u << k_secondary | 1u << k_tertiary | 1u << k_caustic;
   paths::LookupRoutes routes = paths::photon_routes(
@@ -106,13 +105,13 @@ nlohmann::ordered_json component_names(uint32_t components) {
   return names;
 }
 
-/// Whatever the scene's size is: something far away must not change the radius.
+/// Size of the scene without distant outliers, which must not change the radius.
 float most_radius(const Frame& frame) {
   if (frame.orthographic == 0) return std::numeric_limits<float>::max();
   return k_most_radius * std::min(glm::length(frame.camera_right), glm::length(frame.camera_up));
 }
 
-/// Which map of irradiance a sample reads: 0 for the first ones, then 1, ...
+/// Index of the irradiance map that a sample reads: 0 for the first ones, then 1, ...
 uint32_t epoch_of(uint32_t sample) {
   return uint32_t(std::bit_width(sample / PhotonSolver::k_first_gather_samples + 1)) - 1;
 }
@@ -137,7 +136,7 @@ const solvers::SolverType& type() {
 solvers::Routing PhotonSolver::routing_of(const Task& task) {
   paths::LookupRoutes routes = routes_of(task);
   if (parts_of(task) == 0) routes.component.clear(), routes.parts = 0;
-  // A path that gathers and finds too few photons goes on for what it would have looked up; so do records'
+  // A gathering path that finds too few photons continues for the light it would have read; so do records'
   // rays.
   const bool goes_on = feeds(task) || prepares_irradiance(task);
   const uint32_t others = task.own & ~(1u << k_tertiary);
@@ -245,7 +244,7 @@ void PhotonSolver::route(const Task& task) {
                                 task.directly_visible_by_other);
   };
   here_routes_ = routes(delegated_), delegated_routes_ = routes(delegated_ | delegable_);
-  // Paths that find no irradiance go on by themselves, too.
+  // Paths that find no irradiance continue on their own, too.
   const uint32_t by_paths = delegated_ | (gathers() && !feeds_ ? 1u << k_tertiary : 0);
   const auto unreachable = [&](uint32_t components) {
     return unreachable_routes(task, unreachable_found_ ? components & task.own : 0);
@@ -256,7 +255,7 @@ void PhotonSolver::route(const Task& task) {
 bool PhotonSolver::gathers() const { return irradiance_ && (delegated_ >> k_tertiary & 1u) == 0; }
 
 bool PhotonSolver::reads_rounds() const {
-  // Where irradiance is all that is read, rounds are sent for light that no path finds.
+  // If only irradiance is read, rounds are traced for light that no path finds.
   return sent_parts() != 0 && !(gathers_alone_ && gathers() && unreachable_here_.parts == 0);
 }
 
@@ -294,21 +293,22 @@ PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, 
   f.most = most_radius(frame);
   f.most_candidates = k_photon_most_candidates, f.most_visits = k_photon_most_visits;
   f.surface_nodes = picture.task.settings.boolean("photons.borders") ? surfaces_.nodes() : 0;
-  // Paths that another solver's lookup has left alone find photons as all others do.
+  // Paths in the fallback states of another solver find photons like all others.
   for (uint32_t state = 0; state < k_automaton_states; ++state) {
     const uint32_t of_eye = state % k_gather_state, own = state % k_delegated_states;
     const bool here = state < k_delegated_states;
     const paths::LookupRoutes &routes = here ? here_routes_ : delegated_routes_,
                               &unreachable = here ? unreachable_here_ : unreachable_delegated_;
     f.component[state] = k_photon_no_components;
-    // Who goes on because nothing was known looks up no more, but records' rays, which begin so.
+    // Paths that continued for lack of data look up no more, except records' rays, which start in these
+    // states.
     if (own >= (gathers() && !feeds_ ? k_gather_state : k_known_state) || of_eye >= routes.component.size())
       continue;
     uint32_t packed = 0;
     for (uint32_t p = 0; p < paths::k_part_count; ++p) {
       uint8_t c = routes.component[of_eye][p];
-      // Records bring tertiary light to paths that they serve: photons to the records' rays and to paths that
-      // these leave alone, both in other states.
+      // Records contribute tertiary light to paths that they serve; photons contribute it to the records'
+      // rays and to paths without records, both in other states.
       if (feeds_ && own < k_gather_state && c == k_tertiary) c = paths::k_no_component;
       if (c == paths::k_no_component && own < k_gather_state) {
         c = unreachable.component[of_eye][p];
@@ -369,7 +369,7 @@ bool PhotonSolver::make_standing(transport::Wavefront& wavefront, const Picture&
       {.nearest = nearest,
        .widest = k_widest * standing_radius(picture, standing_->figures().paths, 2 * float(nearest)),
        .states = tertiary_states(standing_->lookup()),
-       // No rounds serve records' rays, and paths that go on find no light of points by way of mirrors.
+       // rounds do not serve records' rays, and continuing paths cannot find point lights in mirrors
        .gathers = feeds_ && hides_,
        .max_depth = picture.frame.max_depth});
   irradiance_round_ = standing_->round();
@@ -377,7 +377,7 @@ bool PhotonSolver::make_standing(transport::Wavefront& wavefront, const Picture&
 }
 
 float PhotonSolver::standing_radius(const Picture& picture, uint32_t paths, float photons) const {
-  const auto found = float(density_at_lookups_ * paths);  // photons a square metre
+  const auto found = float(density_at_lookups_ * paths);  // photons per square metre
   const float widest = picture.flat.core_radius * std::sqrt(8 * photons / (k_pi * float(paths)));
   return found > 0 ? std::min(widest, std::sqrt(photons / (k_pi * found))) : widest;
 }
@@ -404,7 +404,7 @@ bool PhotonSolver::prepare_round(transport::Wavefront& wavefront, const Picture&
   const Round round = round_of(picture, sample);
   store_parts(round.parts);
   if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
-  if (map_.traced() > 0) return true;  // not yet complete
+  if (map_.traced() > 0) return true;  // not complete yet
   fresh_ = false, last_sample_ = sample;
   account(map_.figures());
   return true;
@@ -428,7 +428,7 @@ void PhotonSolver::draw(const overlay::Canvas& canvas, const Picture& picture) {
   const auto read = [this](gpu::Resources& r) { bind(r); };
   const auto of = uint32_t(settings.choice("overlay.photon_density"));
   if ((of > 0 || looked_at_) && !inspector_.look(canvas, picture.frame)) return;
-  // Until there are photons there is nothing to show of them.
+  // Before there are photons there is nothing to draw.
   const PhotonMap& shown = shown_map();
   if (of > 0 && (shown.complete() || of > k_density_of_irradiance))
     density_ = inspector_.draw_density(canvas, read, of, shown.figures().photons, shown_version());
@@ -501,7 +501,7 @@ nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas& canvas, c
   nlohmann::ordered_json rates;
   if (map_.complete()) {
     const auto read = [this](gpu::Resources& resources) { bind(resources); };
-    inspector_.look_up(canvas, read, k_photons_in_disc);  // kernels compile when they first run
+    inspector_.look_up(canvas, read, k_photons_in_disc);  // kernels compile at their first run
     const Timer timer;
     inspector_.look_up(canvas, read, k_photons_in_disc);
     const double seconds = timer.seconds();

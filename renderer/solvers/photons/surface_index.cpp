@@ -47,7 +47,7 @@ SurfaceTree make_surface_tree(const upload::FlatScene& flat, const std::vector<b
   SurfaceTree made;
   if (references.empty()) return made;
   const bvh::Tree tree = bvh::build_median(std::move(references));
-  // The way back up tells nodes what follows behind all that lies below them.
+  // On the way back up, nodes get the link to what follows their subtree.
   struct Step {
     uint32_t node, index;
     bool back;

@@ -1,9 +1,9 @@
 #pragma once
-// The surfaces that photons can lie on, to be found by whoever wants to know how much of them there is around
-// a place (shaders/photons/area.glsl).
+// Index of the surfaces that photons can lie on, for the surface area around a place
+// (shaders/photons/area.glsl).
 //
-// A binary tree in depth-first order whose nodes know where to go on when a ball misses them, so that a
-// lookup needs no stack: node i is followed by i + 1 where it is met, else by its own `next`.
+// A binary tree in depth-first order. Each node stores where traversal continues if a ball misses it, so
+// lookups need no stack: node i is followed by i + 1 if hit, else by its `next`.
 #include <vector>
 
 #include "gpu/kernel.h"
@@ -11,33 +11,33 @@
 
 namespace lucerna::photons {
 
-/// By material: whether photons may be stored on it. By its factors alone: what a texture may make diffuse
-/// counts.
+/// By material: true if photons may be stored on it. From its factors alone: a texture may make any material
+/// diffuse.
 std::vector<bool> diffuse_materials(const upload::FlatMaterials& flat);
 
-/// Texels of the index. Two a node: (low corner, bits `next`) (high corner, bits 0 of an inner node, else
-/// first triangle << 3 | triangles). Three a triangle: its vertices, counter-clockwise from its front.
+/// Texels of the index. Two per node: (low corner, bits `next`) (high corner, bits 0 for an inner node, else
+/// first triangle << 3 | triangles). Three per triangle: its vertices, counter-clockwise seen from its front.
 struct SurfaceTree {
   std::vector<vec4> nodes, triangles;
   uint32_t node_count() const { return uint32_t(nodes.size() / 2); }
 };
-/// Triangles of no area are left out. `diffuse`: by material.
+/// Triangles without area are left out. `diffuse`: by material.
 SurfaceTree make_surface_tree(const upload::FlatScene& flat, const std::vector<bool>& diffuse);
 
 class SurfaceIndex {
  public:
-  /// An empty one. Throws Error: no memory.
+  /// Makes an empty index. Throws Error: memory.
   explicit SurfaceIndex(gpu::Device& device);
-  /// Whether it is that of this scene, as far as materials say.
+  /// True if it fits this scene's materials.
   bool serves(const upload::FlatScene& flat) const;
-  /// Its surfaces have moved: it serves no more.
+  /// Call when surfaces have moved.
   void invalidate() { made_ = false; }
-  /// Makes it for that scene; bound resources are then stale. Where there is more than the device can hold in
-  /// an array it stays empty. Throws Error: no memory.
+  /// Builds it for that scene; bound resources are then stale. Stays empty if it exceeds the device's array
+  /// size. Throws Error: memory.
   void make(gpu::Device& device, const upload::FlatScene& flat);
-  /// photon_surface_nodes, photon_surface_triangles.
+  /// Binds photon_surface_nodes and photon_surface_triangles.
   void bind(gpu::Resources& resources) const;
-  /// 0: it is empty.
+  /// Number of nodes; 0: empty.
   uint32_t nodes() const { return nodes_; }
   uint64_t bytes() const { return node_texels_.bytes() + triangle_texels_.bytes(); }
 

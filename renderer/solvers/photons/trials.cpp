@@ -13,13 +13,13 @@ constexpr uint32_t k_block = 8;      // pixels, along each side
 constexpr double k_much_less = 0.5;  // of the first one's product
 constexpr double k_samples = 2;      // a pixel, of a trial
 constexpr double k_certain = 3;      // standard errors
-constexpr double k_missing = 0.5;    // of what is certainly there
+constexpr double k_missing = 0.5;    // of the certain light
 
-/// What one trial says, by block of the picture; behind the blocks, of the whole picture.
+/// Result of one trial, by block of the picture; the last entry is the whole picture.
 struct Noise {
-  std::vector<double> variance;  ///< a pixel each: of one sample's luminance
+  std::vector<double> variance;  ///< per pixel: variance of one sample's luminance
   std::vector<double> around;    ///< mean luminance
-  /// Of a component: mean luminance, its standard error, and the variance of one sample's light that has been
+  /// Of a component: mean luminance, its standard error, and the variance of one sample's light that was
   /// missed (miss()).
   struct Light {
     double mean = 0, error = 0, missed = 0;
@@ -28,7 +28,7 @@ struct Noise {
 };
 
 struct Blocks {
-  uint32_t width, height, across, count;  ///< pixels; blocks in a row, in all
+  uint32_t width, height, across, count;  ///< pixels; blocks in a row; blocks in all
   explicit Blocks(const film::Image& image)
       : width(image.width),
         height(image.height),
@@ -55,7 +55,7 @@ Noise noise_of(const Trial& trial, const Blocks& blocks) {
     for (size_t i = 0; i < n.variance.size(); ++i) {
       const double mean = double(luminance(image.components[c][i])),
                    odd = double(luminance(image.odd_half[c][i]));
-      // The even sample is 2 mean - odd; half the square of the two samples' difference.
+      // The even sample is 2 mean - odd; half the squared difference of the two samples.
       const double variance = 2 * (odd - mean) * (odd - mean);
       n.variance[i] += variance * trial.variance_factor[c];
       for (const size_t b : {blocks.of(i), size_t{blocks.count}})
@@ -65,7 +65,7 @@ Noise noise_of(const Trial& trial, const Blocks& blocks) {
       Noise::Light& l = n.light[c][b];
       const double pixels = blocks.pixels(b);
       l.mean /= pixels;
-      // By the pixels, and by the two samples' means, which have in them what pixels have in common.
+      // From the pixels, and from the means of the two samples, which include common errors of pixels.
       l.error = std::max(std::sqrt(variances[b] / 2) / pixels, std::abs(odds[b] / pixels - l.mean));
       n.around[b] += l.mean;
     }
@@ -104,7 +104,7 @@ size_t judge(std::span<Trial> trials) {
   std::vector<Noise> noises;
   for (const Trial& trial : trials) noises.push_back(noise_of(trial, blocks));
   miss(trials, noises, blocks);
-  // The least luminance around, of trials that have not missed any.
+  // The smallest luminance around, among trials that have missed no light.
   std::vector<double> least(blocks.count + 1, std::numeric_limits<double>::max());
   for (const Noise& n : noises)
     for (size_t b = 0; b <= blocks.count; ++b)

@@ -13,8 +13,8 @@ namespace {
 constexpr uint32_t k_tertiary = 1u << 2;
 constexpr uint32_t k_trial_paths = 1u << 16, k_trial_round = 0xfffffd00u, k_trial_samples = 2;
 
-/// What may be left to paths from the eye, first nothing. Not secondary light without tertiary: what photons
-/// bring at the first diffuse vertex they would have to bring at the second.
+/// Components that may be delegated; first none. Not secondary light without tertiary: photons would have to
+/// compute at the second diffuse vertex what they now compute at the first.
 std::vector<uint32_t> ways(uint32_t own) {
   const uint32_t deep = own & k_deep;
   if (deep == 0) return {};
@@ -26,7 +26,7 @@ std::vector<uint32_t> ways(uint32_t own) {
 }  // namespace
 
 void PhotonSolver::begin_trials(const Picture& picture, bool stale) {
-  // Records' rays, which end in photons, go on for all else and have no pixels to be compared by.
+  // Records' rays that end in photons continue for all other light, and have no pixels to compare.
   const bool tries = sends_ && lights_.power() > 0 && !feeds_ && (picture.task.own & k_deep) != 0 &&
                      picture.task.settings.boolean("photons.efficiency");
   if (!stale && tries == tries_) return;
@@ -45,7 +45,7 @@ void PhotonSolver::delegate(const Picture& picture, uint32_t components) {
 }
 
 uint32_t PhotonSolver::missing(const Picture& picture) const {
-  // Paths that records leave alone go on for it by themselves.
+  // Paths without records continue for it on their own.
   if (feeds_) return 0;
   const bool known = irradiance_ ? irradiance_->readable() : shown_map().complete();
   return known ? 0 : picture.task.own & k_deep & ~delegated_;
@@ -81,8 +81,8 @@ bool PhotonSolver::try_ways(transport::Wavefront& wavefront, const Picture& pict
     return map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel);
   }
   read_standing(wavefront, irradiance_ && !by_rounds);
-  // Paths that bring our own light and nothing else. Where irradiance is known they find it, unless they are
-  // to go on as if it were not.
+  // Paths that compute only own light. They read known irradiance, unless they are to continue as if it were
+  // unknown.
   Task task = picture.task;
   task.own &= ~delegated;
   solvers::Routing routing = routing_of(task);
@@ -104,7 +104,7 @@ bool PhotonSolver::try_ways(transport::Wavefront& wavefront, const Picture& pict
   const double picture_pixels = double(picture.width) * picture.height;
   if (by_rounds) {
     const auto wanted = double(round.paths);
-    // Discs are as wide as the picture's pixels say, of which the trial's are some each.
+    // Discs scale with the picture's pixels, of which a trial's pixel covers several.
     if (!irradiance_ && looked_up != 0) {
       const double radius = radius_law(picture.task.settings).at(k_typical_round);
       trial.pixels_in_common = std::max(1.0, double(k_pi) * radius * radius * pixels / picture_pixels);

@@ -1,4 +1,4 @@
-// What was chosen -> sums of the filtered film.
+// Converts the chosen light to sums of the filtered film.
 #include "lib/film.glsl"
 #include "lib/invocation.glsl"
 #include "film/filter/filter.glsl"
@@ -7,7 +7,7 @@ layout(push_constant, scalar) uniform Push { FilterPush push; };
 uniform samplerBuffer filter_surfaces, filter_chosen, filter_taken;
 layout(scalar) writeonly buffer FilteredSums { vec4 filtered[]; };
 
-// By what light around a pixel is more than taming has left of it: of what was taken, as much as both halves have.
+// Factor that restores the light that taming removed around a pixel, as far as both halves have it.
 float restored(ivec2 xy) {
   ivec2 blocks = (ivec2(push.width, push.height) + int(k_filter_block) - 1) / int(k_filter_block);
   vec2 at = (vec2(xy) + 0.5) / float(k_filter_block) - 0.5;
@@ -22,7 +22,7 @@ float restored(ivec2 xy) {
   return 1.0 + min(min(ratio.x, ratio.y), k_filter_most_restored);
 }
 
-// A half of a pixel: sum over `samples` of them. `mean`: of the samples as they are.
+// Sum over the `samples` of one half of a pixel. `mean`: mean of the unfiltered samples.
 vec3 blended(vec3 chosen, vec3 mean, vec3 albedo, float ratio, float samples) {
   vec3 light = chosen * albedo / push.scale;
   bool same = all(lessThanEqual(abs(light - mean), k_filter_same * mean)) || max3(mean * push.scale / albedo) > k_filter_largest;

@@ -1,4 +1,4 @@
-// How much of what was fitted is taken: as much as the other half of the film does not speak against.
+// Mixes fit and samples: the fit's share is as large as the other half of the film does not contradict.
 #include "lib/invocation.glsl"
 #include "film/filter/filter.glsl"
 layout(local_size_x = 64) in;
@@ -18,12 +18,12 @@ void main() {
     variance += w * w * row.y;
     all += w * row.z;
   }
-  // In the mean `all` is bias^2 + noise^2 of a half, and -`against` is bias^2. Both halves have the bias, but their mean has
-  // half of noise^2: the best share of the fit in it is (noise^2 / 2) / (bias^2 + noise^2 / 2).
+  // The expected value of `all` is bias^2 + noise^2 of a half, that of -`against` is bias^2. Both halves have the bias, but
+  // their mean has half of noise^2: the best share of the fit is (noise^2 / 2) / (bias^2 + noise^2 / 2).
   float bias = clamp(-against - k_filter_doubt * sqrt(variance), 0.0, all);
   float share = all > 0.0 ? (all - bias) / (all + bias) : 0.0;
   FilterLight f = filter_light(texelFetch(filter_fitted, int(pixel))), b = filter_light(texelFetch(filter_before, int(pixel)));
-  // What is left besides the fit is noise as far as it is more than what the other half has left.
+  // The residual beside the fit is noise where it exceeds the residual of the other half.
   vec3 even = b.even - f.even, odd = b.odd - f.odd;
   float e = length(even), o = length(odd);
   even *= e > 0.0 ? min(1.0, k_filter_confirmed * o / e) : 0.0;

@@ -1,12 +1,12 @@
-// What the filter's kernels share: pixels as they lie in its buffers. Method: renderer/film/filter/README.md.
+// Pixels in the filter's buffers, and functions common to its kernels. Method: renderer/film/filter/README.md.
 #ifndef LUCERNA_FILM_FILTER
 #define LUCERNA_FILM_FILTER
 #include "lib/math.glsl"
 #include "film/preview.glsl"
 #include "shaders/shared/filter.h"
 
-// Light of a pixel over the colour of its surface, in the two halves of the film: rgb of one half, rgb of the other, standard
-// deviation of a half (root of the sum of the channels' variances), and that of what both halves have alike (of records).
+// Light of a pixel over the colour of its surface: rgb of both halves of the film, the standard deviation of a half (root of the
+// sum of the channels' variances), and that of the noise common to both halves (of records).
 struct FilterLight {
   vec3 even, odd;
   float deviation, in_both;
@@ -23,12 +23,12 @@ vec4 filter_texel(FilterLight l) {
                                packHalf2x16(min(vec2(l.deviation, l.in_both), vec2(k_largest)))));
 }
 
-// What the samples of a pixel have met, in the mean.
+// Mean of the surfaces that the samples of a pixel have hit.
 struct FilterSurface {
-  float depth;     // [m]; 0: nothing
-  vec3 normal;     // unit; 0: nothing
-  vec3 albedo;     // of what was met and what was not (1), as light is divided by it
-  float covered;   // share of the samples that have met something
+  float depth;     // [m]; 0: no surface
+  vec3 normal;     // unit; 0: no surface
+  vec3 albedo;     // divisor of the light; samples without a hit count as 1
+  float covered;   // share of the samples with a hit
 };
 vec4 filter_texel(FilterSurface s) {
   return vec4(s.depth, uintBitsToFloat(preview_normal(s.normal)), uintBitsToFloat(packHalf2x16(s.albedo.rg)),
@@ -39,10 +39,10 @@ FilterSurface filter_surface(vec4 texel) {
   return FilterSurface(texel.x, b.y > 0.0 ? preview_normal(floatBitsToUint(texel.y)) : vec3(0.0), vec3(rg, b.x), b.y);
 }
 
-// Weight of a pixel `offset` away, on either axis, in what speaks for a fit or against it.
+// Weight, along one axis, of a pixel `offset` away in the evidence for or against a fit.
 float filter_judged_weight(int offset) { return exp2(-k_filter_judged_falloff * float(offset * offset)); }
 
-// How depth changes from pixel to pixel: the smaller of the two differences on each axis, so that an edge beside does not count.
+// Slope of depth per pixel along one axis: the smaller of the two differences, so that an adjacent edge does not count.
 float filter_slope(float before, float here, float after) {
   float a = here - before, b = after - here;
   if (before <= 0.0) a = b;
@@ -50,7 +50,7 @@ float filter_slope(float before, float here, float after) {
   return abs(a) < abs(b) ? a : b;
 }
 
-// Whether a pixel `offset` away shows the same surface: 0..1. `slope`: of depth by pixel, at the first.
+// Similarity of the surface of a pixel `offset` away, 0..1. `slope`: slope of depth per pixel at the first pixel.
 float filter_alike(FilterSurface a, FilterSurface b, vec2 offset, vec2 slope) {
   float z = max(a.depth, 1e-20);
   float reach = 0.01 * z + 0.5 * (abs(slope.x * offset.x) + abs(slope.y * offset.y));

@@ -1,4 +1,4 @@
-// Each half smoothed over the same surface nearby, by which pixels are later compared; and the noise that is left in it.
+// Smooths each half over the same surface nearby, for comparing pixels later, and computes its remaining noise.
 #include "lib/invocation.glsl"
 #include "film/filter/filter.glsl"
 layout(local_size_x = 64) in;

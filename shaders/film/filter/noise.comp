@@ -1,4 +1,4 @@
-// Noise of a half, from the difference of the two around each pixel.
+// Estimates the noise of a half from the difference of the halves around each pixel.
 #include "lib/invocation.glsl"
 #include "film/filter/filter.glsl"
 layout(local_size_x = 64) in;
@@ -29,7 +29,7 @@ void main() {
       weights += w;
     }
   vec3 own = here.even - here.odd;
-  // An outlier's own noise is more than that around it.
+  // The noise of an outlier exceeds that of its surroundings.
   here.deviation = sqrt(0.5 * max(sum / weights, dot(own, own)));
   measured[pixel] = filter_texel(here);
 }

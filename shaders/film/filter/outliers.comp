@@ -1,4 +1,4 @@
-// What taming has taken, by blocks of pixels: both halves have some of it where it is light. One invocation a block.
+// Light removed by taming, per block of pixels; true light is removed from both halves. One invocation a block.
 #include "lib/invocation.glsl"
 #include "film/filter/filter.glsl"
 layout(local_size_x = 64) in;
@@ -11,7 +11,7 @@ void main() {
   uvec2 blocks = (uvec2(push.width, push.height) + k_filter_block - 1u) / k_filter_block;
   if (block >= blocks.x * blocks.y) return;
   uvec2 first = k_filter_block * uvec2(block % blocks.x, block / blocks.x);
-  vec4 sums = vec4(0.0);  // taken from the even and the odd half, left of them
+  vec4 sums = vec4(0.0);  // removed from the even and the odd half, remaining in them
   for (uint y = 0u; y < k_filter_block; ++y)
     for (uint x = 0u; x < k_filter_block; ++x) {
       uvec2 at = first + uvec2(x, y);

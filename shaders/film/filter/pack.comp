@@ -1,4 +1,4 @@
-// A component of the film -> what is filtered: its halves over the colour of the surface, and the surface that the pixel shows.
+// Input of the filter from a component of the film: halves over the colour of the surface, and the surface of the pixel.
 #include "lib/film.glsl"
 #include "lib/invocation.glsl"
 #include "film/filter/filter.glsl"
@@ -26,7 +26,7 @@ void main() {
   s.normal = len > 0.0 ? normal.xyz / len : vec3(0.0);
   s.albedo = max(albedo.rgb / samples + (1.0 - s.covered), vec3(k_filter_least_albedo));
   if (push.seen != 0u) {
-    // Mirrors and glass are what they show.
+    // Mirrors and glass take the surface seen in them.
     PreviewSurface seen = preview_surface(texelFetch(filter_seen, int(pixel)));
     if (seen.samples == k_preview_beyond) {
       bool met = seen.depth > 0.0;
@@ -43,7 +43,7 @@ void main() {
   if (count < 2u) odd = even;
   float in_both = 0.0;
   if ((push.looked_up >> push.component & 1u) != 0u) {
-    // As if records erred in the light of all components alike.
+    // Assumes equal relative record errors in all components.
     float all = 0.0;
     for (uint c = 0u; c < k_component_count; ++c)
       if ((push.looked_up >> c & 1u) != 0u) all += luminance_sum(film_load(c, pixel));

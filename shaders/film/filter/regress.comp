@@ -1,4 +1,4 @@
-// First-order regression of each half on what surfaces are like, over a window whose pixels count by what the other half says.
+// First-order regression of each half on surface features, over a window whose pixels are weighted by the other half.
 #include "lib/invocation.glsl"
 #include "film/filter/filter.glsl"
 layout(local_size_x = 64) in;
@@ -7,7 +7,7 @@ uniform samplerBuffer filter_data, filter_surfaces, filter_guides;
 layout(scalar) writeonly buffer FilterFitted { vec4 fitted[]; };
 #include "film/filter/window.glsl"
 
-// Moments of eight regressors, four and four, and of light.
+// Moments of eight regressors, in two groups of four, and of light.
 struct Moments {
   mat4 aa, ab, bb;
   mat3x4 ya, yb;
@@ -62,7 +62,7 @@ void main() {
       FilterSurface s = filter_surface(texelFetch(filter_surfaces, there));
       FilterLight light = filter_light(texelFetch(filter_data, there)), g = filter_light(texelFetch(filter_guides, there));
       float alike = inside ? filter_alike(window.surface, s, vec2(step), window.slope) : 0.0;
-      // Where nothing else is alike what is nearly so counts.
+      // Almost similar surfaces count where there are no similar ones.
       alike = inside ? max(alike, k_filter_unlike * pow(alike, 0.05)) : 0.0;
       float v = square(g.deviation) + square(g.in_both);
       float by_odd = alike * closeness(guide.odd, g.odd, variance, v), by_even = alike * closeness(guide.even, g.even, variance, v);

@@ -1,6 +1,6 @@
-// Takes from each half what speaks for chance. Light that is brighter than all that the other half has met around it is no more
-// than that; and where both halves are bright in a pixel, although as many pixels are bright in either as would let two meet by
-// chance, they are no brighter than is usual around. What both halves have is light, however small it is.
+// Limits light in each half that is probably chance. Light above the maximum of the other half around it is reduced to that
+// maximum. If both halves are bright in a pixel, but so many pixels are bright in either that two may coincide by chance, they
+// are reduced to the usual brightness around. Light that both halves have stays, however small it is.
 #include "lib/invocation.glsl"
 #include "film/filter/filter.glsl"
 layout(local_size_x = 64) in;
@@ -11,8 +11,8 @@ layout(scalar) writeonly buffer FilterTamed { vec4 tamed[]; };
 const int k_reach = 3, k_unmet_reach = 2;
 const float k_pixels = float((2 * k_reach + 1) * (2 * k_reach + 1));
 
-// Whether it may be chance that `both` pixels are bright in both halves where evens and odds are bright in one: Chernoff's bound
-// of a Poisson variable of mean evens * odds / k_pixels.
+// Whether chance may explain `both` pixels that are bright in both halves, given the numbers of bright pixels in each half:
+// Chernoff's bound of a Poisson variable of mean evens * odds / k_pixels.
 bool by_chance(float both, float evens, float odds) {
   float expected = evens * odds / k_pixels;
   return both <= expected || both - expected + both * log(expected / both) > log(k_filter_chance);
@@ -23,7 +23,7 @@ void main() {
   if (pixel >= push.width * push.height) return;
   ivec2 size = ivec2(push.width, push.height), xy = ivec2(pixel % push.width, pixel / push.width);
   FilterLight here = filter_light(texelFetch(filter_lights, int(pixel)));
-  vec2 own = vec2(luminance(here.even), luminance(here.odd));  // of the even and of the odd half, as all pairs below
+  vec2 own = vec2(luminance(here.even), luminance(here.odd));  // even half, odd half, as in all pairs below
   float bright = min(own.x, own.y), both = 0.0;
   vec2 most = vec2(0.0), count = vec2(0.0), sum = vec2(0.0), squares = vec2(0.0);
   for (int y = -k_reach; y <= k_reach; ++y)

@@ -1,4 +1,4 @@
-// A pixel and what it shows, in the middle of a window. Needs push and filter_surfaces.
+// The pixel at the centre of a window, and its surface. Needs push and filter_surfaces.
 #ifndef LUCERNA_FILM_FILTER_WINDOW
 #define LUCERNA_FILM_FILTER_WINDOW
 struct Window {

@@ -1,6 +1,5 @@
-// What a person asks of an irradiance cache at a pixel of the picture, and what is drawn to answer. Read by
-// C++ and GLSL. Places in the picture are in pixels from its upper left corner; depths are along the view
-// axis [m].
+// Inspection of an irradiance cache at a pixel, and its overlays. Read by C++ and GLSL. Places in the picture are in pixels
+// from its upper left corner; depths are along the view axis [m].
 #ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_INSPECT_H
 #define LUCERNA_SHARED_IRRADIANCE_CACHE_INSPECT_H
 #include "shaders/shared/compat.h"
@@ -17,42 +16,42 @@ struct InspectPush {
   SightGrid grid;
 };
 
-LUCERNA_CONST uint k_lookup_none = 0u;  ///< nothing diffuse is seen
-LUCERNA_CONST uint k_lookup_too_steep = 1u;  ///< no record can serve so steep a normal map (k_surface_bent)
+LUCERNA_CONST uint k_lookup_none = 0u;  ///< the surface is not diffuse
+LUCERNA_CONST uint k_lookup_too_steep = 1u;  ///< the normal map is too steep for records (k_surface_bent)
 LUCERNA_CONST uint k_lookup_possible = 2u;
-/// What the camera sees in a pixel.
+/// The visible surface of a pixel and its lookup.
 struct InspectHeader {
-  uint solid;  ///< 0: nothing, and then nothing else here holds
-  uint lookup;   ///< k_asks_*
-  uint count;  ///< records that serve there; the first k_inspect_most of them are listed
-  uint gathers;  ///< not 0: none does, and those that are there say that paths gather (k_record_crowded)
-  uint under;  ///< of the records whose discs are drawn there the one whose centre is nearest; k_no_record:
+  uint solid;  ///< 0: no surface; then nothing else is valid
+  uint lookup;   ///< k_lookup_*
+  uint count;  ///< number of records that serve; the first k_inspect_most are listed
+  uint gathers;  ///< not 0: no record serves and paths gather (k_record_crowded)
+  uint under;  ///< among the records whose discs cover the pixel, the one with the nearest centre; k_no_record:
                ///< none
-  float size;   ///< of a pixel there [m]
+  float size;   ///< width of a pixel there [m]
   float depth;  ///< [m]
-  vec3 position, normal;  ///< as lookups are asked there; where nothing asks, of what is seen
+  vec3 position, normal;  ///< those of the lookup, or without one of the visible surface
   vec3 under_at;  ///< centre of `under` in the picture, and its depth
 };
-/// A record that serves there.
+/// A record valid there.
 struct InspectServing {
   uint record;
-  float weight;  ///< as lookups weigh it, above 0; not yet divided by their sum
-  vec2 at;       ///< its centre in the picture
-  float depth;   ///< of its centre; not above 0: behind the eye
+  float weight;  ///< weight in lookups, above 0; not divided by the sum of weights
+  vec2 at;       ///< position of its centre in the picture
+  float depth;   ///< depth of its centre; 0 or less: behind the eye
 };
 
-LUCERNA_CONST uint k_overlap_bins = 33u;  ///< pixels by the records that serve them: 0, 1, ... and 32 or more
+LUCERNA_CONST uint k_overlap_bins = 33u;  ///< bins of pixels by number of valid records: 0, 1, ... and 32 or more
 struct OverlapPush {
   uint width, height;
   SightGrid grid;
 };
-/// Counts over the picture's pixels that show something diffuse; the sums of large pictures need the width.
+/// Counts over the picture's pixels with a diffuse surface; sums of large pictures need 64 bits.
 struct OverlapCounts {
   uint pixels[k_overlap_bins];
-  uint gathered;  ///< of those that none serves: where records say that paths gather (k_record_crowded)
-  uint most;        ///< records that serve one pixel
-  WideSum records;  ///< over the pixels
-  WideSum listed;   ///< likewise, of those that the octree lists there
+  uint gathered;  ///< among those without a record, number of pixels where paths gather (k_record_crowded)
+  uint most;        ///< maximum number of valid records at a pixel
+  WideSum records;  ///< sum of valid records over the pixels
+  WideSum listed;   ///< likewise, of the records in the octree's leaf there
 };
 
 /// Lines, and the disc of one record, over a rectangle of the picture.
@@ -60,7 +59,7 @@ struct CacheLinesPush {
   uint width, height;
   uint left, top, across, down;
   uint lines;
-  uint ring;  ///< record whose border is drawn; k_no_record: none
+  uint ring;  ///< record with a drawn border; k_no_record: none
 };
 
 /// Normals of records as short lines from their centres.
@@ -68,7 +67,7 @@ struct CacheNormalsPush {
   uint width, height;
   uint records;
   uint color;    ///< k_record_by_*
-  float lo, hi;  ///< as OverlayPush
+  float lo, hi;  ///< as in OverlayPush
 };
 
 LUCERNA_SHARED_END

@@ -1,20 +1,19 @@
-// How the places of an irradiance cache's records are drawn while they are being chosen. Read by C++ and
-// GLSL.
+// Display of the places of an irradiance cache's records during their selection. Read by C++ and GLSL.
 #ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_PLACEMENT_VIEW_H
 #define LUCERNA_SHARED_IRRADIANCE_CACHE_PLACEMENT_VIEW_H
 #include "shaders/shared/ramp.h"
 LUCERNA_SHARED_BEGIN
 
-// What has become of a place, in the order in which one is drawn over another.
-LUCERNA_CONST uint k_placed_candidate = 0u;  ///< asked for
-LUCERNA_CONST uint k_placed_rejected = 1u;   ///< tried, and not needed beside wider ones
+// State of a place, in drawing order.
+LUCERNA_CONST uint k_placed_candidate = 0u;  ///< candidate only
+LUCERNA_CONST uint k_placed_rejected = 1u;   ///< tried, but a wider record covers it
 LUCERNA_CONST uint k_placed_tried = 2u;      ///< drawn from its cluster
 LUCERNA_CONST uint k_placed_chosen = 3u;     ///< becomes a record
 LUCERNA_CONST uint k_placed_mask = 3u;
 LUCERNA_CONST uint k_placed_origin_shift = 2u;   ///< 2 bits: k_origin_*
-LUCERNA_CONST uint k_placed_cluster_shift = 4u;  ///< the rest: 1 + its cluster; 0: not known
+LUCERNA_CONST uint k_placed_cluster_shift = 4u;  ///< remaining bits: 1 + its cluster; 0: unknown
 
-/// A place to be drawn; those with a radius get a ring in their plane.
+/// A drawn place, with a ring in its plane if it has a radius.
 struct PlacedPoint {
   vec3 position;
   uint bits;  ///< k_placed_*
@@ -22,20 +21,20 @@ struct PlacedPoint {
   float radius;  ///< [m]; 0: no ring
 };
 
-/// A dot for each of `count` places, and for the first `rings` of them a ring.
+/// Draws a dot for each of `count` places, and a ring for the first `rings` of them.
 struct PlacementPush {
   uint count;
   uint rings;
   float dot;        ///< radius of a candidate's dot [pixels]
-  float tried_dot;  ///< ... of a chosen place's; others that were tried are smaller
-  uint by_cluster;  ///< not 0: candidates are coloured by their clusters, else by what asked for them
+  float tried_dot;  ///< ... of a chosen place; other tried ones are smaller
+  uint by_cluster;  ///< not 0: candidates are coloured by cluster, else by origin
 };
 
-/// Inks of what is tried, encoded 0..1; the legend has them too. Chosen: the accent of records that light.
+/// Encoded colours of tried places, 0..1, also used by the legend. Chosen places have the accent of records in use.
 LUCERNA_CONST vec3 k_tried_ink = vec3(1.0f, 1.0f, 1.0f);
 LUCERNA_CONST vec3 k_chosen_ink = vec3(1.0f, 0.86f, 0.45f);
 LUCERNA_CONST vec3 k_rejected_ink = vec3(0.62f, 0.62f, 0.62f);
-/// Clusters are numbered along a curve; those side by side differ in hue, or at least in lightness.
+/// Colour of a cluster. Clusters are numbered along a curve; adjacent ones differ in hue, or at least in lightness.
 LUCERNA_TONE_FUNCTION vec3 placed_cluster_ink(uint cluster) {
   return (1.0f - 0.2f * float(cluster % 3u)) * ramp_hue(cluster);
 }

@@ -1,9 +1,8 @@
-// The records of an irradiance cache. Read by C++ and GLSL.
+// The records of an irradiance cache: layout and kernel parameters. Read by C++ and GLSL.
 //
-// A record holds the irradiance of a point on a surface in parts, so that components stay apart wherever it
-// is read. The parts have the numbers of the components that a path beginning with ED would bring them to:
-// light that comes from the hemisphere straight, over one diffuse event, over more, or over mirrors and glass
-// alone.
+// A record stores the irradiance at a surface point in parts, so that components stay separate wherever it is read. Parts
+// have the numbers of the components of a path that begins with ED: direct light, light over one diffuse event, over more,
+// or over mirrors and glass alone.
 #ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_RECORDS_H
 #define LUCERNA_SHARED_IRRADIANCE_CACHE_RECORDS_H
 #include "shaders/shared/compat.h"
@@ -11,201 +10,195 @@
 #include "shaders/shared/irradiance_cache/discontinuity.h"
 LUCERNA_SHARED_BEGIN
 
-LUCERNA_CONST uint k_part_direct = 0u;     ///< L: in a cache, the sky's alone (E_env; lib/sky.glsl)
+LUCERNA_CONST uint k_part_direct = 0u;     ///< L: in a cache only the sky's (E_env; lib/sky.glsl)
 LUCERNA_CONST uint k_part_secondary = 1u;  ///< [SG]*DL
 LUCERNA_CONST uint k_part_tertiary = 2u;   ///< the rest
 LUCERNA_CONST uint k_part_caustic = 3u;    ///< [SG]+L
 LUCERNA_CONST uint k_part_count = 4u;
-// What share each group of lights has in them stands apart (irradiance_cache/groups.glsl).
+// The shares of light groups in them are stored separately (irradiance_cache/groups.glsl).
 
-/// Files keep the texels below as they are: another number for another meaning of them.
+/// Version of the texels below, as files store them.
 LUCERNA_CONST uint k_record_layout = 5u;
 // record_texels: k_record_texels a record.
-//   0: position xyz [m], moved off its surface by the error bound; radius of validity, the greater of an
+//   0: position xyz [m], moved off its surface by the error bound; radius of validity, the greater one of an
 //   ellipse [m], 0: none yet
-//   1: normal xyz, unit, on the side that is lit; harmonic mean of the distances that its rays met [m]
-//   2: bits rays so far, least distance [m], standard error of the luminance of all parts' sum (irradiance),
-//   bits k_record_*
-//   3: the ellipse of validity: the direction of its greater axis, as long as the root of 1/r^2 - 1/R^2 (0 of
-//   a circle); its lesser radius r [m]
-//   4: of metric `hessian`: what the pilot rays of this record and of those around it say of the light here,
-//   by which its ellipse is made: the Hessian of the irradiance's luminance in tangent and bitangent, xx, xy,
-//   yy [1/m^2], and that luminance
-//   5: bits of the media in which the record lies, as PathState has them; of metric `hessian` the greatest r
-//   at which such an ellipse holds nothing that a ray met [m], 0: not known yet; 0; 0
+//   1: normal xyz, unit, on the lit side; harmonic mean of the distances to its rays' hits [m]
+//   2: bits of the number of rays so far, minimum distance [m], standard error of the luminance of the sum of
+//   all parts (irradiance), bits k_record_*
+//   3: the ellipse of validity: direction of its greater axis with length sqrt(1/r^2 - 1/R^2) (0 for a circle);
+//   its lesser radius r [m]
+//   4: with metric `hessian`: estimate from the pilot rays of this record and its neighbours, which determines
+//   the ellipse: Hessian of the irradiance's luminance in tangent and bitangent, xx, xy, yy [1/m^2], and that
+//   luminance
+//   5: bits of the media that contain the record, as in PathState; with metric `hessian` the greatest r at which
+//   such an ellipse contains no hit [m], 0: unknown; 0; 0
 LUCERNA_CONST uint k_record_texels = 6u;
-/// Most of the greater radius over the lesser.
+/// Maximum ratio of the greater radius to the lesser.
 LUCERNA_CONST float k_record_ratio = 2.0f;
 LUCERNA_CONST uint k_record_pass = 0x7fu;  ///< mask: the pass that placed it, from 0
-/// Something is nearer to it than a few of the least radii, so that what light there is there is too fine to
-/// be interpolated. It holds none, and says of its disc that paths gather there themselves. In the place of
-/// its irradiance it tells them where light comes from (k_guide_*).
+/// Crowded: geometry is nearer than a few minimum radii, so the light there is too fine to interpolate. The record stores no
+/// irradiance; paths within its disc gather. In place of irradiance it stores a guide table (k_guide_*).
 LUCERNA_CONST uint k_record_crowded = 0x80u;
-LUCERNA_CONST uint k_record_origin_shift = 8u;  ///< 2 bits: what asked for it, k_origin_*
+LUCERNA_CONST uint k_record_origin_shift = 8u;  ///< 2 bits: origin of its candidate, k_origin_*
 LUCERNA_CONST uint k_record_facet_shift =
     10u;  ///< 11 + 11 bits: the geometric normal, octahedral (Cigolle et al. 2014)
-LUCERNA_CONST uint k_origin_screen = 0u;  ///< a surface that the camera sees straight
-LUCERNA_CONST uint k_origin_world = 1u;   ///< what it sees in mirrors, through glass or by one diffuse bounce
+LUCERNA_CONST uint k_origin_screen = 0u;  ///< a directly visible surface
+LUCERNA_CONST uint k_origin_world = 1u;   ///< seen in mirrors, through glass or by one diffuse bounce
 LUCERNA_CONST uint k_origin_recursive =
-    2u;  ///< a vertex beyond the lookup: what other records' rays will ask
+    2u;  ///< a vertex beyond the lookup, for rays of other records
 
 // irradiance_texels: k_part_texels for each (record, part), record by record: 16 floats:
 //   irradiance rgb; rotational gradient rgb along the tangent, then along the bitangent; translational
-//   likewise [1/m]; how far off the record the latter holds [m], k_record_slope_most at most.
+//   likewise [1/m]; distance off the record up to which the latter is valid [m], at most k_record_slope_most.
 // Tangent and bitangent are make_basis() of the normal. Rotational gradient: change of the irradiance as the
 // normal n_i turns to n, by the components of n_i x n.
 LUCERNA_CONST uint k_part_texels = 4u;
 LUCERNA_CONST float k_record_slope_most = 1e30f;
 
-// Of a record that crowds the same texels hold one byte for each cell of its hemisphere, elevations of one
-// azimuth in turn: the luminance that its rays brought from there, over the greatest of them. Cells are even
-// in azimuth from the tangent on, and in sin^2 of the angle from the normal.
+// For crowded records the same texels store one byte for each cell of the hemisphere, elevations of one azimuth in turn: the
+// luminance of its rays, over the maximum. Cells are uniform in azimuth from the tangent on, and in sin^2 of the angle from
+// the normal.
 LUCERNA_CONST uint k_guide_azimuths = 32u, k_guide_elevations = 8u;
 LUCERNA_CONST uint k_guide_texels = 16u;
 LUCERNA_CONST uint k_guide_most =
-    126u;  ///< of a byte: read as floats they are never infinite, nor no numbers
+    126u;  ///< maximum value of a byte, so that texels read as floats are neither infinite nor NaN
 LUCERNA_CONST uint k_no_guide = 0xffffffffu;
 
-/// Bytes that a record takes with its sphere and its light as lookups read it; the octree's references come
-/// to that.
+/// Bytes of a record with its sphere and its irradiance for lookups; the references of the octree are
+/// additional.
 LUCERNA_CONST uint k_record_bytes = 16u * (k_record_texels + 2u * k_part_count * k_part_texels + 1u);
 
-// candidate_texels: 2 a path slot, all 0 where there is none:
-//   0: position, off its surface; where there is one 1 + k_origin_* + k_candidate_media times the media
-//   1: smooth normal on the side that asks, bits facet
+// candidate_texels: 2 per path slot, all 0 without a candidate:
+//   0: position, off its surface; 1 + k_origin_* + k_candidate_media times the media
+//   1: smooth normal on the lit side, bits facet
 LUCERNA_CONST uint k_candidate_media = 4u;
 LUCERNA_CONST uint k_candidate_texels = 2u;
 
 struct RelightPreviewPush {
-  vec3 factor;  ///< of the light before; by groups of lights, where these are kept apart, there is more
-  uint count;  ///< records
-  uint sky_group; ///< of lights
+  vec3 factor;  ///< factor on the light; separate light groups have further factors
+  uint count;  ///< number of records
+  uint sky_group; ///< light group of the sky
 };
 
 LUCERNA_CONST uint k_no_routes = 0x4444u;  ///< k_component_count for every part
 
 LUCERNA_CONST uint k_probe_none = 0u;
-/// Vertices that no record serves are noted as candidates. Paths end where they look up, and sample no
-/// lights.
+/// Notes vertices without a record as candidates. Paths end at lookups and sample no lights.
 LUCERNA_CONST uint k_probe_lookups = 1u;
-/// The same, and paths go on: of the diffuse vertices from the lookup on, one by chance is noted.
+/// Likewise, but paths continue, and one of the diffuse vertices from the lookup on is noted at random.
 LUCERNA_CONST uint k_probe_beyond = 2u;
-/// The first vertex is noted where it is diffuse, whether paths look up there and records serve it or not,
-/// and paths end there; where no record can serve its normal map, with an origin below 0.
+/// Notes the first vertex if it is diffuse, with or without a lookup or records, and ends the path there. If its
+/// normal map is too steep for records, the origin is below 0.
 LUCERNA_CONST uint k_probe_screen = 3u;
-/// The last vertex that looks up is noted, whether records serve it or not. Paths end as in k_probe_lookups.
+/// Notes the last vertex with a lookup, with or without records. Paths end as in k_probe_lookups.
 LUCERNA_CONST uint k_probe_reads = 4u;
-/// The same of what records' rays read: paths go on where they look up, and the next vertex that is diffuse
-/// is noted, where they end.
+/// Likewise, for lookups of records' rays: paths continue at lookups, and the next diffuse vertex, where they
+/// end, is noted.
 LUCERNA_CONST uint k_probe_next = 5u;
 
-/// Of the vertices that read records and from which the path goes on by a diffuse event, where it ends, is
-/// noted with its throughput there, in place of a candidate. The mean of what is noted, times
-/// what records there hold, is what pictures read of them.
+/// Notes, in place of a candidate, one of the vertices that read records, with its throughput there. Paths end
+/// at such a vertex or continue by a diffuse event. The mean of the noted throughput times the records'
+/// irradiance there is the light that pictures read from them.
 LUCERNA_CONST uint k_probe_errors = 6u;
-/// The same of what the records themselves have read: paths pass their first lookup over and note one of
-/// those beyond.
+/// Likewise, for the records' own lookups: paths continue past their first lookup and note a later one.
 LUCERNA_CONST uint k_probe_errors_beyond = 7u;
 
-// Noted by these, in candidate_texels:
-//   0: position; bits 1 + state of the automaton + k_note_media times the media, 0: nothing is noted
-//   1: smooth normal on the side that is lit, bits throughput_pack() of the throughput behind the diffuse
-//   lobe, over pi
+// Noted by the last two, in candidate_texels:
+//   0: position; bits 1 + state of the automaton + k_note_media times the media, 0: nothing noted
+//   1: smooth normal on the lit side, bits throughput_pack() of the throughput after the diffuse lobe, over pi
 LUCERNA_CONST uint k_note_media = 32u;
 
-/// leave_one_out.comp leaves for every record, over the luminance of its irradiance: what it is off by where
-/// it ends, by what the others around say of it beyond what it says itself; 0, 0, 0; the same of their errors
-/// in every lane.
+/// Texels of a record's residual by leave_one_out.comp, relative to the luminance of its irradiance: the
+/// interpolation error at its border, from its difference to the other records; 0, 0, 0; likewise the errors
+/// of the records in every lane.
 LUCERNA_CONST uint k_residual_texels = 1u + k_record_lanes / 4u;
 
 struct PropagatePush {
   uint width, height;  ///< of the picture, in pixels of the film
-  uint step;  ///< of which so many along each side have one of this kernel's pixels: a power of 2, at most 8
-  uint pixels;  ///< of these in the item, two paths each
-  uint beyond;  ///< not 0: what records have read counts too
+  uint step;  ///< film pixels along the side of one of this kernel's pixels: a power of 2, at most 8
+  uint pixels;  ///< number of this kernel's pixels in the work item, two paths each
+  uint beyond;  ///< not 0: includes the errors of records that records read
 };
 
-/// What paths are told of the cache.
+/// Parameters of lookups.
 struct CacheFrame {
-  /// By state of the automaton, for the diffuse lobe of a vertex met in it: bits 4 p on: the component to
-  /// which part p goes; k_component_count: none. k_no_routes: no lookup there.
+  /// By state of the automaton at the vertex, for its diffuse lobe: from bit 4 p, the component of part p;
+  /// k_component_count: none. k_no_routes: no lookup there.
   uint routes[32];
   uint record_count;
-  /// Most that the normals of a point and of a record may differ, as 1 - cos.
+  /// Maximum difference of the normals of a point and of a record, as 1 - cos.
   float normal_tolerance;
-  /// How far off the plane between its own and a record's tangent plane, in the record's radius, a point may
-  /// lie and still be served.
+  /// Maximum distance of a point from the plane midway between its own and a record's tangent plane, over the
+  /// record's radius.
   float off_plane;
   uint probing;  ///< k_probe_*
-  /// The same of records no wider than the least radius that a record has there: steps of surfaces that small
-  /// are not seen, and would else ask for ever.
+  /// Likewise, for records of minimum radius: such small steps of surfaces are invisible, and would otherwise
+  /// produce candidates endlessly.
   float off_plane_least;
-  float least_of_distance;  ///< the least radius, of the distance from `eye`; where `parallel`, in metres
-  float least_most;         ///< ... at most [m]
+  float least_of_distance;  ///< minimum radius over the distance from `eye`; if `parallel`, in metres
+  float least_most;         ///< its maximum [m]
   uint parallel;
   vec3 eye;
-  uint branches;  ///< of a path of the picture that gathers
+  uint branches;  ///< branches of a gathering path of the picture
 };
 
-/// One level of evaluation of `records` records: entries `first` on of record_list, elevations x azimuths
+/// One level of evaluation of `records` records: entries of record_list from `first`, elevations x azimuths
 /// paths each.
 struct RecordPush {
   uint first, records;
   uint elevations, azimuths;
-  uint rays_before;  ///< that each of them has had
-  uint parts;        ///< bit p: part p is wanted
-  uint state;        ///< of the automaton after ED
+  uint rays_before;  ///< rays of each record before
+  uint parts;        ///< bit p: part p is computed
+  uint state;        ///< state of the automaton after ED
   uint seed;
-  uint pilot;  ///< not 0: rays that decide how far a record serves and bring it no light
+  uint pilot;  ///< not 0: pilot rays, which set the radius and contribute no light
 };
 
 struct RadiusPush {
   uint first, count;  ///< records
   float error;        ///< radius over harmonic mean distance
   float most;         ///< [m]
-  float near;         ///< ... and over the distance of the nearest thing
-  float crowd;        ///< as EllipsePush has it
+  float near;         ///< maximum radius over the distance of the nearest hit
+  float crowd;        ///< as in EllipsePush
 };
 
 struct ClampPush {
   uint count;      ///< records
-  float near;      ///< lesser radius over the distance of the nearest thing, at most
-  float crowd;     ///< as EllipsePush has it ...
+  float near;      ///< maximum lesser radius over the distance of the nearest hit
+  float crowd;     ///< as in EllipsePush, ...
   uint undecided;  ///< ... for records from this one on
 };
-/// Of a record that none clamps: the bits of infinity.
+/// Value for a record without a clamp: the bits of infinity.
 LUCERNA_CONST uint k_no_bound = 0x7f800000u;
 
-/// How much of the picture reads a record.
+/// Importance: the share of the picture that reads a record.
 struct ImportancePush {
   uint pixels;
-  uint first;  ///< pixels before these
-  uint next;   ///< not 0: there are next places too
+  uint first;  ///< number of pixels before these
+  uint next;   ///< not 0: includes the places of next lookups
 };
-LUCERNA_CONST uint k_importance_steps = 256u;  ///< that a pixel of which a record has all is
-/// Most that a record is to bring through another one, over the irradiance of that: its square in steps is
-/// less than 2^32.
+LUCERNA_CONST uint k_importance_steps = 256u;  ///< importance of a record that provides all light of a pixel
+/// Upper bound of a record's importance through another one, relative to that one: its square in steps is below 2^32.
 LUCERNA_CONST float k_importance_most = 2048.0f;
-LUCERNA_CONST uint k_importance_place = 0x40000000u;  ///< a place is one; above the 22 bits of its normal
+LUCERNA_CONST uint k_importance_place = 0x40000000u;  ///< flag of a place; above the 22 bits of its normal
 
 struct EllipsePush {
   uint first, count;  ///< records
   float reach;        ///< fourth root of 4/pi times the integral of a record's relative error [m^(1/2)]
   float most;         ///< [m]
-  float dark;         ///< irradiance, luminance: records that have less are held against it
-  float near;         ///< lesser radius over the greatest that holds nothing that a ray met, at most
-  float near_tried;   ///< the same where only the distance of the nearest thing is known
-  /// Over the least radius: where something is nearer than that records crowd; 0: it has been decided which
-  /// do.
+  float dark;         ///< minimum luminance of irradiance for relative errors
+  float near;         ///< maximum lesser radius over the greatest one without a hit inside
+  float near_tried;   ///< likewise, if only the distance of the nearest hit is known
+  /// Distance of a hit over the minimum radius, below which records are crowded; 0: crowding is already decided.
   float crowd;
 };
 
-/// Pools what pilot rays have told.
+/// Averages pilot results.
 struct PoolPush {
   uint first, count;  ///< records
 };
 
-// What the overlay colours records by.
+// Quantity that the overlay shows as the colour of records.
 LUCERNA_CONST uint k_record_by_pass = 0u;
 LUCERNA_CONST uint k_record_by_origin = 1u;
 LUCERNA_CONST uint k_record_by_rays = 2u;
@@ -215,7 +208,7 @@ struct OverlayPush {
   uint width, height;
   uint discs, overlap;  ///< not 0: drawn
   uint color;           ///< k_record_by_*
-  float lo, hi;         ///< of the value, logarithmic; 0 < lo < hi
+  float lo, hi;         ///< range of the value, logarithmic; 0 < lo < hi
   float overlap_most;   ///< records at the upper end of the heat map
   SightGrid grid;
 };

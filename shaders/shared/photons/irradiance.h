@@ -1,4 +1,4 @@
-// Irradiance known beforehand, on pieces of surfaces (solvers/photons/irradiance_cells.h). Read by C++ and GLSL.
+// Precomputed irradiance of surface cells (solvers/photons/irradiance_cells.h). Read by C++ and GLSL.
 #ifndef LUCERNA_SHARED_PHOTONS_IRRADIANCE_H
 #define LUCERNA_SHARED_PHOTONS_IRRADIANCE_H
 #include "shaders/shared/transport.h"
@@ -7,17 +7,18 @@ LUCERNA_SHARED_BEGIN
 // Texels of a node: one, and where groups of lights are kept apart one more for each group. (irradiance, link), (irradiance by
 // that group's light, 0). A triangle is cut in four at the middles of its edges, and so on; link: the first of the four nodes of
 // the quarters, or
-LUCERNA_CONST uint k_irradiance_none = 0u;   ///< there have been too few photons; this is node 0
-LUCERNA_CONST uint k_irradiance_known = 1u;  ///< it is the same all over the piece
-LUCERNA_CONST uint k_irradiance_first = 2u;  ///< least link to nodes
-LUCERNA_CONST uint k_irradiance_depth = 14u; ///< most cuts
+LUCERNA_CONST uint k_irradiance_none = 0u;   ///< too few photons; node 0
+LUCERNA_CONST uint k_irradiance_known = 1u;  ///< constant over the cell
+LUCERNA_CONST uint k_irradiance_first = 2u;  ///< first link to nodes
+LUCERNA_CONST uint k_irradiance_depth = 14u; ///< maximum number of splits
 
-/// Of an eye path that looks it up: for these the light is kept that paths of frame.max_depth events bring.
+/// Events of the eye path before the lookup, for the length limit of stored light: paths have at most frame.max_depth
+/// events.
 LUCERNA_CONST uint k_irradiance_events = 1u;
 LUCERNA_CONST uint k_irradiance_component = 2u;  ///< tertiary light
 LUCERNA_CONST uint k_irradiance_whole = 65536u;   ///< 1 of what PhotonSurface::barycentric is in
 
-/// Of a point in a triangle: where in which of its quarters it lies (x, y, quarter).
+/// Position within the quarter of a triangle that contains a point (x, y, quarter).
 LUCERNA_INLINE uvec3 irradiance_quarter(uvec2 at) {
   const uint half_way = k_irradiance_whole / 2u, most = k_irradiance_whole - 1u;
   uvec3 q = at.x >= half_way            ? uvec3(at.x - half_way, at.y, 1u)
@@ -28,11 +29,11 @@ LUCERNA_INLINE uvec3 irradiance_quarter(uvec2 at) {
   return uvec3(x < most ? x : most, y < most ? y : most, q.z);
 }
 
-/// What lookups read.
+/// Parameters of lookups.
 struct IrradianceFrame {
-  uint triangles;  ///< 0: nothing is known
-  uint states[2];  ///< bits: in these states of the eye path it is looked up
-  uint gathers;    ///< 1: where nothing is known the photons with k_photon_unreachable are added up, which no path finds
+  uint triangles;  ///< 0: there is no map
+  uint states[2];  ///< bits: states of the eye path that read it
+  uint gathers;    ///< 1: without data, photons with k_photon_unreachable are summed, whose light no path finds
 };
 
 LUCERNA_SHARED_END
