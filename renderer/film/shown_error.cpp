@@ -23,8 +23,8 @@ constexpr int k_noise_reach = 3;
 constexpr double k_least_ratio = 0.02;
 // Mean square of the errors of 3x3 pixels' means over the square of a tile's mean error.
 constexpr double k_fine = 2;
-// Mean deviation of 3x3 pixels' means in a tile over the quadratic mean estimated so; measured after edits of rooms
-// (lucerna bench latency), where errors of filtered light are finer than k_fine says.
+// Mean deviation of 3x3 pixels' means in a tile over the quadratic mean estimated so; measured after edits of
+// rooms (lucerna bench latency), where errors of filtered light are finer than k_fine says.
 constexpr double k_mean_size = 1.08;
 
 double quantile(std::vector<double> values, double at) {
