@@ -406,14 +406,14 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
   shown_ = draft || sampled != Sampled::none;
   repainted_ = repainted_ && sampled != Sampled::all;
 
-  PreviewShares told;
+  PreviewShares shares;
   double all = 0;
   const auto* sums = static_cast<const shared::PreviewShares*>(shares_.mapped());
   for (uint32_t g = 0; g < groups(pixels()); ++g)
-    all += sums[g].all, told.stale += sums[g].stale, told.filtered += sums[g].filtered;
-  told.error = errors_.judge(tiles(), tile_count(width_), measured);
-  if (all > 0) told.stale /= all, told.filtered /= all;
-  return told;
+    all += sums[g].all, shares.stale += sums[g].stale, shares.filtered += sums[g].filtered;
+  shares.error = errors_.judge(tiles(), tile_count(width_), measured);
+  if (all > 0) shares.stale /= all, shares.filtered /= all;
+  return shares;
 }
 
 }  // namespace lucerna::film

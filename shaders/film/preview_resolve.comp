@@ -188,7 +188,7 @@ bool isolated(ivec2 at, PreviewSurface here) {
 
 void main() {
   uint pixel = global_index(), lane = gl_LocalInvocationIndex;
-  vec4 shares = vec4(0.0);
+  vec4 pixel_shares = vec4(0.0);
   if (pixel < push.width * push.height) {
     vec4 surface = vec4(-1.0, 0.0, 0.0, 0.0);
     PreviewLight own;
@@ -324,18 +324,18 @@ void main() {
       result.of[c] = vec4(now, nothing && !has_old ? -1.0 : left);
       if ((push.show >> c & 1u) != 0u) color += now;
       float showing = float(push.show >> c & 1u), shown = luminance(now) * showing;
-      shares.xyz += vec3(shown, keep * shown, amount * (1.0 - keep) * shown);
+      pixel_shares.xyz += vec3(shown, keep * shown, amount * (1.0 - keep) * shown);
       // Pixels' own samples are independent; what is filtered, or was there before, errs alike in pixels side by side.
       variance += showing * (square(1.0 - keep) * (square((1.0 - amount) * noise[c]) / 9.0 + square(amount * smooth_error)) + of_before);
       unknown = unknown || (nothing && !has_old);
     }
-    told.xyz = min(told.xyz, vec3(4.0));
-    told.w = unknown ? 1.0 : min(k_mean_deviation * sqrt(variance) / max(luminance(color), k_preview_dark), 1.0);
-    shown_pixels[pixel] = packHalf2x16(vec2(min(luminance(color), 60000.0), told.w));
+    pixel_shares.xyz = min(pixel_shares.xyz, vec3(4.0));
+    pixel_shares.w = unknown ? 1.0 : min(k_mean_deviation * sqrt(variance) / max(luminance(color), k_preview_dark), 1.0);
+    shown_pixels[pixel] = packHalf2x16(vec2(min(luminance(color), 60000.0), pixel_shares.w));
     LUCERNA_PREVIEW_STORE(packed, pixel, result)
     picture[pixel] = picture_packed(tone_map(color, push.curve));
   }
-  group_shares[lane] = shares;
+  group_shares[lane] = pixel_shares;
   barrier();
   if (lane == 0u) {
     vec4 sum = vec4(0.0);

@@ -108,9 +108,9 @@ RecordLot draw_record(RecordLot lot, uint record, vec3 light) {
 #endif
 
 // The records that may serve a point; none when nothing is asked, or while the cache holds none that are complete.
-OctreeRange cache_range(vec3 x, bool active) {
+OctreeRange cache_range(vec3 x, bool enabled) {
   OctreeRange range = octree_find(x);
-  return OctreeRange(range.first, active && cache.record_count > 0u ? range.last : range.first);
+  return OctreeRange(range.first, enabled && cache.record_count > 0u ? range.last : range.first);
 }
 
 // A record on its own, as it stands in the octree's lists.
@@ -203,13 +203,13 @@ void share_out(inout Cached found, uint record, vec3 light) {
 // what the gradient of rotation can bridge; beyond that nothing is served. `asks` false: an empty answer, without work.
 // `media`: that the point lies in, as PathState has them; records of others have other light. `u`: a number in [0, 1) by which
 // a record is drawn where groups of lights are kept apart.
-Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint media, bool active, float u) {
+Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint media, bool enabled, float u) {
   Cached found = nothing_cached();
 #if LUCERNA_GROUP_SUMS
   RecordLot lot = RecordLot(Reservoir(u, 0.0), 0u, vec3(0.0));
 #endif
   Nearest nearest = nothing_near();
-  OctreeRange range = cache_range(x, active && cache_can_serve(n, shading));
+  OctreeRange range = cache_range(x, enabled && cache_can_serve(n, shading));
   for (uint i = range.first; i < range.last;) {
     Serving s = next_serving(i, range.last, x, n, media);
     meet(s, x, nearest, found.guide);
@@ -238,13 +238,13 @@ Cached cache_lookup(vec3 x, vec3 n, vec3 shading, uint media, bool active, float
 
 // The same of one of the records that serve, each drawn with its share in the weight: right in the mean over `u`. Records that
 // serve a place differ by little, and of a drawn one alone the light is read, which takes a third of the time of a lookup away.
-Cached cache_draw(vec3 x, vec3 n, vec3 shading, uint media, bool active, float u) {
+Cached cache_draw(vec3 x, vec3 n, vec3 shading, uint media, bool enabled, float u) {
   Cached found = nothing_cached();
   Reservoir drawing = Reservoir(u, 0.0);
   uint record = 0u;
   vec3 place = vec3(0.0), facing = vec3(0.0, 0.0, 1.0);
   Nearest nearest = nothing_near();
-  OctreeRange range = cache_range(x, active && cache_can_serve(n, shading));
+  OctreeRange range = cache_range(x, enabled && cache_can_serve(n, shading));
   for (uint i = range.first; i < range.last;) {
     Serving s = next_serving(i, range.last, x, n, media);
     meet(s, x, nearest, found.guide);
