@@ -3,7 +3,8 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <utility>
+#include <set>
+#include <span>
 #include <vector>
 
 #include "film/developer.h"
@@ -29,26 +30,43 @@ solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
                       const solvers::SolverInfo& solver, const plan::Settings& settings,
                       const upload::Effects& effects);
 
+/// What a solver is made for besides its task and its own settings.
+struct MadeFor {
+  gpu::Defines scene_defines;
+  uint32_t slots = 0;          ///< of the wavefront
+  upload::LightSeparation lights;  ///< as the picture begun last has them
+  bool operator==(const MadeFor&) const = default;
+};
+
+/// A solver of an earlier engine, with its work.
+struct Predecessor {
+  std::shared_ptr<solvers::Solver> solver;
+  MadeFor made_for;
+  scene::Changes since;  ///< its last picture
+  bool kept = false;     ///< it has been out of use meanwhile: `since` are all changes
+};
+
 class Engine {
  public:
   /// `before`: one whose film kernels, which know neither scene nor plan, serve on; null: they are compiled.
-  /// Throws Error: kernels that do not compile (located), no memory, a component's light that two solvers
-  /// would bring.
+  /// `predecessors`: of each kind the first that serves the task works on as it is (working_on); if none
+  /// does, a new solver is made, which adopts the work of the first whose work holds in part. No predecessor
+  /// changes before begin(). Throws Error: kernels that do not compile (located), no memory, a component's
+  /// light that two solvers would bring.
   Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
          const World& world, const plan::Plan& plan, const plan::Settings& settings, gpu::Defines defines,
-         const Engine* before);
+         const Engine* before, std::span<const Predecessor> predecessors);
 
   /// Whether kernels and solvers do for another plan and these settings of the same world.
   bool serves(const plan::Plan& plan, const plan::Settings& settings, const World& world) const;
   /// For another plan that it serves.
   void set_plan(const plan::Plan& plan) { plan_ = plan; }
   const plan::Plan& plan() const { return plan_; }
-  /// Takes over what the solvers of another engine have, where `changes` do not spoil all of it.
-  void adopt(const Engine& before, const scene::Changes& changes);
-  /// The same of one solver, that has made no picture since these changes.
-  void adopt(const solvers::Solver& before, const scene::Changes& since);
-  /// For an engine that is given up: its solvers with their work.
-  std::vector<std::unique_ptr<solvers::Solver>> release_solvers() { return std::exchange(solvers_, {}); }
+  /// Whether one of this engine's solvers has taken up that one's work when the engine was made.
+  bool took_up(const solvers::Solver& predecessor) const;
+  const MadeFor& made_for() const { return made_for_; }
+  /// Of the picture begun last.
+  const std::map<std::string, std::string>& begun_settings() const { return begun_settings_; }
   /// The picture begins anew: sets the wavefront's frame, and tells the solvers.
   /// `light_factors`: solvers::Picture::light_factors.
   void begin(const PictureView& picture, const scene::Changes& changes,
@@ -58,7 +76,7 @@ class Engine {
   film::ErrorEstimator& estimator() { return *estimator_; }
   transport::Wavefront& wavefront() { return *wavefront_; }
   const transport::Wavefront& wavefront() const { return *wavefront_; }
-  const std::vector<std::unique_ptr<solvers::Solver>>& solvers() const { return solvers_; }
+  const std::vector<std::shared_ptr<solvers::Solver>>& solvers() const { return solvers_; }
   /// Null: that one is not at work.
   solvers::Solver* find(std::string_view name) const;
   /// The next that is not ready; null: all are.
@@ -106,9 +124,14 @@ class Engine {
   bool looked_up_besides(size_t component) const;
   double compile_seconds() const { return compile_seconds_; }
   /// That the wavefront's kernels were made with, for others that work on its paths.
-  const gpu::Defines& defines() const { return scene_defines_; }
+  const gpu::Defines& defines() const { return made_for_.scene_defines; }
 
  private:
+  /// The first of the predecessors that can work on as it is: made for the same scene and lights, serving the
+  /// task, and with the same settings of its own. Null: none.
+  const Predecessor* working_on(const solvers::SolverInfo& info, const solvers::Task& task,
+                                std::span<const Predecessor> predecessors) const;
+  void take_up(std::span<const Predecessor> predecessors);
   /// Of all solvers together. Throws Error, located at the component, where two of them
   /// bring the same light.
   solvers::Routing routing(const plan::Plan& plan, const plan::Settings& settings,
@@ -130,13 +153,15 @@ class Engine {
 
   const paths::Automaton& automaton_;
   plan::Plan plan_;
-  gpu::Defines scene_defines_;  ///< that the kernels were made with
   gpu::Defines learned_defines_;
   bool begun_ = false;
   bool learned_elsewhere_ = false;  ///< from another view
   Routes routes_;                   ///< of the picture begun last
-  std::vector<std::unique_ptr<solvers::Solver>> solvers_;
-  /// What solvers that were adopted alone have missed before the next picture.
+  std::vector<std::shared_ptr<solvers::Solver>> solvers_;
+  MadeFor made_for_;
+  std::map<std::string, std::string> begun_settings_;
+  std::set<const solvers::Solver*> taken_up_;  ///< of the predecessors
+  /// Of solvers with work that was kept: all changes since its last picture.
   std::map<const solvers::Solver*, scene::Changes> missed_;
   std::unique_ptr<transport::Wavefront> wavefront_;
   std::shared_ptr<film::Developer> developer_;

@@ -88,7 +88,9 @@ class Solver {
   virtual std::string hook() const { return ""; }
   /// Sets what the hook reads; called again after Wavefront::rebind_lookup().
   virtual void bind(gpu::Resources& resources) const { (void)resources; }
-  /// Whether kernels and solver, made for another task, do for this one: else both are made anew.
+  /// Whether the solver, made for another task, can do this one too, and kernels that call its hook as well.
+  /// If so it goes on with its work, also in another engine of the same scene; else another solver is made.
+  /// Settings of its own that restart the picture are the same (they are read when it is made).
   virtual bool serves(const Task& task) const = 0;
 
   // Its work.
