@@ -38,7 +38,7 @@ inline constexpr Invalidation k_invalidates_all{.coverage = true, .light = true,
 /// One row of a solver's table of changes.
 struct ChangeRow {
   /// An edit, or the settings whose keys begin with this ("cache.rays", "film."); of several rows the longest
-  /// counts.
+  /// counts, and a solver's own before a default.
   std::variant<scene::Change, std::string_view> change;
   Invalidation invalidates;
   std::string_view why;
@@ -107,7 +107,7 @@ struct SolverInfo {
   /// (film::GroupStorage::compact).
   bool by_groups = false;
   std::vector<OptionInfo> options{};
-  std::vector<ChangeRow> changes{};
+  std::vector<ChangeRow> changes{};  ///< its own rows; default_changes() has those that most solvers share
   std::vector<ViewInfo> views{};
   std::vector<CommandInfo> commands{};
   std::optional<FileInfo> file{};
@@ -123,10 +123,14 @@ struct SolverInfo {
 
 /// Null when there is no such command.
 const CommandInfo* find_command(const SolverInfo& solver, std::string_view name);
-/// By the solver's own rows: of an edit, k_invalidates_all where there is no row.
+/// Rows that are the same for most solvers: edits of lights and shapes, and settings that no solver owns.
+std::span<const ChangeRow> default_changes();
+/// All rows that count for a solver: its own, then the defaults of which it has no row of its own.
+std::vector<ChangeRow> changes_of(const SolverInfo& solver);
+/// By these rows: of an edit, k_invalidates_all where there is no row.
 Invalidation invalidated_by(const SolverInfo& solver, scene::Change edit);
 /// Of a setting that is the solver's own or nobody's: k_invalidates_all where no row fits. Settings of
-/// another solver spoil nothing; the registry knows whose they are (registry.h).
+/// another solver invalidate nothing; the registry knows whose they are (registry.h).
 Invalidation invalidated_by(const SolverInfo& solver, std::string_view key);
 
 }  // namespace lucerna::solvers
