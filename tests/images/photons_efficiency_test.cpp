@@ -123,7 +123,7 @@ TEST_CASE("regions are shown, and the same for the same scene, view and settings
   test::set(r, settings);
   const film::Image once = test::finish(r);
   const std::vector<uint8_t> plain = r.picture(false);
-  test::set(r, {{"overlay.photon_density", "worth"}});
+  test::set(r, {{"overlay.photon_density", "caustics"}});
   CHECK(r.picture(false) != plain);
   const auto& photons = dynamic_cast<photons::PhotonSolver&>(*r.solver("photons"));
   const std::vector<float> shown = photons.inspector().densities();
