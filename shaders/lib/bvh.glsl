@@ -55,8 +55,6 @@ const uint k_bvh_done = 0xffffffffu;  // no link: no leaf has 7 triangles
 // where the ray is within a box that lies in these (bvh_within_box()), but for up to 20 roundings of the distance. Faces are
 // moved towards and away from the ray's origin by 34 roundings of both terms. So what is allowed for grows with the box and
 // with its distance from the ray, never with the scene.
-const float k_bvh_slack = 2e-6;
-
 // The four bytes of a word, the lowest first.
 vec4 bvh_bytes(uint w) { return vec4(ivec4(uvec4(w, w >> 8, w >> 16, w >> 24) & 0xffu)); }
 
