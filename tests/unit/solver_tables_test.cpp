@@ -17,7 +17,8 @@ TEST_CASE("every setting of the picture has a row in each solver's table of chan
       const solvers::SolverInfo* owner = solvers::owner_of(option.key);
       if (owner && owner != solver) continue;
       INFO(solver->name << ": " << option.key);
-      CHECK(std::any_of(solver->changes.begin(), solver->changes.end(), [&](const solvers::ChangeRow& row) {
+      const std::vector<solvers::ChangeRow> rows = solvers::changes_of(*solver);
+      CHECK(std::any_of(rows.begin(), rows.end(), [&](const solvers::ChangeRow& row) {
         const auto* head = std::get_if<std::string_view>(&row.change);
         return head && option.key.starts_with(*head);
       }));
@@ -30,6 +31,34 @@ TEST_CASE("every setting of the picture has a row in each solver's table of chan
     CHECK(solvers::invalidated_by(*solver, relit).light);
     CHECK_FALSE(solvers::invalidated_by(*solver, relit).places);
   }
+}
+
+TEST_CASE(
+    "changes that mean the same to all solvers are in one table, and a solver's own row counts instead") {
+  solvers::SolverInfo solver{.name = "some"};
+  const auto invalidated = [&](const char* key) { return solvers::invalidated_by(solver, key); };
+  CHECK(invalidated("film.ev") == solvers::k_invalidates_nothing);
+  CHECK(invalidated("preview.filter") == solvers::k_invalidates_nothing);
+  CHECK(invalidated("relight.mix") == solvers::k_invalidates_light);
+  CHECK(invalidated("relight.layers") == solvers::k_invalidates_nothing);
+  CHECK(solvers::invalidated_by(solver, scene::Change::lamp) == solvers::k_invalidates_light);
+  CHECK(solvers::invalidated_by(solver, scene::Change::camera) == solvers::k_invalidates_all);
+  CHECK(invalidated("unheard.of") == solvers::k_invalidates_all);
+  solver.changes = {{"film.", solvers::k_invalidates_coverage, "as a test"},
+                    {"film.ev", solvers::k_invalidates_light, "as a test"},
+                    {scene::Change::lamp, solvers::k_invalidates_nothing, "as a test"}};
+  CHECK(invalidated("film.layer") == solvers::k_invalidates_coverage);
+  CHECK(invalidated("film.ev") == solvers::k_invalidates_light);
+  CHECK(solvers::invalidated_by(solver, scene::Change::lamp) == solvers::k_invalidates_nothing);
+  CHECK(invalidated("preview.filter") == solvers::k_invalidates_nothing);
+
+  // A row that says what the default says is a copy of it.
+  for (const solvers::SolverInfo* own : solvers::registered())
+    for (const solvers::ChangeRow& row : own->changes)
+      for (const solvers::ChangeRow& general : solvers::default_changes()) {
+        INFO(own->name << ": " << row.why);
+        CHECK_FALSE((row.change == general.change && row.invalidates == general.invalidates));
+      }
 }
 
 TEST_CASE("views, commands and files of every solver are valid for window and scripts") {
