@@ -45,12 +45,14 @@ struct StageStatus {
   bool host = false;
 };  ///< since the image started
 
-/// The scale of the heat map that a picture shows.
+/// The scale of a layer that does not show light.
 struct Legend {
-  uint32_t layer = 0;  ///< shared::k_layer_samples, _error (relative) or _cost (ms a pixel); 0: no heat map
-  uint32_t ramp = 0;   ///< shared::k_ramp_*
+  /// shared::k_layer_albedo, _normal, _depth, or a heat map: _samples, _error (relative), _cost (ms per
+  /// pixel); 0: light.
+  uint32_t layer = 0;
+  uint32_t ramp = 0;  ///< of a heat map: shared::k_ramp_*
   bool logarithmic = false;
-  float lo = 0, hi = 1;  ///< values at its ends
+  float lo = 0, hi = 1;  ///< values at its ends; of depth [m]
 };
 
 /// What the window draws: replaced as a whole, never changed after publishing.
@@ -62,8 +64,9 @@ struct Snapshot {
   /// before their turn, or the load was given up), in order; null: none. What was there before them stays.
   std::shared_ptr<const std::vector<uint64_t>> refused;
   uint32_t width = 0, height = 0;  ///< of the picture
-  std::vector<uint8_t> rgba;       ///< width * height * 4, sRGB, top row first; tone-mapped
-  Legend legend;                   ///< of the picture, where it is a heat map
+  uint32_t scale = 1;              ///< of rgba: its pixels per pixel of the picture, along a side
+  std::vector<uint8_t> rgba;       ///< width * height * scale^2 * 4, sRGB, top row first; tone-mapped
+  Legend legend;                   ///< of the picture's layer
   bool tiles = false;              ///< the picture has its tiles drawn over it
   uint32_t samples = 0;            ///< complete samples a pixel
   double mean_samples = 0;         ///< a pixel, of those there are

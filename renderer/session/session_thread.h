@@ -209,6 +209,7 @@ struct Session::Impl {
     const film::View view = r.view();
     next.legend = {};
     if (view.layer >= shared::k_layer_samples)
+    if (view.layer >= shared::k_layer_albedo) next.legend = {.layer = view.layer, .hi = view.scale};
       next.legend = {view.layer, view.heat.ramp, view.heat.logarithmic, view.heat.lo, view.heat.hi};
     next.tiles = view.tiles > 0;
     next.samples = r.samples();

@@ -128,6 +128,8 @@ struct Legend {
   std::optional<Range> range;  ///< in place of `ticks`
   std::vector<Mark> marks;
   bool marks_in_line = true;  ///< side by side, as many as there is room for; else one below the other
+  /// What is drawn and what its colours mean, in one to three sentences.
+  std::string note = {};
 };
 
 /// What lies under the pointer, from the top down.

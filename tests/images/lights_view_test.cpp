@@ -71,6 +71,7 @@ TEST_CASE("arrows show the lights of a point with their shares; a map which shad
     REQUIRE(report);
     REQUIRE(report->legends.size() == 1);
     CHECK(report->legends[0].ramp);
+    CHECK_FALSE(report->legends[0].note.empty());
     CHECK(report->figure("arrived") > 0.02);
   }
   test::set(r, {{"overlay.light_arrival", "false"}});

@@ -15,7 +15,7 @@ struct LightTracingReport {
   uint32_t casters = 0;
   double unaimed = 1;                     ///< share of the paths
   std::vector<overlay::AimedPair> aimed;  ///< greatest share first
-  bool aim_shown = false;
+  bool paths_shown = false, aim_shown = false;
   double sent_per_s = 0;  ///< 0: not yet known
   uint64_t bytes = 0;
 };

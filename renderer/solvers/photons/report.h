@@ -31,7 +31,7 @@ struct PhotonReport {
   double delegation_gain = 1;             ///< of efficiency by that, as the pilot sees it
   bool ready = true;                      ///< the pilot is done
   std::vector<overlay::AimedPair> aimed;  ///< greatest share first
-  bool aim_shown = false;
+  bool paths_shown = false, aim_shown = false;
   uint64_t bytes = 0;
   double trace_s = 0, build_s = 0;                               ///< of the picture's rounds
   double emitted_per_s = 0, stored_per_s = 0, sorted_per_s = 0;  ///< 0: not yet known

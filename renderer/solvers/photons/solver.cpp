@@ -476,6 +476,7 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.radius_law = radius_law(s);
   r.radius_pixels = r.radius_law.at(rounds_ > 0 ? last_sample_ : 0);
   r.at_floor = r.radius_pixels <= r.radius_law.floor;
+  r.paths_shown = s.boolean("overlay.photon_paths");
   const auto pixel = double(2 * glm::length(picture.frame.camera_right) / float(picture.frame.width));
   r.limited = r.radius_pixels * pixel >
               double(picture.frame.orthographic ? most_radius(picture.frame) : k_photon_most_slope);
