@@ -22,8 +22,10 @@ class Developer {
   /// So that the first mix does not wait for a compiler. Does nothing where it has been done, and where the
   /// film is not Film::quick(). Runs the stream. Throws Error, located.
   void prepare_mix(gpu::Stream& stream, const Film& film, const View& view);
-  /// Draws over the film's picture the state of its tiles, where the view has any. Runs the stream.
-  void draw_tiles(gpu::Stream& stream, const Film& film, const View& view);
+  /// Draws over a picture the state of the film's tiles, where the view has any. `scale`: pixels of that
+  /// picture per pixel of the film, along a side; lines are one pixel of it wide. Runs the stream.
+  void draw_tiles(gpu::Stream& stream, const Film& film, const View& view, const gpu::Buffer& picture,
+                  uint32_t scale);
 
  private:
   void develop(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse);

@@ -140,6 +140,8 @@ class Session {
   /// Of several in a row that are not carried out yet only the last one counts; they have one number.
   void set_camera(const scene::Camera& camera, SceneId scene = k_any_scene);
   void set_size(uint32_t width, uint32_t height);
+  /// Renderer::set_window_scale.
+  void set_window_scale(uint32_t scale);
   void set_light(uint32_t index, const scene::Light& light, SceneId scene = k_any_scene);
   void set_environment(float scale, float rotation_degrees, SceneId scene = k_any_scene);
   /// Renderer::set_environment_file

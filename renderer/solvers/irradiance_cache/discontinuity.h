@@ -9,6 +9,7 @@
 #include <functional>
 #include <vector>
 
+#include "overlay/canvas.h"
 #include "overlay/sight.h"
 #include "shaders/shared/irradiance_cache/discontinuity.h"
 #include "solvers/irradiance_cache/placement.h"
@@ -74,7 +75,7 @@ class Discontinuity {
   Placement::Screen screen() const;
   /// Lays a level of the pyramid that was measured last over a picture of the frame's size, as colours
   /// (k_ramp_magma, 0 to 1); levels beyond the last count as that. The stream is not run.
-  void draw(gpu::Stream& stream, const gpu::Buffer& picture, uint32_t level);
+  void draw(const overlay::Canvas& canvas, uint32_t level);
 
   uint32_t levels() const;  ///< of which the last has one cell
   uint64_t bytes() const;
