@@ -103,23 +103,26 @@ class Writer {
   float y_;
 };
 
-/// The position of a card of that size in a corner that does not cover `place`; nothing if every corner does,
-/// or there is no room.
-std::optional<ImVec2> free_corner(const Area& area, const ImVec2& size, float edge, const ImVec2& place) {
+/// Where a card of that size lies in a corner, neither over a place nor over `taken`; nothing if no corner is
+/// free, or if it has no room.
+std::optional<ImVec2> free_corner(const Area& area, const ImVec2& size, float edge, const ImVec2& place,
+                                  const Area& taken) {
   if (size.x + 2 * edge > area.width() || size.y + 2 * edge > area.height()) return std::nullopt;
   const float left = area.lo.x + edge, right = area.hi.x - edge - size.x;
   const float top = area.lo.y + edge, bottom = area.hi.y - edge - size.y, clear = px(40);
   for (const ImVec2& lo : {ImVec2(right, top), ImVec2(left, top), ImVec2(right, bottom)}) {
     const bool over = place.x > lo.x - clear && place.x < lo.x + size.x + clear && place.y > lo.y - clear &&
                       place.y < lo.y + size.y + clear;
-    if (!over) return ImVec2(std::floor(lo.x), std::floor(lo.y));
+    const bool covers =
+        lo.x < taken.hi.x && lo.x + size.x > taken.lo.x && lo.y < taken.hi.y && lo.y + size.y > taken.lo.y;
+    if (!over && !covers) return ImVec2(std::floor(lo.x), std::floor(lo.y));
   }
   return std::nullopt;
 }
 
 }  // namespace
 
-void draw_inspection(Ui& ui, const Area& area) {
+void draw_inspection(Ui& ui, const Area& area, const Area& legend) {
   if (!ui.snapshot || !ui.snapshot->activity.empty()) return;
   // The cards of all solvers with data there, one below the other on a common background.
   std::vector<const Card*> cards;
@@ -142,11 +145,11 @@ void draw_inspection(Ui& ui, const Area& area) {
   const ImVec2 at(area.lo.x + place->x * area.width(), area.lo.y + place->y * area.height());
   const float w = px(k_width), edge = px(12);
   float h = write(nullptr, {0, 0});
-  std::optional<ImVec2> lo = free_corner(area, {w, h}, edge, at);
+  std::optional<ImVec2> lo = free_corner(area, {w, h}, edge, at, legend);
   if (!lo) {
     room = Card::Room::little;
     h = write(nullptr, {0, 0});
-    lo = free_corner(area, {w, h}, edge, at);
+    lo = free_corner(area, {w, h}, edge, at, legend);
   }
   if (!lo) return;
   const ImVec2 hi(lo->x + w, lo->y + h);

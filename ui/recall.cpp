@@ -72,6 +72,9 @@ Json state_of(const Ui& ui) {
   json["strip"] = {{"passes", ui.layout.passes_share}, {"log", ui.layout.log_share}};
   json["left_open"] = ui.layout.left_open, json["right_open"] = ui.layout.right_open,
   json["bottom_open"] = ui.layout.bottom_open;
+  json["arranged"] = {{"left", ui.layout.left_arranged},
+                      {"right", ui.layout.right_arranged},
+                      {"bottom", ui.layout.bottom_arranged}};
   json["welcomed"] = ui.welcomed;
   auto& bookmarks = json["bookmarks"] = Json::object();
   for (const auto& [scene, views] : ui.bookmarks)
@@ -119,6 +122,12 @@ void take_panels(const Json& json, Ui& ui) {
     layout.left_open = json.value("left_open", true);
     layout.right_open = json.value("right_open", true);
     layout.bottom_open = json.value("bottom_open", true);
+    // A file without this holds what the user has changed where it differs from the defaults.
+    const auto arranged = json.value("arranged", Json::object());
+    const Layout fresh;
+    layout.left_arranged = arranged.value("left", !layout.left_open || layout.left != fresh.left);
+    layout.right_arranged = arranged.value("right", !layout.right_open || layout.right != fresh.right);
+    layout.bottom_arranged = arranged.value("bottom", !layout.bottom_open || layout.bottom != fresh.bottom);
     ui.layout = layout;
     ui.welcomed = json.value("welcomed", false);
     const auto sections = json.value("sections", Json::object());

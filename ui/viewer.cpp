@@ -150,7 +150,8 @@ class Viewer {
 
   void draw() {
     if (std::exchange(fresh_picture_, false) && !ui_.snapshot->rgba.empty()) {
-      ui_.texture = window_.upload(ui_.snapshot->rgba, ui_.snapshot->width, ui_.snapshot->height);
+      ui_.texture = window_.upload(ui_.snapshot->rgba, ui_.snapshot->scale * ui_.snapshot->width,
+                                   ui_.snapshot->scale * ui_.snapshot->height);
       ui_.texture_width = ui_.snapshot->width, ui_.texture_height = ui_.snapshot->height;
     }
     --ui_.frames_wanted;
@@ -188,6 +189,8 @@ class Viewer {
     const std::pair<uint32_t, uint32_t> room{divided(ui_.picture.width(), ratio.x),
                                              divided(ui_.picture.height(), ratio.y)};
     const std::pair<uint32_t, uint32_t> size = ui_.picture_size.value_or(room);
+    if (std::exchange(sent_scale_, ui_.picture_divisor) != ui_.picture_divisor)
+      ui_.session.set_window_scale(static_cast<uint32_t>(ui_.picture_divisor));
     const bool first = wanted_size_.first == 0;
     if (size != wanted_size_) wanted_size_ = size, size_changed_at_ = ui_.now;
     if (size_changed_at_ >= 0 && (ui_.now - size_changed_at_ >= k_settle || first || ui_.picture_size)) {
@@ -240,6 +243,7 @@ class Viewer {
   bool fresh_picture_ = false;
   double last_draw_ = -1, last_present_ = 0, hovering_since_ = -10;
   std::pair<uint32_t, uint32_t> wanted_size_{0, 0};
+  int sent_scale_ = 1;  ///< picture_divisor as the session has it
   double size_changed_at_ = -1;
 };
 

@@ -445,8 +445,8 @@ void draw_picture(Ui& ui, const Area& area) {
     if (ui.brackets) draw_brackets(ui, frame);
   }
   if (!shown) draw_empty_state(ui, area);
-  draw_legend(ui, frame);
-  draw_inspection(ui, frame);
+  const Area legend = draw_legend(ui, frame);
+  draw_inspection(ui, frame, legend);
   draw_cards(ui, area);
 
   bool active = false;

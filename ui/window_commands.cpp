@@ -37,8 +37,14 @@ std::vector<std::string> section_names(const Ui& ui) {
 float& size_of(Layout& layout, const std::string& panel) {
   return panel == "left" ? layout.left : panel == "right" ? layout.right : layout.bottom;
 }
+void keep_arranged(Layout& layout, const std::string& panel) {
+  (panel == "left"    ? layout.left_arranged
+   : panel == "right" ? layout.right_arranged
+                      : layout.bottom_arranged) = true;
+}
 void set_open(Layout& layout, const std::string& panel, bool open) {
   const Panel which = panel == "left" ? Panel::left : panel == "right" ? Panel::right : Panel::bottom;
+  keep_arranged(layout, panel);
   (which == Panel::left    ? layout.left_open
    : which == Panel::right ? layout.right_open
                            : layout.bottom_open) = open;
@@ -88,8 +94,11 @@ void add_panel_commands(Ui& ui, const Add& add) {
       });
   add("window.split", "Sets the width of a side panel, or the height of the strip at the bottom.",
       {panel, {.name = "size", .type = Type::real, .lo = 0, .hi = 10000, .unit = "design pixels"}},
-      [&ui](const Arguments& a) { size_of(ui.layout, a.text("panel")) = a.number("size"); });
-  add("window.log_share", "Sets the log's share of the strip at the bottom.",
+      [&ui](const Arguments& a) {
+        size_of(ui.layout, a.text("panel")) = a.number("size");
+        keep_arranged(ui.layout, a.text("panel"));
+      });
+  add("window.log_share", "Sets how much of the strip at the bottom is the log.",
       {{.name = "share", .type = Type::real, .lo = 0, .hi = 1}},
       [&ui](const Arguments& a) { ui.layout.log_share = a.number("share"); });
   add("window.passes_share", "Sets the Passes panel's share of the strip at the bottom.",

@@ -21,7 +21,8 @@ Renderer::Renderer(const RendererOptions& options)
                   : std::make_shared<gpu::Device>(gpu::DeviceOptions{options.device, options.validation})),
       compiler_(std::make_unique<gpu::ShaderCompiler>(
           options.shaders.empty() ? gpu::ShaderCompiler::default_root() : options.shaders)),
-      automaton_(paths::compile_components()) {}
+      automaton_(paths::compile_components()),
+      waits_for_overlay_(!options.interactive) {}
 
 Renderer::~Renderer() = default;
 
@@ -226,6 +227,9 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
   mix_pending_ = false;
   start_schedule();
   if (display_) display_->restart(changes, factor.value_or(vec3(1)), known);
+  if (sheet_ &&
+      (changes.edits.contains(scene::Change::shape) || changes.edits.contains(scene::Change::shaders)))
+    sheet_->forget();
   draft_preparing_ = false;
   if (!known) path_pace_.reset();
   ++restarts_;
@@ -442,7 +446,7 @@ void Renderer::set_size(uint32_t width, uint32_t height) {
     take(std::move(relight));
     use(std::move(films));
   }
-  filter_fails_ = false;
+  filter_fails_ = overlay_fails_ = false;
   width_ = width, height_ = height;
   restart(scene::Change::size);
 }

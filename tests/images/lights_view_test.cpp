@@ -71,6 +71,7 @@ TEST_CASE("arrows show a point's lights with their shares, and a map shows which
     REQUIRE(report);
     REQUIRE(report->legends.size() == 1);
     CHECK(report->legends[0].ramp);
+    CHECK_FALSE(report->legends[0].note.empty());
     CHECK(report->figure("arrived") > 0.02);
   }
   test::set(r, {{"overlay.light_arrival", "false"}});

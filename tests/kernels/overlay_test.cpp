@@ -30,11 +30,12 @@ struct Bed {
   upload::DeviceScene scene{device, {}, {}};
   transport::Wavefront wavefront{device, compiler, scene, 64, [](auto&&...) {}};
   film::Film film, coarse;
-  overlay::Canvas canvas{wavefront, film, coarse};
+  overlay::Sheet sheet{device, compiler};
+  overlay::Canvas canvas{wavefront, film, coarse, sheet};
   overlay::Painter painter{device, compiler};
   shared::Frame frame{};
 
-  Bed(uint32_t width, uint32_t height, bool orthographic = false)
+  Bed(uint32_t width, uint32_t height, bool orthographic = false, uint32_t enlarged = 1)
       : film(device, width, height), coarse(device, std::max(1u, width / 4), std::max(1u, height / 4)) {
     frame.width = width, frame.height = height;
     const float scale = orthographic ? 2.0f : 0.5f;
@@ -43,9 +44,12 @@ struct Bed {
     frame.camera_forward = vec3(0, 0, -1);
     frame.orthographic = orthographic;
     wavefront.set_frame(frame, 15);
+    shared::Frame sheet_frame = frame;
+    sheet_frame.width = enlarged * width, sheet_frame.height = enlarged * height;
+    sheet.fit(film, enlarged, sheet_frame);
     film.clear(wavefront.stream());
     coarse.clear(wavefront.stream());
-    std::vector<vec4> albedo(canvas.pixels()), normal(canvas.pixels());
+    std::vector<vec4> albedo(size_t{width} * height), normal(albedo.size());
     for (size_t p = 0; p < albedo.size(); ++p)
       if (wall(uint32_t(p % width)))
         albedo[p] = vec4(0.5f, 0.5f, 0.5f, 2), normal[p] = vec4(0, 0, 2, 2 * k_wall);
@@ -74,10 +78,11 @@ struct Bed {
   /// The picture of one colour with the drawing on it.
   template <class Draw>
   std::vector<uint32_t> picture(const Draw& draw) {
-    put("Picture", std::vector<uint32_t>(canvas.pixels(), k_base));
+    put("Picture", std::vector<uint32_t>(canvas.at_film().pixels(), k_base));
+    sheet.enlarge(wavefront.stream(), film);
     draw();
     std::vector<uint32_t> pixels(canvas.pixels());
-    film.picture().read(pixels.data(), pixels.size() * 4);
+    canvas.picture().read(pixels.data(), pixels.size() * 4);
     return pixels;
   }
   std::vector<uint32_t> drawn(const std::vector<OverlayPoint>& points,
@@ -367,4 +372,26 @@ TEST_CASE("empty marks, and marks outside the picture or at invalid positions, d
       CHECK(dim[p] == word({200, 100, 0}));
     else
       CHECK(farthest(dim[p], expected) <= 1);
+}
+
+TEST_CASE(
+    "on a sheet of larger scale strokes are as wide in pixels of the sheet, and the picture is enlarged") {
+  constexpr uint32_t k_scale = 4, k_across = 48 * k_scale;
+  for (const bool orthographic : {false, true}) {
+    Bed bed(48, 32, orthographic, k_scale);
+    const auto at = [&](uint32_t x, uint32_t y, float depth) {
+      return bed.at((float(x) + 0.5f) / k_scale, (float(y) + 0.5f) / k_scale, depth);
+    };
+    std::vector<OverlayPoint> points;
+    std::vector<uint32_t> expected(bed.canvas.pixels(), k_base);
+    // Every third pixel of the sheet: before the wall, behind it, beside it.
+    for (uint32_t y = 1; y < 32 * k_scale; y += 3)
+      for (uint32_t x = 1; x < k_across; x += 3) {
+        const float depth = (x + y) % 2 ? 3.5f : 9;
+        const glm::ivec3 ink(10 + x, 20 + y, 200);
+        points.push_back(dot(at(x, y, depth), ink));
+        if (depth < k_wall || !bed.wall(x / k_scale)) expected[y * k_across + x] = word(ink);
+      }
+    CHECK(bed.drawn(points) == expected);
+  }
 }

@@ -27,6 +27,7 @@
 #include "shaders/shared/ramp.h"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/scene.h"
+#include "shaders/shared/sheet.h"
 #include "shaders/shared/sight.h"
 #include "shaders/shared/sort.h"
 #include "shaders/shared/splat.h"
@@ -89,7 +90,7 @@ std::vector<SharedStruct> structs() {
              skips_unreachable, component),
       SHARED("photons/irradiance.h", IrradianceFrame, triangles, states, gathers),
       SHARED("photons/inspect.h", PhotonDensityPush, width, height, of, first, count, grid),
-      SHARED("photons/inspect.h", PhotonHeatPush, width, height, lo, hi),
+      SHARED("photons/inspect.h", PhotonHeatPush, width, height, scale, lo, hi),
       SHARED("photons/inspect.h", PhotonSmoothPush, width, height, taps, down),
       SHARED("photons/inspect.h", PhotonInspectPush, width, height, pixel, grid),
       SHARED("photons/inspect.h", PhotonInspectHeader, position, radius, normal, area, irradiance, density,
@@ -103,6 +104,8 @@ std::vector<SharedStruct> structs() {
       SHARED("photons/photons.h", PhotonContributionPush, count, step, first),
       SHARED("photons/photons.h", PhotonListPush, count),
       SHARED("photons/photons.h", PhotonPointsPush, count, step, by, round),
+      SHARED("sheet.h", EnlargePush, width, height, scale),
+      SHARED("sheet.h", SheetView, film_width, film_height, scale, surfaces_known),
       SHARED("sight.h", SeePush, first, count, across, down, stride),
       SHARED("irradiance_cache/discontinuity.h", LitPush, count),
       SHARED("irradiance_cache/discontinuity.h", DetailPush, across, down, level, first, finer, pixel,

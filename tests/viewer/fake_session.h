@@ -407,6 +407,10 @@ void Session::set_size(uint32_t width, uint32_t height) {
     impl_->width = width, impl_->height = height, impl_->restart(), impl_->publish();
   });
 }
+void Session::set_window_scale(uint32_t scale) {
+  (void)scale;
+  impl_->post([] {});
+}
 void Session::set_light(uint32_t index, const scene::Light& light, SceneId scene) {
   impl_->post(
       [this, index, light] {

@@ -111,6 +111,37 @@ TEST_CASE("a small window folds and narrows panels, and a larger one restores th
   CHECK(large.log.height() == 260);
 }
 
+TEST_CASE("the picture has half of a small window until the user arranges panels, which then stay") {
+  for (const auto& [width, height, scale] : {std::array{1100.0f, 700.0f, 1.0f},
+                                             {1280.0f, 720.0f, 1.0f},
+                                             {640.0f, 420.0f, 1.0f},
+                                             {1600.0f, 1000.0f, 2.0f},
+                                             {2200.0f, 1400.0f, 2.0f},
+                                             {1024.0f, 1200.0f, 1.0f},
+                                             {2560.0f, 600.0f, 1.0f}}) {
+    INFO(width << " x " << height << ", scale " << scale);
+    const auto share = [&](const ui::Layout& layout) {
+      const ui::Area picture = ui::arrange(layout, {width, height}, scale).picture;
+      return picture.width() * picture.height() / (width * height);
+    };
+    CHECK(share({}) >= 0.499f);  // whole pixels
+    // The user opens the panel on the right.
+    ui::Layout opened;
+    opened.right_open = opened.right_arranged = true, opened.opened_last = ui::Panel::right;
+    CHECK(ui::arrange(opened, {width, height}, scale).shown.right_open);
+  }
+  // What was arranged stays, though it leaves less than half.
+  ui::Layout all;
+  all.left_arranged = all.right_arranged = all.bottom_arranged = true;
+  const ui::Areas areas = ui::arrange(all, {1100, 700}, 1);
+  CHECK(areas.left.width() == all.left);
+  CHECK(areas.right.width() == all.right);
+  CHECK(areas.log.height() == all.bottom);
+  // A window with room shows all.
+  const ui::Layout shown = ui::arrange({}, {1440, 900}, 1).shown;
+  CHECK((shown.left_open && shown.right_open && shown.bottom_open));
+}
+
 TEST_CASE("percentiles") {
   CHECK(ui::percentile({}, 0.5) == 0);
   CHECK(ui::percentile({4, 1, 3, 2, 5}, 0.5) == 3);
