@@ -33,7 +33,7 @@ solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
 /// What a solver is made for besides its task and its own settings.
 struct MadeFor {
   gpu::Defines scene_defines;
-  uint32_t slots = 0;          ///< of the wavefront
+  uint32_t slots = 0;              ///< of the wavefront
   upload::LightSeparation lights;  ///< as the picture begun last has them
   bool operator==(const MadeFor&) const = default;
 };

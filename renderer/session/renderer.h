@@ -371,12 +371,13 @@ class Renderer {
   std::unique_ptr<PictureFilter> window_filter_;  ///< made at the first use
   std::optional<Filtered> shown_filtered_;        ///< its latest result for this picture
   bool filter_fails_ = false, filter_news_ = false;
-  uint64_t judged_paths_ = 0;                 ///< at the latest error estimate of shown_filtered_
-  double filter_s_ = 0, filter_piece_s_ = 0;  ///< filtering time: of the latest result, and of the current one
-  double filtered_at_s_ = 0;                  ///< render_s_ then
-  std::unique_ptr<Display> display_;          ///< null in batch
-  std::unique_ptr<LightsView> lights_view_;   ///< null until it is shown
-  std::unique_ptr<overlay::Sheet> sheet_;     ///< null until something is drawn
+  uint64_t judged_paths_ = 0;  ///< at the latest error estimate of shown_filtered_
+  double filter_s_ = 0,
+         filter_piece_s_ = 0;                ///< filtering time: of the latest result, and of the current one
+  double filtered_at_s_ = 0;                 ///< render_s_ then
+  std::unique_ptr<Display> display_;         ///< null in batch
+  std::unique_ptr<LightsView> lights_view_;  ///< null until it is shown
+  std::unique_ptr<overlay::Sheet> sheet_;    ///< null until something is drawn
   uint32_t window_scale_ = 1;
   bool waits_for_overlay_ = false;  ///< pictures wait for the surfaces of overlays
   bool overlay_fails_ = false;      ///< no memory for these

@@ -13,17 +13,17 @@ using namespace solvers;
 /// (Cache::adopt). A test checks all rows.
 std::vector<ChangeRow> change_rows() {
   return {
-      {Change::camera, k_invalidates_coverage, "records do not depend on the view; other surfaces become visible"},
+      {Change::camera, k_invalidates_coverage,
+       "records do not depend on the view; other surfaces become visible"},
       {Change::size, k_invalidates_coverage, "other places become visible"},
-      {Change::material, k_invalidates_light_and_coverage, "a former mirror may be diffuse now and need records"},
+      {Change::material, k_invalidates_light_and_coverage,
+       "a former mirror may be diffuse now and need records"},
       {"components.", k_invalidates_nothing, "handled by Cache::adopt"},
-      {"relight.", k_invalidates_nothing,
-       "a mix that changes record light arrives as an edit of the lamps"},
+      {"relight.", k_invalidates_nothing, "a mix that changes record light arrives as an edit of the lamps"},
       {"camera", k_invalidates_coverage, "records do not depend on the view; other surfaces become visible"},
       {"lights.", k_invalidates_light, "noise of the rays"},
       {"path.roulette_depth", k_invalidates_light, "noise of the rays"},
-      {"path.max_depth", k_invalidates_light_and_coverage,
-       "length of rays, and places of lookups"},
+      {"path.max_depth", k_invalidates_light_and_coverage, "length of rays, and places of lookups"},
       {"seed", k_invalidates_all, "another, equally valid cache"},
       {"cache.rays", k_invalidates_light, "first level of the rays"},
       {"cache.max_rays", k_invalidates_light, "last level of the rays"},
