@@ -32,7 +32,7 @@ quietly() {
 missing_packages() {
   local wanted
   mapfile -t wanted < <(sed -e 's/#.*//' -e '/^ *$/d' "$root/.debian-packages")
-  # A package that is there prints its name; the others are what the list has more.
+  # Installed packages print their names; the rest of the list is missing.
   comm -23 <(printf '%s\n' "${wanted[@]}" | sort -u) \
     <(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "${wanted[@]}" 2>/dev/null | sed -n 's/^installed //p' | sort -u)
 }
@@ -55,9 +55,9 @@ install_packages() {
     sudo -v || die "No leave to use sudo. Let root do: apt-get install ${missing[*]}"
   fi
   as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get -q)
-  # A list that is a little old may do; whether it does, the installation tells.
+  # A slightly old package list can be sufficient; otherwise the installation fails.
   mkdir -p "$build"
-  "${as_root[@]}" update >"$log" 2>&1 </dev/null || say "apt-get update failed; trying with the package lists that are here"
+  "${as_root[@]}" update >"$log" 2>&1 </dev/null || say "apt-get update failed; trying with the present package lists"
   quietly "Installing ${missing[*]}" "${as_root[@]}" install -y --no-install-recommends "${missing[@]}"
 }
 

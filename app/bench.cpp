@@ -51,7 +51,7 @@ bench::Matrix choose_matrix(const BenchArguments& a) {
   return m;
 }
 
-/// What an earlier run into the same folder reported; null when there is none, or half a file.
+/// The report of an earlier run into the same folder; null if there is none, or an incomplete file.
 Json earlier_report(const fs::path& folder) {
   if (!file_exists(folder / "report.json")) return {};
   try {
@@ -61,7 +61,7 @@ Json earlier_report(const fs::path& folder) {
   }
 }
 
-/// What settings are rendered by, as one file's hash each: a folder is not gone on with by another build.
+/// Adds a hash of each setting's program, so a folder is not continued with another build.
 void add_programs(const bench::Matrix& matrix, Json& identity) {
   for (const bench::Setting& setting : matrix.settings) {
     if (setting.program.empty() || identity.contains(setting.program)) continue;
@@ -92,7 +92,7 @@ int run(const BenchArguments& a, const bench::Matrix& matrix) {
   const bench::Hooks hooks{.interrupted = [&] { return interrupt.signal() != 0; },
                            .progress = [&](const bench::Status& s) { line.show(s); },
                            .message = [&](const std::string& text) { line.message(text); }};
-  // A scene is loaded for every render; what it warns of comes once.
+  // A scene is loaded for every render; each of its warnings is printed once.
   log::set_console_level(log::Level::error);
   std::set<std::string> warned;
   const Listening listening([&](log::Level level, const std::string& text) {
@@ -117,20 +117,20 @@ int run(const BenchArguments& a, const bench::Matrix& matrix) {
                {"load", std::max(0.0, load)}}},
              {"device", device}};
   const size_t total = matrix.cells().size();
-  // Where nothing was measured the figures are made again, but it stays the report of that day.
+  // If nothing was measured the figures are computed again, but the report keeps its date.
   if (summary.measured == 0 && before.is_object())
     for (auto& [key, value] : about.items())
       if (before.contains(key)) value = before.at(key);
   bench::write_report(path, bench::make_report(matrix, summary, about));
   if (!summary.complete) {
     line.message(
-        fmt::format("interrupted; {} of {} renders are kept in {}: the same command goes on with them",
+        fmt::format("interrupted; {} of {} renders are kept in {}: the same command continues with them",
                     summary.results.size(), total, path.string()));
     return interrupt.signal() ? interrupt.status() : 1;
   }
   if (summary.measured == 0)
-    line.message(
-        fmt::format("all {} renders were there; name another folder with --report to measure again", total));
+    line.message(fmt::format(
+        "all {} renders exist already; name another folder with --report to measure again", total));
   for (const std::string& found : bench::findings(bench::read_report(path)))
     std::printf("%s\n", found.c_str());
   std::printf("%s\n", (path / "report.html").c_str());
@@ -170,7 +170,7 @@ int bench_interiors(const BenchInteriorsArguments& a) {
   std::vector<std::string> left_out;
   const bench::Matrix matrix = bench::interiors_matrix(options, help, left_out);
   if (!left_out.empty())
-    std::fprintf(stderr, "lucerna: %s has no settings for %s; these have nothing beside them\n",
+    std::fprintf(stderr, "lucerna: %s does not support %s; these settings have no counterpart\n",
                  options.against.c_str(), fmt::format("{}", fmt::join(left_out, ", ")).c_str());
   return run({.matrix = {},
               .built_in = {},

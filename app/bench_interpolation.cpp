@@ -75,19 +75,19 @@ int bench_interpolation(const BenchInterpolationArguments& a) {
               candidates.front().renderer->device().info().name.c_str());
   for (size_t i = 0; i < candidates.size(); ++i) {
     const Json j = figures(candidates[i], times[i]);
-    std::printf("%s",
-                fmt::format("  {:<22} {:>7} records  {:>4.1f} serve a pixel, {} at most, of {:>5.1f} listed  "
-                            "{:>7.3f} M lookups/s ({:.3f} to {:.3f})  {:.2f} times as fast as the first{}\n",
-                            candidates[i].way.name, j["records"].get<uint32_t>(),
-                            j["served_by_mean"].get<double>(), j["served_by_most"].get<uint32_t>(),
-                            j["listed"].get<double>(), 1e-6 * j["lookups_per_s"].get<double>(),
-                            1e-6 * j["lookups_per_s"].get<double>() * times[i].median / times[i].high,
-                            1e-6 * j["lookups_per_s"].get<double>() * times[i].median / times[i].low,
-                            times[0].median / times[i].median,
-                            j.contains("relative_error")
-                                ? fmt::format("  relative error {:.4f}", j["relative_error"].get<double>())
-                                : "")
-                    .c_str());
+    std::printf(
+        "%s", fmt::format("  {:<22} {:>7} records  {:>4.1f} used per pixel, {} at most, of {:>5.1f} listed  "
+                          "{:>7.3f} M lookups/s ({:.3f} to {:.3f})  {:.2f} times as fast as the first{}\n",
+                          candidates[i].way.name, j["records"].get<uint32_t>(),
+                          j["served_by_mean"].get<double>(), j["served_by_most"].get<uint32_t>(),
+                          j["listed"].get<double>(), 1e-6 * j["lookups_per_s"].get<double>(),
+                          1e-6 * j["lookups_per_s"].get<double>() * times[i].median / times[i].high,
+                          1e-6 * j["lookups_per_s"].get<double>() * times[i].median / times[i].low,
+                          times[0].median / times[i].median,
+                          j.contains("relative_error")
+                              ? fmt::format("  relative error {:.4f}", j["relative_error"].get<double>())
+                              : "")
+                  .c_str());
     all["ways"].push_back(j);
   }
   if (!a.json.empty()) write_file(a.json, json_text(all, 2) + "\n");

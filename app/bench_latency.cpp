@@ -1,4 +1,4 @@
-// How soon the window shows something to work with after an edit.
+// The time until the window shows a usable picture after an edit.
 #include <algorithm>
 #include <cstdio>
 #include <nlohmann/json.hpp>

@@ -19,11 +19,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// A structure and the way to ask it.
+/// A lookup structure and its parameters.
 struct Way {
   std::string name;
   bool single;
-  float size;      ///< leaves against the mean diameter; single: cells against the largest diameter
+  float size;      ///< leaves relative to the mean diameter; single: cells relative to the largest diameter
   int neighbours;  ///< LUCERNA_NEIGHBOURS
   bool copies = false;
 };
@@ -33,17 +33,17 @@ struct Row {
   uint32_t spheres = 0;
   shared::OctreeHeader header{};
   Timing build, gather;
-  double listed = 0, found = 0;  ///< spheres a query
+  double listed = 0, found = 0;  ///< spheres per query
   uint64_t bytes = 0;
-  bool same = true;  ///< result as the octree's
+  bool same = true;  ///< same result as the octree
 };
 
 float uniform(std::mt19937& random) { return float(random() >> 8) * (1.0f / 16777216); }
 
-/// A point on the walls, floor and ceiling of a hall of 20 × 8 × 10 m and on 40 boxes in it.
+/// Random points on the walls, floor and ceiling of a hall of 20 × 8 × 10 m and on 40 boxes inside.
 struct Hall {
   std::vector<std::pair<vec3, vec3>> boxes;  ///< corner, extent; the first is the hall
-  std::vector<float> area;                   ///< sums
+  std::vector<float> area;                   ///< cumulative sums
   explicit Hall(std::mt19937& random) {
     boxes.push_back({vec3(0), vec3(20, 8, 10)});
     for (int i = 0; i < 40; ++i) {
@@ -72,7 +72,7 @@ struct Hall {
 std::vector<vec4> make_spheres(const Hall& hall, const std::string& kind, uint32_t n, std::mt19937& random) {
   std::vector<vec4> spheres(n);
   const float density = float(n) / hall.area.back();
-  // The mean of r^2 over radii spread evenly in their logarithm from a to 10 a is 99 / (2 ln 10) a^2.
+  // The mean of r^2 over radii uniform in their logarithm from a to 10 a is 99 / (2 ln 10) a^2.
   const float radius = kind == "photons" ? std::sqrt(50 / (3.14159265f * density))
                                          : std::sqrt(6 / (3.14159265f * density * 21.5f));
   for (vec4& s : spheres)
@@ -80,8 +80,8 @@ std::vector<vec4> make_spheres(const Hall& hall, const std::string& kind, uint32
   return spheres;
 }
 
-/// Leaves are powers of two. So that the grid's cells need not be larger than they must, everything is scaled
-/// until the largest sphere's diameter is just under one.
+/// Leaves are powers of two. Scales everything until the largest sphere's diameter is just below one, so the
+/// grid's cells are as small as possible.
 float scale_for(const std::vector<vec4>& spheres) {
   float largest = 0;
   for (const vec4& s : spheres) largest = std::max(largest, 2 * s.w);
@@ -127,10 +127,10 @@ class Bench {
     float largest = 0, mean = 0;
     for (const vec4& s : list) largest = std::max(largest, s.w), mean += s.w / float(n);
 
-    // All are built before any is asked, so that builds and queries of all can take turns.
+    // All are built before any query, so builds and queries of all can alternate.
     std::vector<std::unique_ptr<Candidate>> candidates;
     for (const Way& way : ways()) {
-      // Leaves are powers of two not above what is asked for; a cell must not be below.
+      // Leaves are powers of two at most as large as requested; a cell must not be smaller.
       const float scale = way.single ? 1.9999f * way.size * largest / mean : way.size;
       candidates.push_back(std::make_unique<Candidate>(device_, compiler_, way, n, scale));
       Candidate& c = *candidates.back();
@@ -172,7 +172,7 @@ class Bench {
     std::printf("%s", to_text(rows).c_str());
     std::fflush(stdout);
     for (const Row& row : rows)
-      if (!row.same) throw Error("bench lookup", row.way + " finds other spheres than the octree");
+      if (!row.same) throw Error("bench lookup", row.way + " disagrees with the octree");
   }
 
   Json to_json() const {
@@ -212,11 +212,11 @@ class Bench {
   std::string to_text(const std::vector<Row>& rows) const {
     const Row& first = rows.front();
     std::string text =
-        fmt::format("{} {}: {:.1f} found a query\n", first.spheres, first.spheres_kind, first.found);
+        fmt::format("{} {}: {:.1f} found per query\n", first.spheres, first.spheres_kind, first.found);
     for (const Row& r : rows) {
       text += fmt::format(
-          "  {:<28} build {:>8.2f} ms ({:.2f} to {:.2f})  {:>5.1f} references a sphere  {:>6.1f} listed a "
-          "query  gather {:>7.3f} M/s ({:.3f} to {:.3f})  octree is {:.2f} times as fast\n",
+          "  {:<28} build {:>8.2f} ms ({:.2f} to {:.2f})  {:>5.1f} references per sphere  {:>6.1f} listed "
+          "per query  gather {:>7.3f} M/s ({:.3f} to {:.3f})  octree is {:.2f} times as fast\n",
           r.way, 1e3 * r.build.median, 1e3 * r.build.low, 1e3 * r.build.high,
           double(r.header.references) / r.spheres, r.listed, 1e-6 * a_.queries / r.gather.median,
           1e-6 * a_.queries / r.gather.high, 1e-6 * a_.queries / r.gather.low,

@@ -39,7 +39,7 @@ std::unique_ptr<session::Renderer> load(const BenchMixArguments& a, const std::s
   return r;
 }
 
-/// Milliseconds of each stage in two pictures, those that differ by most first: "film 10 -> 12".
+/// Milliseconds of each stage in two pictures, the largest differences first: "film 10 -> 12".
 std::string stages_text(const transport::TransportStats& before, const transport::TransportStats& after) {
   std::vector<std::pair<double, std::string>> lines;
   for (const transport::StageSum& s : after.stages) {
@@ -58,9 +58,9 @@ std::string mix_of(const std::vector<std::string>& groups, int step) {
   return fmt::format("{}: ev={}", groups[size_t(step) % groups.size()], 0.1 * double(step + 1));
 }
 
-/// Seconds from a command to the picture that shows it, in a session as the window has it, one group after
-/// the other. `pause` before each: none, as while a slider is dragged; or long enough that the session is at
-/// work on samples again, as when a drag begins.
+/// Seconds from a command to the picture that shows it, in a session as in the window, one group after the
+/// other. `pause` before each: 0, as during a drag of a slider; or long enough that the session is rendering
+/// samples again, as at the start of a drag.
 Timing drag_session(session::Session& s, const std::vector<std::string>& groups, int count, double pause) {
   std::vector<double> seconds;
   for (int step = 0; step < count; ++step) {
@@ -73,7 +73,7 @@ Timing drag_session(session::Session& s, const std::vector<std::string>& groups,
   return timing_of(seconds);
 }
 
-/// A session at work on a picture of the scene, with samples in all pixels.
+/// A session that renders the scene, with samples in all pixels.
 std::unique_ptr<session::Session> start_session(const BenchMixArguments& a) {
   auto s = std::make_unique<session::Session>(
       session::Options{.device = a.device, .validation = false, .shaders = {}, .scenes = a.scenes});
@@ -90,7 +90,7 @@ std::unique_ptr<session::Session> start_session(const BenchMixArguments& a) {
     return now && now->commands >= s->commands() && (!s->scene() || now->samples > 0);
   };
   while (!begun()) std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  if (!s->scene()) throw_error(a.scene, "it was not loaded");
+  if (!s->scene()) throw_error(a.scene, "could not be loaded");
   return s;
 }
 
@@ -104,9 +104,9 @@ void finish(session::Renderer& r) {
 int bench_mix(const BenchMixArguments& a) {
   const auto separate = load(a, a.keep), together = load(a, "off");
   if (!separate->relight().separate)
-    throw_error(a.scene, "its light cannot be kept apart: {}", separate->relight().why_not);
+    throw_error(a.scene, "its light groups cannot be tracked: {}", separate->relight().why_not);
   const uint32_t groups = separate->film().groups();
-  // Whole pictures in turns; the first of each compiles what is left to compile.
+  // Whole pictures alternate; the first of each compiles the remaining kernels.
   std::vector<double> cpu[2];
   for (int round = 0; round <= a.repeats; ++round)
     for (int k = 0; k < 2; ++k) {
@@ -117,8 +117,8 @@ int bench_mix(const BenchMixArguments& a) {
       if (round > 0) cpu[k].push_back(cpu_seconds() - before);
     }
   const std::string stages = stages_text(together->stats(), separate->stats());
-  // A drag at the sliders, one group after the other; then what else is made of the mix: sums by
-  // component, and the estimate of the noise.
+  // A drag of the sliders, one group after the other; then the remaining parts of a mix: sums by component,
+  // and the noise estimate.
   session::Renderer& r = *separate;
   const uint64_t rays = r.stats().rays;
   std::vector<std::string> names;
@@ -133,7 +133,7 @@ int bench_mix(const BenchMixArguments& a) {
   const Timing shown = take_turns({{{}, drag}}, 4 * a.repeats)[0];
   const double shown_cpu = (cpu_seconds() - cpu_before) / (4 * a.repeats + 1);
   const Timing settled = take_turns({{drag, [&] { r.settle_mix(); }}}, a.repeats)[0];
-  if (r.stats().rays != rays) throw_error(a.scene, "a mix has traced rays");
+  if (r.stats().rays != rays) throw_error(a.scene, "a mix traced rays");
   const std::unique_ptr<session::Session> s = start_session(a);
   const Timing begun = drag_session(*s, names, 2 * a.repeats, 0.5),
                dragged = drag_session(*s, names, 8 * a.repeats, 0);
@@ -141,14 +141,14 @@ int bench_mix(const BenchMixArguments& a) {
   const double one = timing_of(cpu[0]).median, many = timing_of(cpu[1]).median;
   std::printf(
       "%s",
-      fmt::format("{}, {}x{}, {} samples, {} groups of lights, on {}\n"
+      fmt::format("{}, {}x{}, {} samples, {} light groups, on {}\n"
                   "  a picture     {:.2f} s of CPU with one group, {:.2f} s with {}: {:+.1f} %\n"
                   "  its stages    {} ms\n"
-                  "  another mix   {:.1f} ms until it is seen ({:.1f} to {:.1f}), {:.1f} ms of CPU, no ray\n"
+                  "  another mix   {:.1f} ms until it is shown ({:.1f} to {:.1f}), {:.1f} ms of CPU, no ray\n"
                   "  in the window {:.1f} ms when a drag begins ({:.1f} to {:.1f}), {:.1f} ms while it goes "
                   "on ({:.1f} to {:.1f})\n"
-                  "  its noise is known {:.0f} ms later ({:.0f} to {:.0f})\n"
-                  "  {} bytes a pixel\n",
+                  "  its noise follows {:.0f} ms later ({:.0f} to {:.0f})\n"
+                  "  {} bytes per pixel\n",
                   a.scene, a.width, a.height, a.samples, groups, r.device().info().name, one, many, groups,
                   100 * (many / one - 1), stages, 1e3 * shown.median, 1e3 * shown.low, 1e3 * shown.high,
                   1e3 * shown_cpu, 1e3 * begun.median, 1e3 * begun.low, 1e3 * begun.high,

@@ -1,4 +1,4 @@
-// What photons cost and how their errors fall.
+// The cost of photons and the decrease of their errors.
 #include <algorithm>
 #include <bit>
 #include <cstdio>
@@ -51,8 +51,8 @@ int bench_photons(const BenchPhotonsArguments& a) {
                               .message = [&](const std::string& text) { line.message(text); }});
   line.clear();
   if (!measured) {
-    line.message(fmt::format("interrupted; what is finished is kept in {}: the same command goes on with it",
-                             path.string()));
+    line.message(fmt::format(
+        "interrupted; finished parts are kept in {}: the same command continues with them", path.string()));
     return interrupt.signal() ? interrupt.status() : 1;
   }
   Json report{{"bench", "photons"},

@@ -1,5 +1,5 @@
 #pragma once
-// What the long benches tell while they work.
+// Progress of the long benches.
 #include <unistd.h>
 
 #include <cstdio>
@@ -10,7 +10,7 @@
 
 namespace lucerna::app {
 
-/// One line that is written over on a terminal; elsewhere a line a render.
+/// A line that is overwritten on a terminal; otherwise one line per render.
 class ProgressLine {
  public:
   explicit ProgressLine(bool quiet) : quiet_(quiet), terminal_(isatty(2)) {}

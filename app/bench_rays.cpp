@@ -27,7 +27,7 @@ int bench_rays(const BenchRaysArguments& a) {
   }
   gpu::Device device({a.device, false});
   gpu::ShaderCompiler compiler;
-  // For the rays every triangle is opaque, because Embree as it comes knows no other kind.
+  // Every triangle is opaque for these rays, because plain Embree has no other kind.
   const bvh::Triangles opaque{flat.scene.positions, {}};
   raybench::ComputeTracer compute(device, compiler,
                                   flat.tree.has_non_opaque ? bvh::build(opaque) : flat.tree);
@@ -64,7 +64,7 @@ int bench_rays(const BenchRaysArguments& a) {
   }
   report.frame_options = {.width = a.width, .height = a.height, .samples = a.samples, .seed = a.seed};
   if (a.samples) {
-    // Where all are opaque anyway, the rays' tracer is the frame's as well.
+    // If all triangles are opaque the rays' tracer is used for the frame too.
     std::optional<bvh::HostTracer> with_flags;
     if (flat.tree.has_non_opaque) with_flags.emplace(triangles);
     const bvh::HostTracer& host_of_frame = with_flags ? *with_flags : host;

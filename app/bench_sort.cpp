@@ -17,12 +17,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// One figure: elements a second of a way to do it.
+/// One figure: elements per second of one method.
 struct Row {
-  std::string what, method;
+  std::string task, method;
   uint32_t size = 0;
   Timing time;
-  double ratio = 0;  ///< times as fast as the first host function of the same task
+  double ratio = 0;  ///< speed relative to the first host function of the same task
 };
 
 struct Bench {
@@ -95,13 +95,13 @@ struct Bench {
 
 std::string to_text(const std::vector<Row>& rows, const std::string& device, int repeats) {
   std::string text = fmt::format(
-      "million elements a second, median of {} (range); 'factor' over the first of each, on one thread; on "
+      "million elements per second, median of {} (range); 'factor' over the first of each, on one thread; on "
       "{}\n",
       repeats, device);
   for (const Row& r : rows) {
     const auto rate = [&](double seconds) { return 1e-6 * r.size / seconds; };
     text +=
-        fmt::format("{:<22}{:>9}  {:<20}{:>10.3f} ms {:>9.1f} ({:.1f} to {:.1f})", r.what, r.size, r.method,
+        fmt::format("{:<22}{:>9}  {:<20}{:>10.3f} ms {:>9.1f} ({:.1f} to {:.1f})", r.task, r.size, r.method,
                     1e3 * r.time.median, rate(r.time.median), rate(r.time.high), rate(r.time.low));
     text += fmt::format("  factor {:.2f}\n", r.ratio);
   }
@@ -128,7 +128,7 @@ int bench_sort(const BenchSortArguments& a) {
   if (a.json.empty()) return 0;
   Json j{{"device", device.info().name}, {"repeats", a.repeats}, {"seed", a.seed}, {"rows", Json::array()}};
   for (const Row& r : bench.rows)
-    j["rows"].push_back({{"what", r.what},
+    j["rows"].push_back({{"task", r.task},
                          {"method", r.method},
                          {"size", r.size},
                          {"seconds", {{"median", r.time.median}, {"low", r.time.low}, {"high", r.time.high}}},

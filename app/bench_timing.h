@@ -14,7 +14,7 @@ struct Timing {
   double median = 0, low = 0, high = 0;
 };
 
-/// Of at least one value.
+/// Requires at least one value.
 inline Timing timing_of(std::vector<double> seconds) {
   std::sort(seconds.begin(), seconds.end());
   const size_t n = seconds.size();
@@ -22,13 +22,13 @@ inline Timing timing_of(std::vector<double> seconds) {
           seconds.back()};
 }
 
-/// Something that can be timed: `before` is not counted.
+/// A timed function; `before` is not timed.
 struct Timed {
   std::function<void()> before, run;
 };
 
-/// They take turns, `repeats` times, after one round that is not counted (kernels compile at their first
-/// dispatch on software devices), so that a machine that slows down slows all alike.
+/// Runs the candidates alternately, `repeats` times, after one untimed round (kernels compile at their first
+/// dispatch on software devices), so a machine that slows down affects all equally.
 inline std::vector<Timing> take_turns(const std::vector<Timed>& candidates, int repeats) {
   std::vector<std::vector<double>> seconds(candidates.size());
   for (int round = 0; round <= repeats; ++round)

@@ -24,7 +24,7 @@ Interrupt::Interrupt() {
     struct sigaction action {};
     action.sa_handler = [](int signal) {
       came = signal;
-      // Whichever comes next is heeded at once.
+      // The next signal has its default effect.
       for (const int each : {SIGINT, SIGTERM, SIGHUP}) ::signal(each, SIG_DFL);
     };
     if (k_signals[i] == SIGPIPE) action.sa_handler = SIG_IGN;

@@ -1,11 +1,11 @@
 #pragma once
-// Signals that ask a long verb to end: what there is is written first.
+// Signals that end a long verb after it has written its results.
 
 namespace lucerna::app {
 
-/// While one lives, the first of Ctrl-C (SIGINT), SIGTERM and SIGHUP ends nothing and is told by signal(); a
-/// second one ends the program at once. SIGHUP stays ignored where it was (nohup). A reader of the output
-/// that has gone (SIGPIPE) ends nothing. One at a time.
+/// During the lifetime of an object the first Ctrl-C (SIGINT), SIGTERM or SIGHUP does not end the program but
+/// is returned by signal(); a second one ends it immediately. An ignored SIGHUP stays ignored (nohup). A
+/// closed output pipe (SIGPIPE) does not end the program. One object at a time.
 class Interrupt {
  public:
   Interrupt();
@@ -13,9 +13,9 @@ class Interrupt {
   Interrupt(const Interrupt&) = delete;
   Interrupt& operator=(const Interrupt&) = delete;
 
-  /// The signal that came, or 0.
+  /// The received signal, or 0.
   static int signal();
-  /// The exit status of a program that it ended: 128 + signal().
+  /// The exit status after that signal: 128 + signal().
   static int status();
 };
 

@@ -1,4 +1,4 @@
-// What may stand on the command line, and what is done with it.
+// Parses the command line and runs the verb.
 #include "app/program.h"
 
 #include <CLI/CLI.hpp>
@@ -32,7 +32,7 @@ std::string settings_help() {
   return text;
 }
 
-/// CLI11's ranges let a NaN through.
+/// Rejects NaN, which CLI11's ranges accept.
 CLI::Validator finite() {
   return CLI::Validator(
       [](std::string& text) {
@@ -44,7 +44,7 @@ CLI::Validator finite() {
       "");
 }
 
-/// An empty name is a variable of the shell that is not set, rather than no file.
+/// Rejects an empty name, which is usually an unset shell variable.
 CLI::Validator named() {
   return CLI::Validator(
       [](std::string& text) {
@@ -53,7 +53,7 @@ CLI::Validator named() {
       "");
 }
 
-/// The command line: what each verb takes, added verb by verb, and which of them is meant.
+/// The command line: the options of each verb, and the chosen verb.
 class Program {
  public:
   Program();
@@ -72,7 +72,7 @@ class Program {
   void add_scene_options(CLI::App* verb);
   int view();
 
-  CLI::App app_{"Lucerna: watch global illumination being computed, component by component"};
+  CLI::App app_{"Lucerna: interactive lookdev viewer for global illumination, component by component"};
   std::string scene_, device_, script_;
   std::vector<std::string> set_;
   bool verbose_ = false, stay_ = false;
@@ -111,7 +111,7 @@ Program::Program() {
   add_bench_photons();
   add_bench_interiors();
   app_.require_subcommand(0, 1);
-  // Footers come last: verbs that are added take over what stands under the one that they are added to.
+  // Footers come last: a new verb inherits the footer of its parent.
   app_.footer(settings_help());
   render_->footer(settings_help());
   bench_->footer(bench::k_matrix_help);
@@ -122,20 +122,20 @@ void Program::add_viewer() {
   app_.add_option("--device", device_, k_device_help);
   app_.add_option("--set", set_, "viewer: KEY=VALUE; see below")->allow_extra_args(false);
   app_.add_option("--script", script_,
-                  "viewer: file with commands, one a line; 'help' under the log lists them. Its end ends the "
-                  "program, with 1 after an error")
+                  "viewer: file with commands, one per line; 'help' in the console lists them. After its "
+                  "last line the program ends, with 1 after an error")
       ->check(named());
-  app_.add_flag("-v,--verbose", verbose_, "say more on standard error");
-  app_.add_flag("--stay", stay_, "viewer: the window stays when the script has ended");
+  app_.add_flag("-v,--verbose", verbose_, "print debug messages to standard error");
+  app_.add_flag("--stay", stay_, "viewer: keep the window open after the script");
   add_scene_options(&app_);
 }
 
 void Program::add_scene_options(CLI::App* verb) {
   verb->add_flag("--allow-outside", scenes_.outside,
-                 "let scenes name files outside their folder (\"..\", absolute paths, symbolic links)");
+                 "allow scenes to read files outside their folder (\"..\", absolute paths, symbolic links)");
   verb->add_option("--scene-memory", scene_memory_,
-                   "GiB that a scene's files, images and geometry may take, every instance counted; a "
-                   "scene that asks for more is refused")
+                   "memory limit in GiB for a scene's files, images and geometry, counting every instance; "
+                   "larger scenes are refused")
       ->check(finite() & CLI::Range(0.001, 1e6))
       ->capture_default_str();
 }
@@ -144,56 +144,56 @@ void Program::add_render() {
   render_ = app_.add_subcommand("render", "render a scene to files, without a window");
   render_->add_option("SCENE", r.scene, "glTF scene")->required();
   render_
-      ->add_option(
-          "-o,--output", r.outputs,
-          "OUT.exr or OUT.png; may be given several times, or not at all where --stats or --ledger is")
+      ->add_option("-o,--output", r.outputs,
+                   "OUT.exr or OUT.png; can be given several times, or not at all if --stats or --ledger is")
       ->allow_extra_args(false);
   render_->add_option("--size", r.size, "picture, WIDTHxHEIGHT")->capture_default_str();
   render_->add_option("--camera", r.camera, "name of a scene camera, or its number from 1");
   render_->add_option(
       "--error", r.error,
-      "error as seen that every tile is to reach, such as 0.02: samples go where it is not reached yet. It "
-      "is relative to the light around each pixel; what the exposure (film.ev) shows as white or black has "
-      "none. A render ends at the first of --error, --samples and --time that is reached; what is not given "
-      "does not "
-      "end it where --time is, and without --time samples do, or with --error sampling.max_samples");
-  render_->add_option("--samples", r.samples, "samples a pixel; with --error, the most that one may get")
+      "target error as seen of every tile, such as 0.02: tiles above it get more samples. The error is "
+      "relative to the light around each pixel; pixels that the exposure (film.ev) shows as white or black "
+      "have none. A render ends at the first of --error, --samples and --time that it reaches. With --time "
+      "the others apply only if given; without it the number of samples always does (with --error "
+      "sampling.max_samples)");
+  render_->add_option("--samples", r.samples, "samples per pixel; with --error, the maximum")
       ->check(CLI::Range(int64_t(1), int64_t(1) << 20));
   render_->add_option("--time", r.seconds,
-                      "stop after this many seconds, of which solvers prepare in half at most, or earlier "
-                      "where --error or samples that are given (also by --set or the scene) are reached");
-  render_->add_option("--seed", r.seed, "seed of all random decisions")
+                      "stop after this many seconds, of which solvers prepare for at most half, or earlier "
+                      "at --error or a number of samples that is given (also by --set or the scene)");
+  render_->add_option("--seed", r.seed, "seed of all random numbers")
       ->check(CLI::Range(int64_t(0), int64_t(4294967295)));
   render_->add_option("--set", r.set, "KEY=VALUE; see below")->allow_extra_args(false);
   render_->add_option("--device", r.device, k_device_help);
-  render_->add_option("--ledger", r.ledger, "time, rays and error as they went on, as CSV")->check(named());
+  render_->add_option("--ledger", r.ledger, "write time, rays and error during the render as CSV")
+      ->check(named());
   render_
       ->add_option(
           "--reference", r.reference,
-          "EXR of the same picture, converged: ledger and figures then hold the true error of the mean")
+          "converged EXR of the same picture: ledger and figures then contain the true error of the mean")
       ->check(named());
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     if (!solver->file) continue;
     render_
         ->add_option("--" + solver->name + "-load", r.solver_load[solver->name],
-                     "begin with " + solver->file->content + " in this file, of the same scene and settings")
+                     "start with " + solver->file->content + " in this file, of the same scene and settings")
         ->check(named());
     render_
         ->add_option("--" + solver->name + "-save", r.solver_save[solver->name],
-                     "write " + solver->file->content + ", once they are complete")
+                     "write " + solver->file->content + ", when complete")
         ->check(named());
   }
   render_->add_option("--stats", r.stats, "write figures of the run as JSON")->check(named());
-  render_->add_flag("--filter", r.filter,
-                    "filter the finished picture: a PNG shows it without noise, an EXR has it in layers of "
-                    "their own (filtered, filtered.primary, ..., filtered.error) beside the samples, and "
-                    "--stats says how wrong it is");
+  render_->add_flag(
+      "--filter", r.filter,
+      "filter the finished picture: a PNG shows the filtered picture, an EXR has it in separate layers "
+      "(filtered, filtered.primary, ..., filtered.error) beside the samples, and --stats reports its error");
   render_->add_flag("--quiet", r.quiet, "no progress line");
   add_scene_options(render_);
 }
 
 void Program::add_small_verbs() {
-  info_ = app_.add_subcommand("info", "say what is in a scene");
+  info_ = app_.add_subcommand("info", "describe a scene");
   info_->add_option("SCENE", info_scene_, "glTF scene")->required();
   info_->add_flag("--json", info_json_, "as JSON");
   add_scene_options(info_);
@@ -206,34 +206,34 @@ void Program::add_small_verbs() {
   compare_->add_flag("--json", c.json, "as JSON");
   compare_
       ->add_option("--max-relmse", c.max_relmse,
-                   "exit with 1 when the relative MSE is above this, or a value of any layer is not finite")
+                   "exit with 1 if the relative MSE is above this, or a value of any layer is not finite")
       ->check(finite() & CLI::Range(0.0, 1e300));
 }
 
 void Program::add_bench() {
-  bench_ = app_.add_subcommand(
-      "bench", "measure what accuracy costs in time: scenes x settings x budgets, with a page to read");
+  bench_ = app_.add_subcommand("bench",
+                               "measure error over time: scenes x settings x budgets, with a report page");
   bench_->require_subcommand(0, 1);
   bench_->add_option("MATRIX", bm.matrix, "matrix file (JSON), see below");
   for (const bench::BuiltinInfo& info : bench::builtin_matrices())
     bench_->add_flag_callback(
         "--" + info.name, [this, name = info.name] { bm.built_in.push_back(name); }, info.help);
-  bench_->add_option("--report", bm.report, "folder to write to and to go on in; new, empty or a bench's")
+  bench_->add_option("--report", bm.report, "report folder; a folder of the same bench is continued")
       ->capture_default_str();
   bench_->add_option("--references", bm.references,
                      "folder of the reference pictures [references in the report folder]");
-  bench_->add_option("--repeats", bm.repeats, "renders of each cell, instead of the matrix's")
+  bench_->add_option("--repeats", bm.repeats, "renders of each cell, instead of the matrix's number")
       ->check(CLI::Range(1, 100));
   bench_->add_option("--device", bm.device, k_device_help);
-  bench_->add_flag("--quiet", bm.quiet, "no progress");
+  bench_->add_flag("--quiet", bm.quiet, "no progress line");
   bench_->add_option("--compare", bm.compare, "OLD NEW: ratios of two reports (folders or report.json)")
       ->expected(2);
-  bench_->add_option("--page", bm.page, "make report.html of a report folder again, measuring nothing");
+  bench_->add_option("--page", bm.page, "write report.html of a report folder again, without measuring");
   add_scene_options(bench_);
 }
 
 void Program::add_bench_rays() {
-  rays_ = bench_->add_subcommand("rays", "rays a second of every tracer, and of Embree as it comes");
+  rays_ = bench_->add_subcommand("rays", "rays per second of every tracer, and of unmodified Embree");
   rays_->add_option("SCENE", b.scene, "glTF scene")->required();
   rays_->add_option("--camera", b.camera, "name of a scene camera, or its number from 1");
   rays_->add_option("--rays", b.rays, "primary rays")
@@ -246,7 +246,7 @@ void Program::add_bench_rays() {
       ->check(CLI::Range(1u, 16384u))
       ->capture_default_str();
   rays_->add_option("--height", b.height, "its height")->check(CLI::Range(1u, 16384u))->capture_default_str();
-  rays_->add_option("--samples", b.samples, "its samples a pixel; 0: no frame")
+  rays_->add_option("--samples", b.samples, "its samples per pixel; 0: no frame")
       ->check(CLI::Range(0u, 1u << 20))
       ->capture_default_str();
   rays_->add_option("--seed", b.seed, "seed of the rays")->capture_default_str();
@@ -272,39 +272,37 @@ void Program::add_small_benches() {
     verb->add_option("--height", a.height, "its height")
         ->check(CLI::Range(16u, 4096u))
         ->capture_default_str();
-    verb->add_option("--samples", a.samples, "samples a pixel")
+    verb->add_option("--samples", a.samples, "samples per pixel")
         ->check(CLI::Range(1u, 1u << 20))
         ->capture_default_str();
     verb->add_option("--set", a.set, "KEY=VALUE, as of render")->allow_extra_args(false);
   };
   sort_ = bench_->add_subcommand(
-      "sort", "elements a second of prefix sum and radix sort on the device, and of the C++ library's");
+      "sort", "elements per second of prefix sum and radix sort on the device, and of the C++ library's");
   sort_->add_option("--sizes", bs.sizes, "elements to sort")->check(CLI::Range(1u, 1u << 22));
   sort_->add_option("--seed", bs.seed, "seed of the keys")->capture_default_str();
   measured(sort_, bs, 5);
-  lookup_ =
-      bench_->add_subcommand("lookup", "building the octree of spheres and asking it, against a plain grid");
+  lookup_ = bench_->add_subcommand(
+      "lookup", "build and query times of the octree of spheres, compared with a plain grid");
   lookup_->add_option("--sizes", bl.sizes, "spheres")->check(CLI::Range(1u, 1u << 22));
   lookup_->add_option("--queries", bl.queries, "points to look up")
       ->check(CLI::Range(1u, 1u << 22))
       ->capture_default_str();
   lookup_->add_option("--seed", bl.seed, "seed of spheres and points")->capture_default_str();
   measured(lookup_, bl, 1);
-  interpolation_ =
-      bench_->add_subcommand("interpolation",
-                             "lookups a second in what solvers have prepared for a scene, by the ways of "
-                             "looking up that they offer");
+  interpolation_ = bench_->add_subcommand(
+      "interpolation",
+      "lookups per second in the solvers' prepared data of a scene, for each of their lookup methods");
   of_scene(interpolation_, bi);
-  interpolation_
-      ->add_option("--reference", bi.reference, "EXR of the same picture, converged: tells errors too")
+  interpolation_->add_option("--reference", bi.reference, "converged EXR of the same picture: adds errors")
       ->check(named());
   measured(interpolation_, bi, 1);
   add_scene_options(interpolation_);
   mix_ = bench_->add_subcommand(
-      "mix", "how soon another mix of a scene's groups of lights is seen, and what keeping them apart costs");
+      "mix", "time until another light mix of a scene is shown, and the cost of tracking light groups");
   of_scene(mix_, bx);
   measured(mix_, bx, 1);
-  mix_->add_option("--keep", bx.keep, "how groups are kept apart, as relight.enabled: compact or on")
+  mix_->add_option("--keep", bx.keep, "how groups are tracked, as relight.enabled: compact or on")
       ->check(CLI::IsMember({"compact", "on"}))
       ->capture_default_str();
   add_scene_options(mix_);
@@ -316,40 +314,39 @@ void Program::add_bench_latency() {
   latency_->add_option("SCENES", bt.scenes, "glTF scenes, or names of folders in scenes/")->required();
   latency_
       ->add_option("--edits", bt.edits,
-                   "some of load, strength, move (of the brightest lamp), sky (turned), material, undo, "
-                   "camera, solver (switched); each on top of those before")
+                   "some of load, strength, move (of the brightest lamp), sky (rotation), material, undo, "
+                   "camera, solver (switch); each on top of those before")
       ->delimiter(',');
   latency_->add_option("--solvers", bt.solvers, "of secondary and tertiary light [path,cache]")
       ->delimiter(',');
   latency_->add_option("--size", bt.size, "picture, WIDTHxHEIGHT")->capture_default_str();
-  latency_->add_option("--seconds", bt.seconds, "that each edit is watched")
+  latency_->add_option("--seconds", bt.seconds, "seconds to watch each edit")
       ->check(CLI::Range(0.1, 600.0))
       ->capture_default_str();
   latency_
       ->add_option("--repeats", bt.repeats,
-                   "sessions of each scene and solver; the middle one of each figure is told at the end")
+                   "sessions of each scene and solver; the median of each figure is reported")
       ->check(CLI::Range(1u, 1000u))
       ->capture_default_str();
-  latency_->add_option("--seed", bt.seed, "of the edits' amounts; 0: fixed amounts")->capture_default_str();
-  latency_
-      ->add_option("--settle", bt.settle,
-                   "seconds, at most, that are waited before an edit until the picture is complete")
+  latency_->add_option("--seed", bt.seed, "seed of the edits' amounts; 0: fixed amounts")
+      ->capture_default_str();
+  latency_->add_option("--settle", bt.settle, "maximum seconds to wait before an edit for a finished picture")
       ->check(CLI::Range(0.0, 3600.0))
       ->capture_default_str();
   latency_
       ->add_option("--reference-samples", bt.reference_samples,
-                   "samples a pixel of the reference pictures, in two halves that tell their noise")
+                   "samples per pixel of the reference pictures, in two halves for their noise")
       ->check(CLI::Range(1u, 1u << 20))
       ->capture_default_str();
   latency_
-      ->add_option("--reference-solver", bt.reference_solver,
-                   "of their secondary and tertiary light; cache: with far less noise, and a bias of a few "
-                   "percent")
+      ->add_option(
+          "--reference-solver", bt.reference_solver,
+          "solver of their secondary and tertiary light; cache: far less noise, and a bias of a few per cent")
       ->check(CLI::IsMember({"path", "cache"}))
       ->capture_default_str();
   latency_->add_option("--references", bt.references, "folder that keeps the reference pictures")
       ->capture_default_str();
-  latency_->add_option("--pictures", bt.pictures, "folder for what was shown at 0.3, 1, 3, 10 and 30 s");
+  latency_->add_option("--pictures", bt.pictures, "folder for the pictures shown at 0.3, 1, 3, 10 and 30 s");
   latency_->add_option("--set", bt.set, "KEY=VALUE, as of the viewer")->allow_extra_args(false);
   latency_->add_option("--json", bt.json, "file to write the figures to");
   latency_->add_option("--device", bt.device, k_device_help);
@@ -357,47 +354,46 @@ void Program::add_bench_latency() {
 }
 
 void Program::add_bench_photons() {
-  photons_ = bench_->add_subcommand(
-      "photons",
-      "how photons' errors fall over rounds and radii, and what rounds cost; ten minutes (--photons is the "
-      "same)");
+  photons_ = bench_->add_subcommand("photons",
+                                    "how photons' errors fall with passes and radii, and the cost of passes; "
+                                    "ten minutes (--photons is the same)");
   bench::PhotonBenchOptions& o = bp.options;
   photons_
       ->add_option("--parts", o.parts,
                    "some of slopes (of noise and bias), rounds (their cost by light paths), lamps (by their "
-                   "number), free (where nothing bundles light) [all]")
+                   "number), free (without surfaces that focus light) [all]")
       ->delimiter(',')
       ->check(CLI::IsMember(
           std::vector<std::string>(bench::k_photon_parts.begin(), bench::k_photon_parts.end())));
-  photons_->add_option("--report", bp.report, "folder to write to and to go on in; new, empty or a bench's")
+  photons_->add_option("--report", bp.report, "report folder; a folder of the same bench is continued")
       ->capture_default_str();
-  photons_->add_option("--side", o.side, "pixels of the square pictures that slopes are measured in")
+  photons_->add_option("--side", o.side, "pixels along a side of the pictures for slopes")
       ->check(CLI::Range(8u, 1024u))
       ->capture_default_str();
-  photons_->add_option("--seeds", o.seeds, "renders of each, with other seeds")
+  photons_->add_option("--seeds", o.seeds, "renders of each, with different seeds")
       ->check(CLI::Range(3u, 64u))
       ->capture_default_str();
-  photons_->add_option("--rounds", o.rounds, "rounds of each")
+  photons_->add_option("--rounds", o.rounds, "passes of each")
       ->check(CLI::Range(8u, 65536u))
       ->capture_default_str();
   photons_
       ->add_option("--reference-samples", o.reference_samples,
-                   "samples a pixel of each of the truths, of which every render has its own")
+                   "samples per pixel of each of the references, one for every render")
       ->check(CLI::Range(1u, 1u << 20))
       ->capture_default_str();
-  photons_->add_option("--paths", o.paths, "light paths of a round [1e4 to 1e7]")
+  photons_->add_option("--paths", o.paths, "light paths per pass [1e4 to 1e7]")
       ->delimiter(',')
       ->check(CLI::Range(1u, 1u << 24));
   photons_->add_option("--lamps", o.lamps, "numbers of lamps [1,10,100,1000]")
       ->delimiter(',')
       ->check(CLI::Range(1u, 100000u));
-  photons_->add_option("--repeats", o.repeats, "rounds that are timed")
+  photons_->add_option("--repeats", o.repeats, "passes that are timed")
       ->check(CLI::Range(1u, 1000u))
       ->capture_default_str();
-  photons_->add_option("--pairs", o.pairs, "renders with and without photons where they have nothing to do")
+  photons_->add_option("--pairs", o.pairs, "renders with and without photons where they are not needed")
       ->check(CLI::Range(1u, 1000u))
       ->capture_default_str();
-  photons_->add_flag("--quiet", bp.quiet, "no progress");
+  photons_->add_flag("--quiet", bp.quiet, "no progress line");
   photons_->add_option("--device", o.device, k_device_help);
 }
 
@@ -408,13 +404,12 @@ void Program::add_bench_interiors() {
       "lights, cached light and both; hours (--interiors is the same)");
   bench::InteriorsOptions& o = bn.options;
   interiors_
-      ->add_option(
-          "--scenes", o.folders,
-          "folder with glTF scenes, each of which is measured, or one such file; may be given several "
-          "times [the program's own interiors]")
+      ->add_option("--scenes", o.folders,
+                   "folder with glTF scenes, each of which is measured, or one such file; can be given "
+                   "several times [the program's own interiors]")
       ->allow_extra_args(false)
       ->check(named());
-  interiors_->add_option("--report", bn.report, "folder to write to and to go on in; new, empty or a bench's")
+  interiors_->add_option("--report", bn.report, "report folder; a folder of the same bench is continued")
       ->capture_default_str();
   interiors_
       ->add_option("--references", bn.references,
@@ -423,45 +418,43 @@ void Program::add_bench_interiors() {
       ->check(named());
   interiors_
       ->add_option("--against", o.against,
-                   "another lucerna, such as the commit before, in a checkout of its own: rendered by turns "
-                   "with this one, every setting beside its like")
+                   "another lucerna, such as the previous commit in a separate checkout: rendered "
+                   "alternately with this one, every setting beside its counterpart")
       ->check(named());
   interiors_->add_flag(
       "--quick", o.quick,
-      "three rooms in small pictures after 0.8 and 4 s: two to three minutes, and once their references");
+      "three rooms in small pictures after 0.8 and 4 s: two to three minutes, plus their references once");
   interiors_
       ->add_option("--settings", o.settings,
-                   "some of path, learned, cache, cache-learned; the first is what the others are held "
-                   "against [all]")
+                   "some of path, learned, cache, cache-learned; the first is the baseline [all]")
       ->delimiter(',')
       ->check(CLI::IsMember(
           std::vector<std::string>(bench::k_interior_settings.begin(), bench::k_interior_settings.end())));
-  interiors_->add_option("--seconds", o.seconds, "that renders take [4,15,60; quick 0.8,4]")
+  interiors_->add_option("--seconds", o.seconds, "seconds per render [4,15,60; quick 0.8,4]")
       ->delimiter(',')
       ->check(finite() & CLI::Range(0.01, 1e6));
   interiors_
-      ->add_option("--samples", o.samples,
-                   "samples a pixel that end renders in place of time: then errors do not depend on the "
-                   "machine")
+      ->add_option(
+          "--samples", o.samples,
+          "samples per pixel that end renders instead of time: then errors do not depend on the machine")
       ->delimiter(',')
       ->check(CLI::Range(1u, 1u << 20))
       ->excludes("--seconds");
   interiors_->add_option("--size", o.size,
-                         "picture, WIDTHxHEIGHT; turned where a scene's camera is upright [320x180; quick "
-                         "192x108]");
-  interiors_->add_option("--repeats", o.repeats, "renders of each, with other seeds [3; quick 2]")
+                         "picture, WIDTHxHEIGHT; swapped for upright cameras [320x180; quick 192x108]");
+  interiors_->add_option("--repeats", o.repeats, "renders of each, with different seeds [3; quick 2]")
       ->check(CLI::Range(1, 100));
   interiors_
       ->add_option("--reference-samples", o.reference_samples,
-                   "samples a pixel of the reference pictures, in two halves [2048; quick 1024]")
+                   "samples per pixel of the reference pictures, in two halves [2048; quick 1024]")
       ->check(CLI::Range(2u, 1u << 20));
-  interiors_->add_flag("--quiet", bn.quiet, "no progress");
+  interiors_->add_flag("--quiet", bn.quiet, "no progress line");
   interiors_->add_option("--device", bn.device, k_device_help);
   add_scene_options(interiors_);
 }
 
 int Program::run(int argc, char** argv) {
-  // They are asked for like built-in matrices, too.
+  // They are also accepted in the form of built-in matrices.
   std::string latency = "latency", photons = "photons", interiors = "interiors";
   for (std::string* name : {&latency, &photons, &interiors})
     if (argc > 2 && argv[1] == std::string("bench") && argv[2] == "--" + *name) argv[2] = name->data();
@@ -507,7 +500,7 @@ int Program::run(int argc, char** argv) {
 }
 
 int Program::view() {
-  // From here on, so that saves in progress are finished and what the window remembers is kept.
+  // From here on, so that saves in progress finish and the window's state is saved.
   const Interrupt interrupt;
   ui::ViewerOptions options;
   options.scene = scene_;
@@ -515,7 +508,7 @@ int Program::view() {
   options.stay = stay_;
   if (!script_.empty()) {
     options.script = ui::read_script(script_);
-    if (options.script.empty()) options.script.emplace_back();  // an empty script ends, too
+    if (options.script.empty()) options.script.emplace_back();  // an empty script ends too
     options.script_name = script_;
   }
   session::Session session({.device = device_, .validation = false, .shaders = {}, .scenes = scenes_});

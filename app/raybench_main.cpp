@@ -1,4 +1,4 @@
-// The ray bench alone: reads a flattened scene, needs a Vulkan driver and nothing else.
+// The ray bench as a separate program: reads a flattened scene, needs only a Vulkan driver.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
@@ -25,7 +25,7 @@ int run(int argc, char** argv) {
   app.add_option("--repeats", repeats, "measurements of each figure")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--samples", frame.samples, "samples a pixel of the path-traced frame; 0: none")
+  app.add_option("--samples", frame.samples, "samples per pixel of the path-traced frame; 0: none")
       ->check(CLI::Range(0u, 1u << 20))
       ->capture_default_str();
   app.add_option("--width", frame.width, "width of the frame")
@@ -37,7 +37,7 @@ int run(int argc, char** argv) {
   app.add_option("--batch", frame.slots, "paths in flight")
       ->check(CLI::Range(64u, 1u << 24))
       ->capture_default_str();
-  app.add_flag("--variants", variants, "other ways to fetch nodes and to keep the stack, too");
+  app.add_flag("--variants", variants, "also measure other node fetches and stacks");
   app.add_flag("--json", json, "as JSON");
   try {
     app.parse(argc, argv);

@@ -35,7 +35,7 @@ void print_progress(const session::Renderer& r, double seconds, double limit, bo
   if (const schedule::AdaptiveSchedule* s = r.adaptive())
     done = double(s->count(schedule::TileState::done) + s->count(schedule::TileState::capped)) /
            double(s->tiles().size());
-  // Whichever limit is nearer.
+  // The nearer limit.
   if (limit > 0) done = std::max(done, std::min(1.0, seconds / limit));
   const double left = done > 0 ? seconds * (1 - done) / done : 0;
   std::fprintf(stderr, "\r%5.1f %%  %u/%u samples  %.2f Mray/s  %.2f samples/s  %s %.0f s left   %s",
@@ -45,30 +45,30 @@ void print_progress(const session::Renderer& r, double seconds, double limit, bo
   std::fflush(stderr);
 }
 
-/// Whether anything but solvers' work is asked for.
+/// True if any output besides solvers' work is requested.
 bool makes_picture(const RenderArguments& a) {
   return !a.outputs.empty() || !a.stats.empty() || !a.ledger.empty();
 }
 
-/// Throws Error where two outputs are one file, of which the first would be lost.
+/// Throws Error if two outputs are the same file, of which the first would be lost.
 void check_distinct(const std::vector<std::string>& files) {
   std::set<std::string> targets;
   for (const std::string& file : files)
-    // Pipes and devices take all, one after the other.
+    // Pipes and devices accept all, one after the other.
     if (const std::filesystem::path target = file_behind(file);
         !target.empty() && !targets.insert(target.string()).second)
-      throw_error(file, "two outputs have this name; give each its own");
+      throw_error(file, "two outputs have this name; choose different names");
 }
 
-/// Throws Error where nothing would be written, or something cannot be: before hours are spent on it.
+/// Throws Error if no output is requested, or one cannot be written: before a long render.
 void check_outputs(const RenderArguments& a, const std::map<std::string, std::string>& to_save) {
   if (!makes_picture(a) && to_save.empty()) {
     std::string work;
     for (const solvers::SolverInfo* solver : solvers::registered())
       if (solver->file)
-        work += fmt::format(", or {} alone: --{}-save OUT{}", solver->file->content, solver->name,
+        work += fmt::format(", or {} only: --{}-save OUT{}", solver->file->content, solver->name,
                             solver->file->extension);
-    throw_error("-o", "name at least one output: OUT.exr or OUT.png, or figures alone: --stats OUT.json{}",
+    throw_error("-o", "name at least one output: OUT.exr or OUT.png, or figures only: --stats OUT.json{}",
                 work);
   }
   for (const std::string& file : a.outputs) {
@@ -90,8 +90,8 @@ void check_outputs(const RenderArguments& a, const std::map<std::string, std::st
     throw_error("--time", "'{}': expected a positive number of seconds", *a.seconds);
 }
 
-/// What the command line says of settings, which stands above the scene's own. Throws Error for what is no
-/// setting: before the scene is loaded.
+/// The command line's settings, which override the scene's. Throws Error for an invalid setting, before the
+/// scene is loaded.
 std::vector<session::SettingChange> setting_changes(const RenderArguments& a) {
   std::vector<session::SettingChange> changes;
   const auto change = [&](std::string key, std::string value, const char* where = "--set") {
@@ -116,8 +116,8 @@ std::vector<session::SettingChange> setting_changes(const RenderArguments& a) {
   return changes;
 }
 
-/// A render ends at the first of the limits that are given: --error, --samples or the settings of the same
-/// meaning, --time. With --time the samples that nothing gives do not end it.
+/// A render ends at the first of the given limits: --error, --samples or the settings of the same meaning,
+/// --time. With --time a default number of samples is no limit.
 void set_limits(session::Renderer& r, const RenderArguments& a,
                 const std::vector<session::SettingChange>& changes) {
   const auto given = [&](const std::string& key) {
@@ -135,7 +135,7 @@ void set_limits(session::Renderer& r, const RenderArguments& a,
   r.apply_settings();
 }
 
-/// Scene, camera, reference and kept work. False: interrupted.
+/// Loads scene, camera, reference and solvers' work. False: interrupted.
 bool load(session::Renderer& r, const RenderArguments& a, const std::vector<session::SettingChange>& changes,
           const Interrupt& interrupt, bool terminal) {
   try {
@@ -161,7 +161,7 @@ bool load(session::Renderer& r, const RenderArguments& a, const std::vector<sess
   return true;
 }
 
-/// What is written. An output that fails does not keep the others from being written.
+/// Writes the outputs. An output that fails does not prevent the others.
 class Outputs {
  public:
   explicit Outputs(std::map<std::string, std::string> work) : work_(std::move(work)) {}
@@ -177,7 +177,7 @@ class Outputs {
       return ready;
     });
   }
-  /// Runs `write`; prints why it failed.
+  /// Runs `write`; prints the error if it fails.
   void attempt(const std::function<void()>& write) {
     try {
       write();
@@ -196,7 +196,7 @@ class Outputs {
   bool failed_ = false;
 };
 
-/// Finds the exposure where the settings say so and neither the scene nor `changes` name one.
+/// Sets the exposure automatically if the settings request it and neither the scene nor `changes` set one.
 void find_exposure(session::Renderer& r, const std::vector<session::SettingChange>& changes) {
   if (r.settings().text("film.exposure_at_load") != "always") return;
   for (const session::SettingChange& change : changes)
@@ -210,10 +210,10 @@ void find_exposure(session::Renderer& r, const std::vector<session::SettingChang
   log::info("exposure found: film.ev={:.1f}", *ev);
 }
 
-/// Of the time that there is, what solvers may prepare in at most.
+/// Share of the time limit that solvers may use for preparation.
 constexpr double k_preparing = 0.5;
 
-/// Until picture and work are done, time is up or somebody interrupts. Seconds that it took.
+/// Runs until picture and work are finished, the time is over, or an interrupt. Returns its seconds.
 double run(session::Renderer& r, const RenderArguments& a, const std::vector<session::SettingChange>& changes,
            Outputs& outputs, const Interrupt& interrupt, bool terminal) {
   const double limit = a.seconds.value_or(0);  // 0: none
@@ -221,20 +221,20 @@ double run(session::Renderer& r, const RenderArguments& a, const std::vector<ses
   Timer since_line;
   outputs.save_ready(r);
   bool covered = false;  // every pixel has a sample
-  // Not where somebody wants to keep the solvers' work.
+  // Not if the user wants the solvers' work.
   bool may_prepare = !a.seconds || !makes_picture(a) || !outputs.work().empty();
   while ((makes_picture(a) || !outputs.work().empty()) && !r.done() && !interrupt.signal() &&
          (!a.seconds || timer.seconds() < limit)) {
     if (!may_prepare && timer.seconds() > k_preparing * limit) {
       may_prepare = true;
       if (r.preparing()) {
-        log::info("half of the time is up: the picture is rendered with what has been prepared");
+        log::info("half of the time is over: the picture is rendered with the data prepared so far");
         r.finish_early();
       }
     }
     if (!r.step()) break;
     outputs.save_ready(r);
-    if (!covered && r.samples() > 0) log::info("a sample of every pixel after {:.2f} s", timer.seconds());
+    if (!covered && r.samples() > 0) log::info("every pixel has a sample after {:.2f} s", timer.seconds());
     // Tiles stop by the error as seen, which depends on the exposure.
     if (!covered && r.samples() > 0 && r.adaptive()) find_exposure(r, changes);
     covered = r.samples() > 0;
@@ -247,8 +247,8 @@ double run(session::Renderer& r, const RenderArguments& a, const std::vector<ses
   return wall;
 }
 
-/// A picture of which time was up before it had a sample everywhere is black there, or in whole. Throws Error
-/// where nothing is to be seen.
+/// A picture whose time was over before every pixel had a sample is partly or entirely black. Throws Error if
+/// it is entirely black.
 void check_time(const session::Renderer& r, const RenderArguments& a) {
   if (!a.seconds || !makes_picture(a) || r.samples() > 0) return;
   const double share = double(r.stats().paths) / (double(r.film().width()) * double(r.film().height()));
@@ -259,25 +259,25 @@ void check_time(const session::Renderer& r, const RenderArguments& a) {
   for (const solvers::SolverInfo* solver : solvers::registered())
     if (const solvers::Solver* found = r.solver(solver->name); found && !found->ready())
       at_work.push_back(solver->title);
-  throw_error(
-      "--time",
-      "'{:g}': no pixel has a sample after so many seconds{}; nothing is written. Ask for more time, or "
-      "for less to prepare",
-      *a.seconds, at_work.empty() ? "" : fmt::format(": {} was still at work", fmt::join(at_work, ", ")));
+  throw_error("--time",
+              "'{:g}': no pixel has a sample after this many seconds{}; no file was written. Allow more "
+              "time, or prepare less",
+              *a.seconds,
+              at_work.empty() ? "" : fmt::format(": {} was still at work", fmt::join(at_work, ", ")));
 }
 
-/// What helps where it is solvers' work that keeps the error up.
+/// Advice for errors that solvers' work causes.
 std::string advice(const session::Renderer& r) {
   std::string text;
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     if (!r.solver(solver->name)) continue;
     std::vector<std::string> what;
     if (!solver->against_noise.empty())
-      what.push_back(fmt::format("{} against its noise", fmt::join(solver->against_noise, ", ")));
+      what.push_back(fmt::format("{} for less noise", fmt::join(solver->against_noise, ", ")));
     if (!solver->against_bias.empty())
-      what.push_back(fmt::format("{} against its bias", fmt::join(solver->against_bias, ", ")));
+      what.push_back(fmt::format("{} for less bias", fmt::join(solver->against_bias, ", ")));
     if (!what.empty())
-      text += fmt::format("{}other settings of {} do: {}", text.empty() ? "" : "; ", solver->title,
+      text += fmt::format("{}settings of {} reduce it: {}", text.empty() ? "" : "; ", solver->title,
                           fmt::join(what, ", "));
   }
   return text;
@@ -286,7 +286,7 @@ std::string advice(const session::Renderer& r) {
 /// Filters the picture (--filter).
 void filter(session::Renderer& r) {
   if (r.samples() < 2)
-    log::warning("--filter: pixels with less than two samples stay as they are: their noise is not known");
+    log::warning("--filter: pixels with fewer than two samples stay unfiltered: their noise is unknown");
   const session::Filtered& f = r.filter();
   log::info("filtered in {:.2f} s; estimated error {:.2g} %", 1e-3 * f.ms, 100 * f.error.relative());
 }
@@ -308,7 +308,7 @@ int render(const RenderArguments& a) {
   const bool terminal = !a.quiet && isatty(2);
   if (!load(r, a, changes, interrupt, terminal)) return interrupt.status();
   if (a.filter && !r.film().fits_storage_buffers())
-    throw_error("--filter", "{}x{} is larger than this device can filter at once", width, height);
+    throw_error("--filter", "{}x{} exceeds the size that this device can filter", width, height);
   for (const auto& [name, file] : to_save)
     if (!r.solver(name))
       throw_error(fmt::format("--{}-save", name),
@@ -317,7 +317,7 @@ int render(const RenderArguments& a) {
   const double wall = run(r, a, changes, outputs, interrupt, terminal);
   const bool interrupted = interrupt.signal() != 0;
   if (interrupted)
-    std::fprintf(stderr, "lucerna: interrupted after %u samples; writing what there is\n", r.samples());
+    std::fprintf(stderr, "lucerna: interrupted after %u samples; writing the present picture\n", r.samples());
   if (!interrupted) check_time(r, a);
   if (makes_picture(a) && r.adaptive() && !interrupted)
     report_unreached(*r.adaptive(), advice(r)), report_unseen(r);
@@ -329,9 +329,9 @@ int render(const RenderArguments& a) {
     outputs.attempt([&] { write_file(a.stats, json_text(make_stats(r, wall), 2) + "\n"); });
   for (const auto& [name, file] : outputs.work())
     if (interrupted)
-      std::fprintf(stderr, "lucerna: %s: not written; it was still being built\n", file.c_str());
+      std::fprintf(stderr, "lucerna: %s: not written; its data was incomplete\n", file.c_str());
     else
-      outputs.fail(fmt::format("{}: not written: {} was still being built when rendering ended", file,
+      outputs.fail(fmt::format("{}: not written: {} was incomplete when rendering ended", file,
                                solvers::find(name)->title));
   if (r.stats().dropped) log::warning("{} contributions were not finite and were dropped", r.stats().dropped);
   return interrupted ? interrupt.status() : outputs.failed() ? 1 : 0;

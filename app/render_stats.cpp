@@ -10,7 +10,7 @@ namespace lucerna::app {
 namespace {
 
 /// Errors of the picture, estimated from its halves (film/error.h): as seen, and of the mean; with each
-/// component's share of the noise, and its bias where it is known to be none.
+/// component's share of the noise, and its bias where it is known to be zero.
 nlohmann::ordered_json make_error(session::Renderer& r) {
   const film::ImageError error = r.image_error();
   nlohmann::ordered_json j;
@@ -28,9 +28,9 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   const film::TileSpread sum = film::tile_spread(tiles);
   write_tiles(j, sum);
   j["heavy_tailed_tiles"] = sum.heavy_tailed;
-  // Where photons are looked up and none has come by.
+  // Tiles where photons are looked up and none has arrived.
   j["unknown_tiles"] = std::count_if(tiles.begin(), tiles.end(), [](const auto& t) { return t.unknown; });
-  // The parts of that sum, by where they come from.
+  // The parts of the sum, by cause.
   const auto part = [&](const char* name, double seen, double of_mean, double rms,
                         double film::TileError::*of) {
     j[name] = {{"seen", seen}, {"of_mean", of_mean}, {"rms", rms}};
@@ -56,7 +56,7 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   return j;
 }
 
-/// Of the filtered picture: its noise and bias, and what its lookups are wrong by.
+/// Errors of the filtered picture: its noise and bias, and the error of its lookups.
 nlohmann::ordered_json make_filtered(session::Renderer& r, const session::Filtered& filtered) {
   const film::FilterError& f = filtered.error;
   const film::ImageError samples = r.image_error();
@@ -70,7 +70,7 @@ nlohmann::ordered_json make_filtered(session::Renderer& r, const session::Filter
   return j;
 }
 
-/// Difference from the reference, whose own noise is taken off where its file tells it.
+/// Difference from the reference, without the reference's noise if its file states it.
 nlohmann::ordered_json make_truth(const film::Reference& reference, const stats::Ledger& ledger) {
   nlohmann::ordered_json j;
   j["reference"] = reference.file.string();
@@ -83,7 +83,7 @@ nlohmann::ordered_json make_truth(const film::Reference& reference, const stats:
   return j;
 }
 
-/// Tiles that are over the target though they have all the samples they may have, the worst first.
+/// Tiles above the target with the maximum of samples, the worst first.
 std::vector<uint32_t> unreached(const schedule::AdaptiveSchedule& s) {
   std::vector<uint32_t> list;
   for (uint32_t t = 0; t < s.tiles().size(); ++t)
@@ -95,7 +95,7 @@ std::vector<uint32_t> unreached(const schedule::AdaptiveSchedule& s) {
   return list;
 }
 
-/// Of these, those that what they look up keeps over it: more samples would hardly help.
+/// The number of these that are limited by the error of lookups: more samples would hardly help.
 size_t limited(const schedule::AdaptiveSchedule& s) {
   return size_t(std::count_if(s.tiles().begin(), s.tiles().end(),
                               [&](const schedule::Tile& t) { return t.limited(s.options().target_error); }));
@@ -151,8 +151,8 @@ nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
   return list;
 }
 
-/// Seconds that smaller errors take or took, as [low, middle, high]; in uniform sampling. Empty before there
-/// is enough to tell by. Errors that lookups keep the picture over, whatever the samples, are listed.
+/// Seconds to smaller errors, past or forecast, as [low, middle, high]; in uniform sampling. Empty without
+/// enough data. Errors below the limit of lookups are listed separately.
 nlohmann::ordered_json make_forecast(const stats::Ledger& ledger) {
   auto j = nlohmann::ordered_json::object();
   for (const double target : {0.05, 0.02, 0.01, 0.005}) {
@@ -173,8 +173,8 @@ void report_unreached(const schedule::AdaptiveSchedule& s, const std::string& ad
   const size_t by_lookups = limited(s);
   if (by_lookups > 0)
     log::warning(
-        "{} of {} tiles stay over the error of {} because of the light that they look up; the worst is off "
-        "by {:.3f}, the paths by {:.3f} of that, at x {} y {}. More samples hardly help; {}",
+        "{} of {} tiles stay over the error of {} because of lookups; the worst has an error of {:.3f}, of "
+        "which paths {:.3f}, at x {} y {}. More samples hardly help; {}",
         by_lookups, s.tiles().size(), s.options().target_error, worst.sum(), worst.error,
         list.front() % s.tiles_across() * s.options().tile,
         list.front() / s.tiles_across() * s.options().tile, advice);
@@ -194,9 +194,8 @@ void report_unseen(session::Renderer& r) {
   const film::ImageError error = r.image_error();
   if (error.white + error.dark <= k_most) return;
   log::warning(
-      "with film.ev={} {:.0f} % of the picture is shown as white and {:.0f} % as black: no error is seen "
-      "there, "
-      "and tiles stop early. Name the exposure of the finished picture (--set film.ev=EV), or have it found "
+      "with film.ev={} {:.0f} % of the picture is white and {:.0f} % black: no error is visible there, and "
+      "tiles stop early. Set the exposure of the finished picture (--set film.ev=EV), or let it be measured "
       "(--set film.exposure_at_load=always)",
       r.settings().text("film.ev"), 100 * error.white, 100 * error.dark);
 }

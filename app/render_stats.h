@@ -1,6 +1,5 @@
 #pragma once
-// What `lucerna render` tells of a picture when it is done: figures for --stats, and tiles that stay over the
-// target.
+// Figures of a finished picture of `lucerna render`: for --stats, and tiles above the target.
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -8,16 +7,15 @@
 
 namespace lucerna::app {
 
-/// For --stats: scene, settings, times, rays, errors by tile and component, the ledger, and what solvers
-/// tell. `wall`: seconds that rendering has taken.
+/// For --stats: scene, settings, times, rays, errors by tile and component, the ledger, and the solvers'
+/// statistics. `wall`: seconds of rendering.
 nlohmann::ordered_json make_stats(session::Renderer& renderer, double wall);
 
-/// Warns of tiles that are over the target error though they have all the samples they may have, by what
-/// keeps them there. `advice`: what helps where it is records.
+/// Warns of tiles above the target error with the maximum of samples, by cause. `advice`: remedies if records
+/// are the cause.
 void report_unreached(const schedule::AdaptiveSchedule& schedule, const std::string& advice);
 
-/// Warns where most of the picture is shown as white or as black, so that adaptive sampling sees no error
-/// there.
+/// Warns if most of the picture is white or black, where adaptive sampling sees no error.
 void report_unseen(session::Renderer& renderer);
 
 }  // namespace lucerna::app

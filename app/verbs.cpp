@@ -56,7 +56,7 @@ int compare(const CompareArguments& a) {
   const film::Comparison c = film::compare(first, second, a.layer);
   std::printf("%s\n", (a.json ? film::to_json(c) : film::to_text(c)).c_str());
   if (a.max_relmse < 0) return 0;
-  // Their errors have no bound: they are left out of the figures, which say nothing of them.
+  // Values that are not finite have no bounded error: the figures exclude them.
   const std::string non_finite = film::non_finite_text(c);
   if (!non_finite.empty()) std::fprintf(stderr, "lucerna: compare: not finite: %s\n", non_finite.c_str());
   return non_finite.empty() && c.relmse <= a.max_relmse ? 0 : 1;

@@ -17,15 +17,15 @@ struct RenderArguments {
   std::vector<std::string> outputs;
   std::string size = "1280x720", camera, device, stats, ledger, reference;
   std::map<std::string, std::string> solver_load,
-      solver_save;                ///< files that keep solvers' work, by their names
-  int64_t samples = -1;           ///< -1: the settings'; with `error`, the most that a pixel may get
-  std::optional<double> error;    ///< relative error for every tile: adaptive sampling
+      solver_save;                ///< files for solvers' work, by their names
+  int64_t samples = -1;           ///< -1: the settings'; with `error`, the maximum of a pixel
+  std::optional<double> error;    ///< target error of every tile: adaptive sampling
   std::optional<double> seconds;  ///< time limit
   int64_t seed = -1;
   std::vector<std::string> set;  ///< key=value
   bool quiet = false;
-  bool filter = false;        ///< files hold the filtered picture, too
-  scene::LoadOptions scenes;  ///< what scenes may read and take; likewise below
+  bool filter = false;        ///< files contain the filtered picture too
+  scene::LoadOptions scenes;  ///< limits for files and memory of scenes; likewise below
 };
 int render(const RenderArguments& arguments);
 
@@ -64,7 +64,7 @@ int bench_lookup(const BenchLookupArguments& arguments);
 struct BenchInterpolationArguments {
   std::string device, scene;
   uint32_t width = 256, height = 256, samples = 1;
-  std::string reference;  ///< EXR of the same picture, converged; empty: errors are not told
+  std::string reference;  ///< converged EXR of the same picture; empty: no errors
   std::vector<std::string> set;
   int repeats = 7;
   std::string json;  ///< file to write the figures to; empty: none
@@ -88,7 +88,7 @@ struct BenchLatencyArguments {
   std::vector<std::string> solvers, edits;  ///< empty: all
   std::string size = "960x540", references = "latency-references", pictures, device;
   uint32_t reference_samples = 64, repeats = 1;
-  uint64_t seed = 0;  ///< of the edits' amounts
+  uint64_t seed = 0;  ///< seed of the edits' amounts
   std::string reference_solver = "path";
   double seconds = 10, settle = 120;
   std::vector<std::string> set;
@@ -112,8 +112,8 @@ struct BenchArguments {
   int repeats = 0;                                    ///< 0: the matrix's
   bool quiet = false;
   std::string command;               ///< as typed, for the report
-  std::vector<std::string> compare;  ///< two reports: nothing is measured
-  std::string page;                  ///< a report folder whose page is to be made again
+  std::vector<std::string> compare;  ///< two reports: no measurement
+  std::string page;                  ///< a report folder whose page is written again
   scene::LoadOptions scenes;
 };
 int bench_matrix(const BenchArguments& arguments);

@@ -1,5 +1,4 @@
-// The panel of accuracy: error against time, what a smaller error will cost, and earlier renders to compare
-// with.
+// The Accuracy panel: error over time, the cost of a smaller error, and earlier renders for comparison.
 #include <fmt/format.h>
 #include <imgui_internal.h>
 
@@ -17,8 +16,8 @@ namespace {
 using session::Accuracy;
 
 constexpr ImU32 k_sum = colour::text;
-/// As seen, of the median tile, of the worst tenth of the tiles, of the mean; of the parts of the error as
-/// seen.
+/// The error as seen, of the median tile, of the worst tenth of the tiles, of the mean; and the parts of the
+/// error as seen.
 constexpr std::array<ImU32, 7> k_noise_ink = {k_sum,
                                               colour::grey(132),
                                               colour::grey(164),
@@ -35,7 +34,7 @@ struct Plot {
   ImVec2 at(double seconds, double error) const { return {x.at(seconds), y.at(error)}; }
 };
 
-/// Points of one of the ledger's lines; what is 0 is not known.
+/// Points of a line of the plot; values of 0 are unknown and skipped.
 template <class Value>
 std::vector<ImVec2> line_points(const Plot& plot, const Accuracy& a, const Value& value) {
   std::vector<ImVec2> points;
@@ -53,12 +52,12 @@ std::vector<ImVec2> error_points(const Plot& plot, const Accuracy& a, size_t lay
   });
 }
 
-/// What of the sum's is not the paths', and stays.
+/// The part of the sum's error that more samples do not reduce.
 std::vector<ImVec2> floor_points(const Plot& plot, const Accuracy& a) {
   return line_points(plot, a, [&](size_t i) { return a.ledger.entries()[i].floor(); });
 }
 
-/// Of the median tile, of the worst tenth of them.
+/// The median tile's error, or that of the worst tenth of the tiles.
 std::vector<ImVec2> tile_points(const Plot& plot, const Accuracy& a, double stats::Entry::*noise) {
   return line_points(plot, a, [&](size_t i) { return a.ledger.entries()[i].*noise; });
 }
@@ -100,8 +99,9 @@ void draw_axes(ImDrawList* list, const Plot& plot) {
   }
 }
 
-/// The target's line: what it costs, and dragging it. In adaptive sampling it is the setting; in uniform
-/// sampling only a question. The range stands still meanwhile. Returns whether the pointer has to do with it.
+/// The target's line: shows its cost, and can be dragged. In adaptive sampling it is the setting, in uniform
+/// sampling a what-if value. The range stays fixed during a drag. Returns true if the pointer is over the
+/// line or drags it.
 bool drag_target(Ui& ui, const Plot& plot, const Accuracy& a, double target, const PlotRange& range) {
   const float y = std::floor(plot.y.at(target));
   const bool inside = y >= plot.area.lo.y && y <= plot.area.hi.y;
@@ -125,9 +125,9 @@ bool drag_target(Ui& ui, const Plot& plot, const Accuracy& a, double target, con
   }
   if (held || hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeNS);
   if (hovered && !held)
-    tooltip(a.adaptive ? "The error under which every tile is to come. Drag to change it: samples are kept."
-                       : "Drag to ask what another error would cost. In adaptive sampling this line is the "
-                         "target.");
+    tooltip(a.adaptive
+                ? "Target error of every tile. Drag to change it; samples are kept."
+                : "Drag to see the cost of another error. In adaptive sampling this line is the target.");
   ImDrawList* list = ImGui::GetWindowDrawList();
   const ImU32 ink = held || hovered ? colour::accent : colour::with_alpha(colour::accent, 0.75f);
   list->AddLine({plot.area.lo.x, y}, {plot.area.hi.x, y}, ink);
@@ -140,7 +140,7 @@ bool drag_target(Ui& ui, const Plot& plot, const Accuracy& a, double target, con
   return held || hovered;
 }
 
-/// The forecast: from where the line is now to where it meets the target, as a fan.
+/// The forecast: a fan from the line's present end to its intersection with the target.
 void draw_forecast(ImDrawList* list, const Plot& plot, const Accuracy& a, double target,
                    const std::optional<stats::Band>& band) {
   const auto from = present(a);
@@ -160,7 +160,7 @@ void card(const std::vector<std::pair<std::string, ImU32>>& rows) {
   ImGui::PopStyleVar(2);
 }
 
-/// The part of a layer's error that its line does not show; 0: the sum.
+/// The bias of a layer, which its line does not include; layer 0 is the sum.
 std::string bias_text(const Accuracy& a, size_t layer) {
   std::string unknown;
   double most = 0;
@@ -171,18 +171,18 @@ std::string bias_text(const Accuracy& a, size_t layer) {
     else
       most = std::max(most, std::abs(*a.bias[c]));
   }
-  if (!unknown.empty()) return fmt::format("Bias not known: {}", unknown);
-  return most > 0 ? fmt::format("Bias beside the noise: {}", percent_text(most))
-                  : "No bias: noise is all its error";
+  if (!unknown.empty()) return fmt::format("Bias unknown: {}", unknown);
+  return most > 0 ? fmt::format("Bias in addition to noise: {}", percent_text(most))
+                  : "No bias: the error is noise only";
 }
 
 std::string run_figures(const Accuracy& a, size_t line) {
   const stats::Entry& e = a.ledger.entries()[line];
-  return fmt::format("{} \xC2\xB7 {:.3g} samples a pixel \xC2\xB7 {} rays", seconds_text(e.wall_s), e.samples,
-                     count_text(static_cast<double>(e.rays)));
+  return fmt::format("{} \xC2\xB7 {:.3g} samples per pixel \xC2\xB7 {} rays", seconds_text(e.wall_s),
+                     e.samples, count_text(static_cast<double>(e.rays)));
 }
 
-/// What lies under the pointer: a line's values at that time, or what an earlier run was made with.
+/// Shows what is under the pointer: a line's values at that time, or how an earlier run differs.
 void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   if (!ImGui::IsMouseHoveringRect(plot.area.lo, plot.area.hi) || !ImGui::IsWindowHovered()) return;
@@ -193,7 +193,7 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
     ImU32 ink;
     std::vector<ImVec2> points;
     const Run* run = nullptr;
-    std::optional<size_t> layer{};  ///< whose noise it is
+    std::optional<size_t> layer{};  ///< its component's layer
   } best{reach, "", 0, {}, nullptr, {}};
   const auto look = [&](std::vector<ImVec2> points, const std::string& name, ImU32 ink,
                         const Run* run = nullptr, std::optional<size_t> layer = {}) {
@@ -215,8 +215,8 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   look(line_points(plot, a, [&](size_t i) { return lines[i].truth ? (*lines[i].truth)[0] : 0.0; }),
        "sum, true error of the mean against " + a.reference, k_sum);
   if (a.adaptive) look(line_points(plot, a, [&](size_t i) { return a.hardest[i]; }), "hardest tile", k_sum);
-  look(floor_points(plot, a),
-       "noise of records and bias of lookups, as seen: what more samples do not go below", colour::text_dim);
+  look(floor_points(plot, a), "noise of records and bias of lookups, as seen: the limit of more samples",
+       colour::text_dim);
   for (const Run& run : ui.runs.earlier())
     look(error_points(plot, *run.accuracy, 0), "earlier render, noise as seen (estimated)", colour::text_dim,
          &run);
@@ -229,7 +229,7 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   if (best.run) stroke(list, best.points, colour::text_dim, px(1.5f));
   list->AddCircleFilled(*near, px(3), best.ink, 12);
   const Accuracy& chosen = best.run ? *best.run->accuracy : a;
-  // Which line of the ledger that is, by its time.
+  // The ledger entry of that point, by its time.
   const double seconds = plot.x.value(near->x);
   size_t line = 0;
   for (size_t i = 0; i < chosen.ledger.entries().size(); ++i)
@@ -260,13 +260,13 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
     rows.emplace_back(bias_text(a, *best.layer), colour::text_dim);
   if (best.run) {
     const std::vector<std::string> other = differences(*best.run, ui.runs.current());
-    if (other.empty()) rows.emplace_back("Made with the same settings", colour::text_dim);
+    if (other.empty()) rows.emplace_back("Same settings", colour::text_dim);
     for (const std::string& row : other) rows.emplace_back(row, colour::text);
   }
   card(rows);
 }
 
-/// The error in figures, each in its line's colour; a tooltip says what it is of.
+/// The error figures, each in its line's colour; a tooltip explains each.
 void noise_row(const Accuracy& a, const ImVec2& lo, float right) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   ImFont* font = theme().fonts.small;
@@ -279,7 +279,7 @@ void noise_row(const Accuracy& a, const ImVec2& lo, float right) {
                                 padded(f.value > 0 ? percent_text(f.value) : "\xE2\x80\x93", 6)));
     return all;
   };
-  // Noise of the samples is all there is, or a part.
+  // The samples' noise is the whole error, or a part of it.
   const std::string head = looks_up(line) ? "Error" : "Noise";
   const float head_width = text_width(head, font) + px(6), space = px(10);
   const auto width = [&](const std::vector<std::string>& all) {
@@ -325,7 +325,7 @@ void line_names(const Ui& ui, const Accuracy& a, const ImVec2& lo, float right) 
     put(a.reference_applies ? "\xC2\xB7 \xC2\xB7 \xC2\xB7 true error of the mean"
                             : "reference of another view",
         a.reference_applies ? colour::text : colour::warning, 8);
-  // The components last: where there is no room, their colours are known from the panel on the left.
+  // The components come last: without room for them, their colours are known from the panel on the left.
   const auto error = a.error();
   for (size_t c = 0; c < session::k_components; ++c)
     if (error[c + 1] > 0) put(session::k_component_names[c], colour::component[c], 8);
@@ -365,7 +365,7 @@ void body(Ui& ui, const Area& area, const Accuracy& a) {
   dashed_line(list,
               line_points(plot, a, [&](size_t i) { return lines[i].truth ? (*lines[i].truth)[0] : 0.0; }),
               k_sum, px(1.5f), px(3), px(1.5f));
-  // Now.
+  // The present time.
   if (seconds > 0) {
     const float x = std::floor(plot.x.at(seconds));
     list->AddLine({x, plot.area.lo.y}, {x, plot.area.hi.y}, colour::grey(104));
@@ -377,33 +377,33 @@ void body(Ui& ui, const Area& area, const Accuracy& a) {
   if (!drag_target(ui, plot, a, target, range)) hover(ui, plot, a);
 }
 
-/// What is known before the first samples: of the picture that is shown meanwhile, and of what is prepared.
+/// Lines shown before the first samples: the error of the preview, and the progress of preparation.
 std::vector<std::string> early_texts(const session::Snapshot& s, double target) {
   std::vector<std::string> texts;
   if (s.shown_error) {
     const film::ShownError error = *s.shown_error;
     std::string when;
-    // As noise falls, with the square root of time.
+    // Noise falls with the square root of time.
     const double excess = std::max(error.median / session::k_usable_error.median,
                                    error.worst_tenth / session::k_usable_error.worst_tenth);
     if (session::usable(error))
       when = ": usable";
     else if (s.seconds > 0.1)
       when = fmt::format(", usable in about {}", about_text(s.seconds * (excess * excess - 1)));
-    texts.push_back(fmt::format("Shown picture: about {} off, in its worst tenth {}{}",
+    texts.push_back(fmt::format("Preview: error about {}, in the worst tenth {}{}",
                                 percent_text(error.median), percent_text(error.worst_tenth), when));
   }
   if (!s.preparing.empty())
-    texts.push_back(s.preparing_left ? fmt::format("{}; {:.0f} % of all work, about {} left", s.preparing,
+    texts.push_back(s.preparing_left ? fmt::format("{}; {:.0f} % done, about {} left", s.preparing,
                                                    100 * s.preparing_done, about_text(*s.preparing_left))
                                      : s.preparing);
   if (s.preparing_left && s.path_pace && s.path_pace->noise > 0) {
     const double paths = s.path_pace->seconds_to(target);
-    texts.push_back(fmt::format("Path tracing would take about {} to {}{}", about_text(paths),
+    texts.push_back(fmt::format("Path tracing would take about {} to reach {}{}", about_text(paths),
                                 tick_text(target, Unit::relative),
-                                paths < s.seconds + *s.preparing_left ? ", less than that" : ""));
+                                paths < s.seconds + *s.preparing_left ? ", which is faster" : ""));
   }
-  texts.push_back("The lines begin with the first samples");
+  texts.push_back("No samples yet");
   return texts;
 }
 

@@ -14,7 +14,7 @@ using session::Accuracy;
 
 namespace {
 
-/// Tiles that are given up because of what samples look up, not for want of samples.
+/// Number of tiles stopped by the error of lookups rather than by the maximum of samples.
 uint32_t limited_tiles(const Accuracy& a) {
   return static_cast<uint32_t>(
       std::count_if(a.tiles.begin(), a.tiles.end(), [&](const session::TileStatus& t) {
@@ -27,8 +27,8 @@ std::string short_percent(double fraction, int figures = 3) {
   return fmt::format("{:.{}g} %", 100 * fraction, figures);
 }
 
-/// A forecast as a sentence and shorter ones. A range that spans a factor has no middle to name, and where
-/// even the end of it is open only its beginning is said.
+/// A forecast as a sentence and shorter ones. A wide range is given without its middle, a very wide one by
+/// its lower end only.
 std::vector<std::string> forecast_texts(const std::string& all, const std::string& goal,
                                         const stats::Band& forecast) {
   constexpr double k_vague = 2.5, k_open = 12;  // high over low
@@ -50,7 +50,7 @@ std::vector<std::string> forecast_texts(const std::string& all, const std::strin
   return texts;
 }
 
-/// " (a.rays, a.noise)": settings of the solvers that have an effect on what samples leave.
+/// " (a.rays, a.noise)": the solvers' settings that reduce the error which samples do not.
 std::string advice(std::vector<std::string> solvers::SolverInfo::*settings) {
   std::string keys;
   for (const solvers::SolverInfo* solver : solvers::registered())
@@ -71,32 +71,29 @@ std::optional<Present> present(const Accuracy& a) {
 std::vector<ErrorFigure> error_figures(const stats::Entry& line) {
   std::vector<ErrorFigure> figures{
       {"as seen", "as seen", line.sum(),
-       "Root mean square of the pixels' errors, each relative to the light around it. What the exposure "
-       "shows "
-       "as white or as black has no visible error."},
+       "Root mean square error of the pixels, each relative to the light around it. Pixels that the exposure "
+       "shows as white or black have no visible error."},
       {"of the median tile", "median tile", line.tile_median,
-       "Half of the tiles are farther off, each held against its own pixels' brightness."},
+       "Half of the tiles have a larger error, relative to the brightness of their own pixels."},
       {"of the worst tenth of the tiles", "worst tenth", line.tile_worst_tenth,
-       "A tenth of the tiles are at least this far off, each held against its own pixels' brightness: the "
+       "A tenth of the tiles have at least this error, relative to the brightness of their own pixels: the "
        "dark and difficult parts of the picture."},
       {"of the mean", "mean", line.of_mean.sum(),
-       "Root mean square of the pixels' errors over the picture's mean luminance, whatever the exposure. A "
-       "few bright pixels, such as the edges of a window, decide it."}};
+       "Root mean square error of the pixels over the picture's mean luminance, independent of exposure. A "
+       "few bright pixels, such as the edges of a window, dominate it."}};
   if (!looks_up(line)) return figures;
   figures.push_back({"as seen, by the paths", "paths", line.error[0],
-                     "Noise of the samples, a part of the error as seen. More samples take it away."});
+                     "Noise of the samples, a part of the error as seen. More samples reduce it."});
   if (line.records > 0)
-    figures.push_back(
-        {"as seen, by the records", "records", line.records,
-         "Noise of the records that the samples read, a part of the error as seen. More samples "
-         "do not take it away; more rays a record do" +
-             advice(&solvers::SolverInfo::against_noise) + "."});
-  figures.push_back(
-      {"as seen, by the bias of lookups", "bias", line.interpolation,
-       "By how much light is off in the mean that is interpolated between records or blurred over the discs "
-       "of photons, a part of the error as seen. More samples do not take it away, or slowly "
-       "as the discs shrink; more records and smaller discs do" +
-           advice(&solvers::SolverInfo::against_bias) + "."});
+    figures.push_back({"as seen, by the records", "records", line.records,
+                       "Noise of the records that the samples read, a part of the error as seen. More "
+                       "samples do not reduce it; more rays per record do" +
+                           advice(&solvers::SolverInfo::against_noise) + "."});
+  figures.push_back({"as seen, by the bias of lookups", "bias", line.interpolation,
+                     "Mean error of light that is interpolated between records or blurred over the discs of "
+                     "photons, a part of the error as seen. More samples do not reduce it, or only slowly as "
+                     "the discs shrink; more records and smaller discs do" +
+                         advice(&solvers::SolverInfo::against_bias) + "."});
   return figures;
 }
 
@@ -114,7 +111,7 @@ PlotRange plot_range(const Accuracy& a, const std::deque<Run>& earlier, double t
       last = e.error[0];
     }
     if (last > 0) e_lo = std::min(e_lo, 0.5 * last);
-    // The components that matter, down to a tenth of the sum.
+    // The relevant components, down to a tenth of the sum.
     if (last > 0)
       for (const double x : run.ledger.entries().back().error)
         if (x > 0.1 * last) e_lo = std::min(e_lo, 0.7 * x);
@@ -158,7 +155,7 @@ std::vector<std::string> target_texts(const Accuracy& a, double target,
                         percent_text(a.ledger.entries().back().sum())),
             fmt::format("{} was not reached with {:.0f} samples", goal, a.max_samples),
             fmt::format("{} was not reached", goal), goal};
-  if (!forecast) return {all + ": too early to tell", all};
+  if (!forecast) return {all + ": no forecast yet", all};
   if (forecast->high <= seconds * (1 + 1e-9))
     return {fmt::format("{} was reached after {}", all, about_text(forecast->middle)), all};
   if (const auto end = session::seconds_to_end(a); end && forecast->high > *end) {
@@ -174,12 +171,12 @@ std::vector<std::string> target_texts(const Accuracy& a, double target,
             fmt::format("{} will not be reached", goal), goal};
   }
   if (const uint32_t over = a.adaptive ? session::tiles_out_of_reach(a, target) : 0; over > 0) {
-    return {fmt::format("{} of {} tiles are likely to stay over {}, with all of {:.0f} samples; all is done "
-                        "in {} to {}",
-                        over, a.tiles.size(), goal, a.max_samples, about_text(forecast->low),
-                        about_text(forecast->high)),
-            fmt::format("{} of {} tiles are likely to stay over {}", over, a.tiles.size(), goal),
-            fmt::format("{} tiles likely over {}", over, goal), goal};
+    return {
+        fmt::format(
+            "{} of {} tiles are likely to stay over {}, with all of {:.0f} samples; finished in {} to {}",
+            over, a.tiles.size(), goal, a.max_samples, about_text(forecast->low), about_text(forecast->high)),
+        fmt::format("{} of {} tiles are likely to stay over {}", over, a.tiles.size(), goal),
+        fmt::format("{} tiles likely over {}", over, goal), goal};
   }
   return forecast_texts(all, goal, *forecast);
 }

@@ -1,4 +1,4 @@
-// What lies over the picture and says something: what goes on, what went wrong, what to do first.
+// Cards over the picture: progress, errors, first steps.
 #include <fmt/format.h>
 #include <imgui_internal.h>
 
@@ -12,10 +12,10 @@
 namespace lucerna::ui {
 namespace {
 
-/// A sentence in the middle below, that goes by itself.
+/// A notice at the bottom that disappears by itself.
 void draw_note(Ui& ui, const Area& area) {
   if (ui.note.text.empty()) return;
-  // Above what else is told below.
+  // Above the other cards at the bottom.
   const bool beside = (ui.snapshot && !ui.snapshot->activity.empty()) || ui.busy_seconds() > 0;
   const float w = std::min(text_width(ui.note.text) + px(32), area.width() - px(24)), h = px(32);
   const ImVec2 lo(std::floor(0.5f * (area.lo.x + area.hi.x - w)), area.hi.y - h - px(beside ? 76.0f : 16.0f));
@@ -24,16 +24,16 @@ void draw_note(Ui& ui, const Area& area) {
   draw_text(list, lo, hi, elided(ui.note.text, w - px(24)), colour::text, Align::centre);
 }
 
-/// What to do first: three sentences, in the middle of the picture until they are put away.
+/// The first steps: three sentences in the middle of the picture until they are closed.
 void welcome_card(Ui& ui, const Area& area) {
   if (!ui.welcome) return;
   static const char* sentences[] = {
-      "Drop a glTF scene on the window or press Ctrl+O; drag with the left button to orbit about what the "
-      "pointer is on, with the right one to look about, and turn the wheel to come closer.",
-      "W A S D fly and H walks along the floor, F frames what you have clicked on, Space pauses, and Ctrl+Z "
-      "takes back whatever you did.",
-      "On the left you choose how each part of the light is computed, on the right you change lamps, sky and "
-      "materials; F1 shows all keys."};
+      "Drop a glTF scene on the window or press Ctrl+O. Drag with the left button to orbit around the point "
+      "under the pointer, with the right button to look around; turn the wheel to move closer.",
+      "W A S D fly, H walks along the floor, F frames the selected object, Space pauses, Ctrl+Z undoes the "
+      "last change.",
+      "The left panel selects how each component of light is computed, the right panel edits lamps, "
+      "environment and materials. F1 shows all keys."};
   ImFont* font = theme().fonts.regular;
   const float w = std::min(px(520), area.width() - px(32)), pad = px(20), room = w - 2 * pad;
   float h = pad + px(28) + px(40) + pad;
@@ -54,16 +54,17 @@ void welcome_card(Ui& ui, const Area& area) {
   }
   ImGui::SetCursorScreenPos({lo.x + w - pad - px(96), lo.y + h - pad - px(24)});
   if (button("##begin", "Begin", true, px(96))) ui.welcome = false;
-  tooltip("Puts this away for good; Help > First steps shows it again. Esc.");
+  tooltip("Closes the first steps; Help > First steps shows them again. Esc.");
   ImGui::EndChild();
 }
 
-/// What has kept the renderer for more than half a second, and for how long, at the lower right.
+/// The command that has kept the renderer busy for more than half a second, with its duration, at the lower
+/// right.
 void busy_card(Ui& ui, const Area& area) {
   const double seconds = ui.busy_seconds();
   if (seconds <= 0 || (ui.snapshot && !ui.snapshot->activity.empty())) return;
   const float w = std::min(px(320), area.width() - px(24)), h = px(44);
-  // At the right: legends lie at the left.
+  // On the right: legends are on the left.
   const ImVec2 lo(area.hi.x - w - px(12), area.hi.y - h - px(12)), hi(lo.x + w, lo.y + h);
   ImDrawList* list = card(lo, hi);
   const std::string time = seconds_text(seconds);
@@ -75,7 +76,7 @@ void busy_card(Ui& ui, const Area& area) {
                                           : "Working: " + ui.busy.text,
                    w - px(36) - text_width(time)),
             colour::text);
-  // How far it is nobody knows; that it goes on is seen.
+  // The progress is unknown; the bar shows activity.
   const float lo_x = lo.x + px(12), room = hi.x - px(12) - lo_x, part = 0.25f;
   const float at = static_cast<float>(0.5 - 0.5 * std::cos(2 * seconds)) * (1 - part);
   list->AddRectFilled({lo_x, hi.y - px(9)}, {lo_x + room, hi.y - px(6)}, colour::field, px(1));
@@ -83,7 +84,7 @@ void busy_card(Ui& ui, const Area& area) {
                       colour::accent, px(1));
 }
 
-/// What is going on, at the lower left, with a way out.
+/// The current activity, at the lower left, with a Cancel button.
 void activity_card(Ui& ui, const Area& area) {
   if (!ui.snapshot || ui.snapshot->activity.empty()) return;
   const bool cancels = ui.loading();
@@ -99,7 +100,7 @@ void activity_card(Ui& ui, const Area& area) {
   if (!cancels) return;
   ImGui::SetCursorScreenPos({hi.x - px(84), lo.y + px(10)});
   if (button("##cancel", "Cancel", false, px(72))) ui.act("scene.cancel");
-  tooltip("Gives up the load; the scene shown stays. Esc.");
+  tooltip("Cancels the load; the present scene stays. Esc.");
   const float track_lo = lo.x + px(12), track_hi = hi.x - px(12), y = hi.y - px(14);
   list->AddRectFilled({track_lo, y}, {track_hi, y + px(3)}, colour::field, px(1));
   list->AddRectFilled(
@@ -108,7 +109,7 @@ void activity_card(Ui& ui, const Area& area) {
       colour::accent, px(1));
 }
 
-/// The newest error, over the upper edge of the picture until it is taken away.
+/// The newest error, over the upper edge of the picture until it is closed.
 void error_strip(Ui& ui, const Area& area) {
   if (ui.errors.empty()) return;
   const std::string message = ui.errors.back();
@@ -130,7 +131,7 @@ void error_strip(Ui& ui, const Area& area) {
               fmt::format("1 of {}", ui.errors.size()), colour::text_dim, Align::right, theme().fonts.small);
   ImGui::SetCursorScreenPos({hi.x - px(32), lo.y + px(6)});
   if (sign_button("##dismiss", Sign::close, true, colour::text)) ui.act("dismiss");
-  tooltip("Takes the message away; it stays in the log. Esc.");
+  tooltip("Closes the message; it stays in the log. Esc.");
   ImGui::EndChild();
 }
 

@@ -8,9 +8,9 @@
 namespace lucerna::ui {
 namespace {
 
-constexpr double k_least_target = 0.0001, k_most_target = 10;  // of sampling.target_error
+constexpr double k_least_target = 0.0001, k_most_target = 10;  // range of sampling.target_error
 
-/// 1-2-5 of every decade from lo to hi; `steps` 1: powers of ten alone, 9: all whole multiples.
+/// 1-2-5 of every decade from lo to hi; `steps` 1: powers of ten only, 9: all whole multiples.
 std::vector<double> decades(double lo, double hi, int steps) {
   std::vector<double> values;
   for (int e = static_cast<int>(std::floor(std::log10(lo))); std::pow(10.0, e) <= hi * (1 + 1e-9); ++e)
@@ -23,7 +23,7 @@ std::vector<double> decades(double lo, double hi, int steps) {
   return values;
 }
 
-/// Times that clocks show, from fine (0) to coarse (2).
+/// Times as on clocks, from fine (0) to coarse (2).
 std::vector<double> times(double lo, double hi, int level) {
   std::vector<double> values = decades(lo, std::min(hi, level == 2 ? 1.0 : 10.0), level == 0 ? 3 : 1);
   static const std::vector<double> all[3] = {
@@ -145,7 +145,7 @@ double snapped_target(double value) {
 
 void dashed_line(ImDrawList* list, const std::vector<ImVec2>& points, ImU32 colour, float on, float off,
                  float width) {
-  float gone = 0;  // along the pattern
+  float gone = 0;  // distance along the pattern
   for (size_t i = 1; i < points.size(); ++i) {
     const ImVec2 a = points[i - 1], b = points[i];
     const float dx = b.x - a.x, dy = b.y - a.y, length = std::hypot(dx, dy);

@@ -1,4 +1,4 @@
-// What lies above the panels: the page of keys; and the keys themselves. Also the frame of every panel.
+// The page of keys, the handling of keys, and the frame of every panel.
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui_internal.h>
@@ -14,32 +14,32 @@
 namespace lucerna::ui {
 namespace {
 
-constexpr float k_key_text = 400;  // of the solvers' rows
+constexpr float k_key_text = 400;  // width of the solvers' rows
 
-/// Keys and what they do; rows without keys are gaps.
+/// Keys and their actions; rows without keys are gaps.
 std::vector<std::pair<std::string, std::string>> key_rows() {
   std::vector<std::pair<std::string, std::string>> rows = {
-      {"Left drag", "orbit about what the pointer is on"},
-      {"Right drag", "look about"},
+      {"Left drag", "orbit around the point under the pointer"},
+      {"Right drag", "look around"},
       {"Middle drag, Shift + left drag", "pan"},
-      {"Wheel", "come closer to what the pointer is on, go away"},
+      {"Wheel", "move towards the point under the pointer, or away"},
       {"W A S D, Q E", "fly; down and up; wheel for speed, Shift for four times as fast"},
       {"H", "walk along the floor instead; Q E set the eye's height"},
       {"Alt while moving", "pass through walls"},
-      {"Ctrl + left drag", "turn the environment, or else the sun"},
-      {"Click", "select the object, its material with a second click"},
+      {"Ctrl + left drag", "rotate the environment, or the sun if there is none"},
+      {"Click", "select the object; a second click selects its material"},
       {"F", "frame the selection, or the scene"},
-      {"L", "mark lamps and surfaces that emit, to click on them; lamps are dragged"},
+      {"L", "mark lamps and emissive surfaces; click to select, drag to move a lamp"},
       {"Drag on a lamp's mark",
-       "move it along the picture; with Shift up and down; a spot's aim over surfaces"},
-      {"T", "show the tiles at work"},
+       "move it parallel to the picture, with Shift vertically; a spot's aim follows surfaces"},
+      {"T", "show the state of tiles"},
       {"1 \xE2\x80\x93 9", "scene cameras"},
-      {"Ctrl + B", "bookmark this view; they are in the menu Camera"},
-      {"B", "exposure by a click on something grey"}};
-  bool panels = false, asks = false;
+      {"Ctrl + B", "bookmark this view, see the Camera menu"},
+      {"B", "pick middle grey for the exposure with a click"}};
+  bool panels = false, inspects = false;
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     panels = panels || solver->has_panel();
-    // All of a kind in one row, or in as many as they take.
+    // All of a kind in as few rows as possible.
     std::string keys, what;
     const auto end_row = [&] {
       if (!keys.empty()) rows.emplace_back(std::exchange(keys, {}), std::exchange(what, {}));
@@ -53,29 +53,29 @@ std::vector<std::pair<std::string, std::string>> key_rows() {
     };
     for (const solvers::ViewInfo& view : solver->views) {
       add(view.shortcut, view.label);
-      asks = asks || view.inspects_pointer;
+      inspects = inspects || view.inspects_pointer;
     }
     end_row();
     for (const solvers::CommandInfo& command : solver->commands) add(command.shortcut, command.label);
     end_row();
   }
-  if (asks) rows.emplace_back("Pointer at rest", "while these views are shown: what lies there");
-  if (panels) rows.emplace_back("K", "the panels of solvers in use, the scene's");
+  if (inspects) rows.emplace_back("Pointer at rest", "details of that point, while these views are shown");
+  if (panels) rows.emplace_back("K", "next panel: solvers in use, then the scene");
   for (const auto& row : std::initializer_list<std::pair<const char*, const char*>>{
            {"", ""},
            {"Space", "pause, resume"},
-           {"R", "start the picture again"},
-           {"U", "the samples as they are, without the preview"},
+           {"R", "restart the picture"},
+           {"U", "show unfiltered samples, or the preview"},
            {"Tab", "panels"},
            {"F5", "reload shaders"},
            {"F12", "screenshot of the window"},
            {"Ctrl + O, Ctrl + S", "open, save"},
            {"Ctrl + L", "type a command"},
            {"Ctrl + Z, Ctrl + Shift + Z", "undo, redo"},
-           {"Esc", "take away a message or the selection, give up a load"},
+           {"Esc", "close a message, clear the selection, or cancel a load"},
            {"", ""},
-           {"Double-click a number", "type it"},
-           {"Shift, Ctrl while dragging", "ten times finer, coarser"}})
+           {"Double-click a number", "type a value"},
+           {"Shift, Ctrl while dragging", "ten times finer, ten times coarser"}})
     rows.emplace_back(row.first, row.second);
   return rows;
 }
@@ -93,7 +93,7 @@ void key_page(Ui& ui) {
     const std::vector<std::pair<std::string, std::string>> rows = key_rows();
     label("Keys and mouse", colour::text, theme().fonts.strong);
     gap(6);
-    // Columns as wide as their texts, as far as the window has room; longer texts take more lines.
+    // Columns as wide as their texts if the window has room; longer texts wrap.
     float names = 0, texts = 0;
     for (const auto& [keys, what] : rows)
       names = std::max(names, text_width(keys)), texts = std::max(texts, text_width(what));
@@ -164,14 +164,14 @@ bool Ui::pressed(int key, int mods) const {
 
 namespace {
 
-/// Views and commands of the solvers in use. Where two have the same key it is that of the one whose panel is
-/// shown, or else of the first.
+/// Keys of views and commands of the solvers in use. If two share a key, the one whose panel is shown has it,
+/// otherwise the first.
 void solver_keys(Ui& ui) {
   std::vector<const solvers::SolverInfo*> used;
   for (const solvers::SolverInfo* solver : solvers::registered())
     if (ui.uses(*solver)) used.insert(ui.side == solver->name ? used.begin() : used.end(), solver);
   std::set<char> taken;
-  const auto pressed = [&](char shortcut) {  // letters are GLFW's names of their keys
+  const auto pressed = [&](char shortcut) {  // a letter is GLFW's name of its key
     return shortcut && ui.pressed(shortcut) && taken.insert(shortcut).second;
   };
   for (const solvers::SolverInfo* solver : used) {
@@ -233,7 +233,7 @@ void handle_keys(Ui& ui) {
 }
 
 void draw_splitters(Ui& ui, const Areas& areas) {
-  // A strip over each border, in a window of its own so that it lies above both neighbours.
+  // A strip over each border, in a separate window so that it is above both neighbours.
   const auto strip = [&](const char* name, ImVec2 lo, ImVec2 hi, bool along_x, float direction,
                          float& value) {
     ImGui::SetNextWindowPos(lo);

@@ -8,7 +8,7 @@
 namespace lucerna::ui {
 namespace {
 
-/// Materials that some surface is made of.
+/// True for each material that a surface uses.
 std::vector<bool> used_materials(const scene::Scene& scene) {
   std::vector<bool> used(scene.materials.size());
   for (const scene::Instance& instance : scene.instances)

@@ -1,5 +1,4 @@
-// The dialogs that ask for a file: a field that completes, places to go to, and the program's own scenes as
-// pictures.
+// The file dialogs: a field with completion, places, and the program's scenes as pictures.
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui_internal.h>
@@ -24,12 +23,12 @@ struct Completion {
   bool folder;
 };
 
-/// The question that a dialog puts, by its purpose.
+/// The texts and the command of a dialog, by its purpose.
 struct Question {
   std::string title, note;
-  std::string command, answer;  ///< that is run with the file; the button's word for it
+  std::string command, answer;  ///< run with the file; label of its button
   std::vector<std::string> endings;
-  bool reads = false;  ///< the file is there already
+  bool reads = false;  ///< the file must exist
 };
 
 Question question(const Dialog& dialog) {
@@ -48,19 +47,19 @@ Question question(const Dialog& dialog) {
       return {
           .title = "Save the picture",
           .note =
-              ".exr holds all layers as floats, untouched; .png the picture through exposure and tone curve.",
+              ".exr stores all layers as unprocessed floats; .png the picture with exposure and tone curve.",
           .command = "image.save",
           .answer = "Save",
           .endings = {".exr", ".png"}};
     case Purpose::script:
       return {.title = "Save the session as a script",
-              .note = "What was done, one command a line; lucerna --script FILE does it again.",
+              .note = "The commands of this session, one per line; lucerna --script FILE repeats them.",
               .command = "script.save",
               .answer = "Save",
               .endings = {".lucerna"}};
     case Purpose::reference:
       return {.title = "Load a reference",
-              .note = "An .exr of this view and size, rendered long and with another seed.",
+              .note = "A converged .exr of this view and size, rendered with another seed.",
               .command = "reference.load",
               .answer = "Load",
               .endings = {".exr"},
@@ -82,7 +81,7 @@ Question question(const Dialog& dialog) {
   return {};
 }
 
-/// Files of a kind and folders that begin with what is typed.
+/// Files of the kind, and folders, that begin with the typed text.
 std::vector<Completion> completions(const std::string& typed, const Dialog& dialog) {
   std::vector<Completion> list;
   for (const std::string& path : commands::paths_starting(typed, question(dialog).endings)) {
@@ -104,8 +103,8 @@ bool is_folder(const std::string& path) {
   return fs::is_directory(path, error);
 }
 
-/// Tab puts the marked entry into the field, or what all entries share; arrows mark. Works on the text as it
-/// is at this moment, which may be newer than the list on the screen.
+/// Tab inserts the marked entry, or the common beginning of all entries; arrows mark. Uses the current text,
+/// which may be newer than the displayed list.
 int complete_field(ImGuiInputTextCallbackData* data) {
   auto& dialog = *static_cast<Dialog*>(data->UserData);
   if (data->EventFlag == ImGuiInputTextFlags_CallbackEdit) dialog.marked = -1, dialog.pictures = false;
@@ -135,19 +134,19 @@ fs::path folder_of(const std::string& path) {
   return whole.has_filename() ? whole.parent_path() : whole.parent_path().lexically_normal();
 }
 
-/// As the field has it: with a slash at the end.
+/// As shown in the field: with a slash at the end.
 std::string as_typed(const fs::path& folder) { return (folder / "").lexically_normal().string(); }
 
 void go_to(Dialog& dialog, const fs::path& folder) {
   std::string rest;
-  // What a file is to be called stays when another folder is chosen for it.
+  // A new file's name stays when another folder is chosen.
   if (!question(dialog).reads) rest = fs::path(dialog.path).filename().string();
   dialog.path = as_typed(folder) + rest;
   dialog.marked = -1, dialog.pictures = false, dialog.focus = true;
   ImGui::ClearActiveID();
 }
 
-/// One line of a list. Returns whether it was pressed.
+/// One line of a list. Returns true if it was pressed.
 bool row(const char* id, const std::string& text, bool on, ImU32 ink, const std::string& help = "") {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float w = ImGui::GetContentRegionAvail().x;
@@ -158,7 +157,7 @@ bool row(const char* id, const std::string& text, bool on, ImU32 ink, const std:
   return pressed;
 }
 
-/// Where one may want to go, at the left.
+/// Places, on the left.
 void places(Ui& ui, Dialog& dialog, std::string& chosen) {
   const bool opens = dialog.purpose == Dialog::Purpose::open;
   const fs::path here = folder_of(expanded(dialog.path));
@@ -221,7 +220,7 @@ void pictures(Ui& ui, std::string& chosen) {
   }
 }
 
-/// Files and folders that begin with what is typed, below the folder above them.
+/// Files and folders that begin with the typed text, below the parent folder.
 void files(Dialog& dialog, const Question& asked, const std::vector<Completion>& list, std::string& chosen) {
   const fs::path here = folder_of(expanded(dialog.path));
   std::error_code error;
@@ -233,8 +232,8 @@ void files(Dialog& dialog, const Question& asked, const std::vector<Completion>&
     const std::string text = !fs::is_directory(here, error) ? "There is no such folder"
                              : !asked.reads                 ? "A new file"
                              : whole
-                                 ? fmt::format("Nothing here ends in {}", fmt::join(asked.endings, " or "))
-                                 : "Nothing here begins like that";
+                                 ? fmt::format("No file here ends in {}", fmt::join(asked.endings, " or "))
+                                 : "No file here begins with this";
     const ImVec2 at = ImGui::GetCursorScreenPos();
     ImGui::Dummy({1, px(24)});
     draw_text(ImGui::GetWindowDrawList(), {at.x + px(8), at.y}, {at.x + px(400), at.y + px(24)}, text,
@@ -250,15 +249,15 @@ void files(Dialog& dialog, const Question& asked, const std::vector<Completion>&
   }
 }
 
-/// How a PNG is written.
+/// The way a PNG is saved.
 void way_of_saving(Dialog& dialog) {
   if (dialog.purpose != Dialog::Purpose::save || fs::path(dialog.path).extension() != ".png") return;
   const float w = px(112);
   if (button("##shown", "As shown", dialog.as_shown, w)) dialog.as_shown = true;
-  tooltip("As the window shows it: while there are few samples their noise is filtered.");
+  tooltip("As the window shows it: with few samples their noise is filtered.");
   ImGui::SameLine(0, px(4));
   if (button("##unfiltered", "Unfiltered", !dialog.as_shown, w)) dialog.as_shown = false;
-  tooltip("The samples as they are, with their noise.");
+  tooltip("The unfiltered samples.");
 }
 
 }  // namespace
@@ -267,7 +266,7 @@ void draw_file_dialog(Ui& ui) {
   Dialog& dialog = ui.dialog;
   if (dialog.purpose == Dialog::Purpose::none) return;
   const Question asked = question(dialog);
-  // Each has a field of its own, so that none begins with what was typed into another.
+  // Each dialog has a separate field, so texts typed into one do not appear in another.
   const std::string title = "##" + asked.command;
   if (dialog.fresh) ImGui::OpenPopup(title.c_str()), dialog.fresh = false, dialog.focus = true;
   const ImVec2 window = ImGui::GetIO().DisplaySize;
@@ -300,13 +299,13 @@ void draw_file_dialog(Ui& ui) {
                          ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
                              ImGuiInputTextFlags_CallbackHistory | ImGuiInputTextFlags_CallbackEdit,
                          complete_field, &dialog);
-    // Focus selects all; one wants to go on typing behind the last slash.
+    // Focus selects the whole text; move the cursor behind the last slash instead.
     if (ImGuiInputTextState* field = ImGui::GetInputTextState(ImGui::GetItemID());
         field && dialog.to_end && ImGui::IsItemActive()) {
       field->Stb.cursor = field->Stb.select_start = field->Stb.select_end = field->CurLenW;
       dialog.to_end = false;
     }
-    // The rest of the window's height is for what may be chosen.
+    // The list takes the rest of the window's height.
     const float above = ImGui::GetCursorScreenPos().y, below = px(56);
     const float most = dialog.purpose == Dialog::Purpose::open ? 13 : 9;
     const float rows = std::clamp(window.y - above - below - px(24), 3 * px(24), most * px(24));
@@ -374,7 +373,7 @@ void Ui::start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver
   dialog.fresh = true;
   std::error_code error;
   if (purpose == Dialog::Purpose::open) {
-    // Its own scenes are shown while no other is open.
+    // The program's scenes are shown while no other scene is open.
     const fs::path here = scene && !scene->file.empty() ? folder_of(scene->file) : fs::current_path(error);
     if (fs::is_directory(here, error)) dialog.path = as_typed(here);
     dialog.pictures =

@@ -1,5 +1,5 @@
-// What solvers hold under the pointer, in a card over the picture (solvers::Card). Lines in the picture are
-// drawn by the renderer.
+// Solvers' data at the inspected point, in a card over the picture (solvers::Card). The renderer draws lines
+// in the picture.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -61,7 +61,7 @@ class Writer {
           static_cast<size_t>(std::clamp(row.component, 0, static_cast<int>(colour::component.size()) - 1));
       list_->AddRectFilled({x, middle - px(4)}, {x + px(8), middle + px(4)}, colour::component[component],
                            px(2));
-      // The light's own colour.
+      // The light's colour.
       const float s = x + px(80);
       list_->AddRectFilled({s, middle - px(5)}, {s + px(10), middle + px(5)}, swatch(row.light), px(2));
       list_->AddRect({s, middle - px(5)}, {s + px(10), middle + px(5)}, colour::grey(80), px(2));
@@ -98,30 +98,33 @@ class Writer {
     for (const std::string& figure : texts) column(from, from + k_figure, figure, colour), from += k_figure;
   }
 
-  ImDrawList* list_;  // null: measures
+  ImDrawList* list_;  // null: measures only
   ImVec2 lo_;
   float y_;
 };
 
-/// Where a card of that size lies in a corner and not over a place; nothing when it does in every one, or has
-/// no room.
-std::optional<ImVec2> free_corner(const Area& area, const ImVec2& size, float edge, const ImVec2& place) {
+/// Where a card of that size lies in a corner, neither over a place nor over `taken`; nothing if no corner is
+/// free, or if it has no room.
+std::optional<ImVec2> free_corner(const Area& area, const ImVec2& size, float edge, const ImVec2& place,
+                                  const Area& taken) {
   if (size.x + 2 * edge > area.width() || size.y + 2 * edge > area.height()) return std::nullopt;
   const float left = area.lo.x + edge, right = area.hi.x - edge - size.x;
   const float top = area.lo.y + edge, bottom = area.hi.y - edge - size.y, clear = px(40);
   for (const ImVec2& lo : {ImVec2(right, top), ImVec2(left, top), ImVec2(right, bottom)}) {
     const bool over = place.x > lo.x - clear && place.x < lo.x + size.x + clear && place.y > lo.y - clear &&
                       place.y < lo.y + size.y + clear;
-    if (!over) return ImVec2(std::floor(lo.x), std::floor(lo.y));
+    const bool covers =
+        lo.x < taken.hi.x && lo.x + size.x > taken.lo.x && lo.y < taken.hi.y && lo.y + size.y > taken.lo.y;
+    if (!over && !covers) return ImVec2(std::floor(lo.x), std::floor(lo.y));
   }
   return std::nullopt;
 }
 
 }  // namespace
 
-void draw_inspection(Ui& ui, const Area& area) {
+void draw_inspection(Ui& ui, const Area& area, const Area& legend) {
   if (!ui.snapshot || !ui.snapshot->activity.empty()) return;
-  // The cards of all solvers that hold something there, one below the other on one ground.
+  // The cards of all solvers with data there, one below the other on a common background.
   std::vector<const Card*> cards;
   std::optional<vec2> place;
   for (const auto& report : ui.snapshot->reports)
@@ -137,16 +140,16 @@ void draw_inspection(Ui& ui, const Area& area) {
     }
     return writer.bottom() - lo.y;
   };
-  // In the corner that leaves what is looked at free; the upper right one before the others. In a small
-  // picture, where none does, in short.
+  // In a corner that keeps the inspected point visible, the upper right one first. In a small picture, where
+  // no corner does, shortened.
   const ImVec2 at(area.lo.x + place->x * area.width(), area.lo.y + place->y * area.height());
   const float w = px(k_width), edge = px(12);
   float h = write(nullptr, {0, 0});
-  std::optional<ImVec2> lo = free_corner(area, {w, h}, edge, at);
+  std::optional<ImVec2> lo = free_corner(area, {w, h}, edge, at, legend);
   if (!lo) {
     room = Card::Room::little;
     h = write(nullptr, {0, 0});
-    lo = free_corner(area, {w, h}, edge, at);
+    lo = free_corner(area, {w, h}, edge, at, legend);
   }
   if (!lo) return;
   const ImVec2 hi(lo->x + w, lo->y + h);

@@ -7,6 +7,7 @@
 
 #include "commands/light_edit.h"
 #include "emitters.h"
+#include "mark_layout.h"
 #include "session/pick.h"
 #include "state.h"
 #include "widgets.h"
@@ -14,9 +15,10 @@
 namespace lucerna::ui {
 namespace {
 
-constexpr float k_reach = 9;  // design pixels from its middle in which a handle is meant
+constexpr float k_reach = 9;   // design pixels from its middle in which a handle is meant
+constexpr float k_apart = 19;  // ... between the middles of two marks, so that none covers another
 
-/// How far the axis of a spot is drawn where it meets nothing, of the scene's radius.
+/// Drawn length of a spot's axis that hits nothing, relative to the scene's radius.
 constexpr float k_aim_of_extent = 0.25f;
 
 LampHandle aim_of(Ui& ui, uint32_t index, const scene::Light& light) {
@@ -26,6 +28,25 @@ LampHandle aim_of(Ui& ui, uint32_t index, const scene::Light& light) {
     if (const auto hit = rays->nearest(light.position, light.direction)) far = hit->distance;
   aim.point += far * light.direction;
   return aim;
+}
+
+/// Marks of what is selected stay where they belong; the others make room. Surfaces of one material that lie
+/// on one another have one mark.
+std::vector<LampHandle> without_overlap(const Ui& ui, const Area& shown, std::vector<LampHandle> list) {
+  const auto is_selected = [&](const LampHandle& h) {
+    return ui.selection ==
+           Selection{h.part == LampHandle::Part::surface ? Kind::material : Kind::light, h.light};
+  };
+  std::stable_partition(list.begin(), list.end(), is_selected);
+  std::vector<Mark> marks;
+  for (const LampHandle& h : list)
+    marks.push_back({h.at, h.part == LampHandle::Part::surface ? int64_t{h.light} : -1});
+  std::vector<LampHandle> placed;
+  for (const PlacedMark& p : place_marks(marks, px(k_apart), shown)) {
+    placed.push_back(list[p.mark]);
+    placed.back().mark = p.at;
+  }
+  return placed;
 }
 
 }  // namespace
@@ -57,14 +78,14 @@ std::vector<LampHandle> lamp_handles(Ui& ui, const Area& shown) {
   if (ui.light_marks)
     for (const EmittingSurface& surface : emitting_surfaces(ui))
       add({.light = surface.material, .part = LampHandle::Part::surface, .point = surface.middle, .at = {}});
-  return list;
+  return without_overlap(ui, shown, std::move(list));
 }
 
 std::optional<LampHandle> lamp_handle_at(Ui& ui, const Area& shown, const ImVec2& at) {
   std::optional<LampHandle> nearest;
   float least = px(k_reach);
   for (const LampHandle& handle : lamp_handles(ui, shown)) {
-    const float away = std::hypot(handle.at.x - at.x, handle.at.y - at.y);
+    const float away = std::hypot(handle.mark.x - at.x, handle.mark.y - at.y);
     if (away <= least) least = away, nearest = handle;
   }
   return nearest;
@@ -76,15 +97,35 @@ void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle
   const auto is_hot = [&](const LampHandle& h) {
     return hot && hot->light == h.light && hot->part == h.part;
   };
-  std::optional<ImVec2> aim;
-  for (const LampHandle& handle : lamp_handles(ui, shown)) {
+  const std::vector<LampHandle> handles = lamp_handles(ui, shown);
+  const auto line_to_lamp = [&](const LampHandle& aim) {
+    const auto lamp = std::find_if(handles.begin(), handles.end(), [&](const LampHandle& h) {
+      return h.light == aim.light && h.part == LampHandle::Part::place;
+    });
+    ImVec2 end;
+    if (lamp != handles.end())
+      end = lamp->mark;
+    else if (!project(ui.snapshot->camera, shown, ui.light(aim.light).position, end))
+      return;
+    list->AddLine(end, aim.mark, IM_COL32(0, 0, 0, 120), px(3));
+    list->AddLine(end, aim.mark, colour::accent, std::max(1.0f, px(1)));
+  };
+  // From a mark that had to make room to where it belongs; below all marks.
+  for (const LampHandle& handle : handles) {
+    if (handle.mark.x == handle.at.x && handle.mark.y == handle.at.y) continue;
+    list->AddLine(handle.mark, handle.at, IM_COL32(0, 0, 0, 120), px(3));
+    list->AddLine(handle.mark, handle.at, colour::text_dim, std::max(1.0f, px(1)));
+    list->AddCircleFilled(handle.at, px(2), colour::text, 12);
+  }
+  for (const LampHandle& handle : handles) {
     const bool surface = handle.part == LampHandle::Part::surface;
     const bool chosen = ui.selection == Selection{surface ? Kind::material : Kind::light, handle.light};
     const ImU32 ink = chosen || is_hot(handle) ? colour::accent : colour::text;
     const float r = px(is_hot(handle) ? 6.5f : 5);
     if (surface) {
       const auto square = [&](float half, auto&& draw) {
-        draw(ImVec2(handle.at.x - half, handle.at.y - half), ImVec2(handle.at.x + half, handle.at.y + half));
+        draw(ImVec2(handle.mark.x - half, handle.mark.y - half),
+             ImVec2(handle.mark.x + half, handle.mark.y + half));
       };
       square(r + px(1.5f), [&](auto lo, auto hi) { list->AddRectFilled(lo, hi, IM_COL32(0, 0, 0, 110)); });
       square(r, [&](auto lo, auto hi) { list->AddRect(lo, hi, ink, 0, 0, px(1.5f)); });
@@ -92,25 +133,20 @@ void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle
       continue;
     }
     if (handle.part == LampHandle::Part::aim) {
-      aim = handle.at;  // its lamp comes next
-      list->AddCircleFilled(handle.at, r, IM_COL32(0, 0, 0, 110), 20);
-      list->AddCircle(handle.at, 0.7f * r, ink, 20, px(1.5f));
+      line_to_lamp(handle);
+      list->AddCircleFilled(handle.mark, r, IM_COL32(0, 0, 0, 110), 20);
+      list->AddCircle(handle.mark, 0.7f * r, ink, 20, px(1.5f));
       for (const float way : {-1.0f, 1.0f}) {
-        list->AddLine({handle.at.x + way * r, handle.at.y}, {handle.at.x + 1.8f * way * r, handle.at.y}, ink,
-                      px(1.5f));
-        list->AddLine({handle.at.x, handle.at.y + way * r}, {handle.at.x, handle.at.y + 1.8f * way * r}, ink,
-                      px(1.5f));
+        list->AddLine({handle.mark.x + way * r, handle.mark.y},
+                      {handle.mark.x + 1.8f * way * r, handle.mark.y}, ink, px(1.5f));
+        list->AddLine({handle.mark.x, handle.mark.y + way * r},
+                      {handle.mark.x, handle.mark.y + 1.8f * way * r}, ink, px(1.5f));
       }
       continue;
     }
-    if (aim) {
-      list->AddLine(handle.at, *aim, IM_COL32(0, 0, 0, 120), px(3));
-      list->AddLine(handle.at, *aim, colour::accent, std::max(1.0f, px(1)));
-      aim.reset();
-    }
-    list->AddCircleFilled(handle.at, r + px(1.5f), IM_COL32(0, 0, 0, 110), 20);
-    list->AddCircle(handle.at, r, ink, 20, px(1.5f));
-    if (ui.light(handle.light).enabled) list->AddCircleFilled(handle.at, px(2), ink, 12);
+    list->AddCircleFilled(handle.mark, r + px(1.5f), IM_COL32(0, 0, 0, 110), 20);
+    list->AddCircle(handle.mark, r, ink, 20, px(1.5f));
+    if (ui.light(handle.light).enabled) list->AddCircleFilled(handle.mark, px(2), ink, 12);
   }
   list->PopClipRect();
 }
@@ -127,7 +163,7 @@ void drag_lamp(Ui& ui, const Area& shown) {
     const session::PickRay ray = session::pick_ray(ui.view->camera, at.x, at.y, ui.aspect);
     const auto hit = rays->nearest(ray.origin, ray.direction);
     const vec3 from = ui.light(handle.light).position;
-    // Where nothing is, in the distance in which it was.
+    // Without a surface there, at the previous distance.
     const vec3 to =
         hit ? hit->position : ray.origin + glm::distance(ray.origin, handle.point) * ray.direction;
     if (glm::distance(from, to) > 1e-4f * ui.view->extent)

@@ -20,6 +20,7 @@ struct LampHandle {
   Part part = Part::place;
   vec3 point{0};  ///< in the scene
   ImVec2 at;      ///< on the screen
+  ImVec2 mark;    ///< middle of its mark: `at`, or beside it where another mark lies
 };
 
 /// Projects a point of the scene to the screen; false if it is behind the eye.
@@ -27,7 +28,7 @@ bool project(const scene::Camera& camera, const Area& shown, const vec3& point, 
 
 /// The visible handles: of all lights if they are marked, of the selected lamp always. Suns have none.
 std::vector<LampHandle> lamp_handles(Ui& ui, const Area& shown);
-/// The nearest handle to a point of the screen, if close enough.
+/// The handle whose mark is the nearest to a point of the screen, if close enough.
 std::optional<LampHandle> lamp_handle_at(Ui& ui, const Area& shown, const ImVec2& at);
 /// `hot`: under the pointer, or dragged.
 void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle>& hot);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace lucerna::ui {
 
@@ -9,16 +10,51 @@ namespace {
 
 float held(float value, float least, float most) { return std::clamp(value, least, std::max(least, most)); }
 
+/// Narrows and folds the panels of a small window that the user has not arranged.
+void make_room_for_picture(Layout& layout, float width, float height) {
+  if (width >= k_roomy_width && height >= k_roomy_height) return;
+  const auto arranged = [&](Panel panel, bool by_user) { return by_user || layout.opened_last == panel; };
+  const bool keep_left = arranged(Panel::left, layout.left_arranged);
+  const bool keep_right = arranged(Panel::right, layout.right_arranged);
+  const bool keep_bottom = arranged(Panel::bottom, layout.bottom_arranged);
+  const auto picture_height = [&] {
+    return height - k_bar_height - k_toolbar_height - (layout.bottom_open ? layout.bottom : k_folded_bottom);
+  };
+  const auto narrowest = [](bool open, bool kept, float size) {
+    return !open ? k_folded : kept ? size : std::min(size, k_least_side);
+  };
+  const auto least_sides = [&] {
+    return narrowest(layout.left_open, keep_left, layout.left) +
+           narrowest(layout.right_open, keep_right, layout.right);
+  };
+  const float wanted = k_least_picture_share * width * height;
+  const auto enough = [&] { return (width - least_sides()) * picture_height() >= wanted; };
+  if (!keep_bottom && !enough()) layout.bottom_open = false;
+  if (!keep_right && !enough()) layout.right_open = false;
+  if (!keep_left && !enough()) layout.left_open = false;
+  // Sides are as wide as they can be.
+  const float least = least_sides(), most = (layout.left_open ? layout.left : k_folded) +
+                                            (layout.right_open ? layout.right : k_folded);
+  const float room = width - wanted / std::max(picture_height(), 1.0f);
+  if (most <= least || room >= most) return;
+  const float share = std::clamp((room - least) / (most - least), 0.0f, 1.0f);
+  for (const auto& [open, kept, size] :
+       {std::tuple<bool, bool, float&>(layout.left_open, keep_left, layout.left),
+        {layout.right_open, keep_right, layout.right}})
+    if (open && !kept && size > k_least_side) size = k_least_side + share * (size - k_least_side);
+}
+
 /// Folds what a window of that size, in design pixels, has no room for, and holds the rest to what leaves a
 /// usable picture.
 Layout fitted(Layout layout, float width, float height) {
+  make_room_for_picture(layout, width, height);
   const float side_room = width - k_least_picture_width;
   const auto both_fit = [&] {
     return (layout.left_open ? k_least_side : k_folded) + (layout.right_open ? k_least_side : k_folded) <=
            side_room;
   };
   if (!both_fit()) (layout.opened_last == Panel::right ? layout.left_open : layout.right_open) = false;
-  // Where not even one fits, the one that was opened last is shown at the picture's cost.
+  // If not even one fits, the panel opened last is shown at the picture's cost.
   if (!both_fit() && layout.opened_last != Panel::left && layout.opened_last != Panel::right)
     layout.left_open = layout.right_open = false;
   // Each side may take what the other leaves beyond the picture.

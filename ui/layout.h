@@ -16,6 +16,9 @@ struct Layout {
   bool left_open = true, right_open = true, bottom_open = true;
   /// The panel opened last. It is shown if there is no room for all. None: left, then right, then bottom.
   std::optional<Panel> opened_last;
+  /// The user has folded, opened or resized the panel: a small window does not fold it for the picture's
+  /// sake.
+  bool left_arranged = false, right_arranged = false, bottom_arranged = false;
 };
 
 struct Area {
@@ -37,8 +40,15 @@ inline constexpr float k_least_side = 232, k_least_bottom = 96;
 /// Below this height the strip is folded.
 inline constexpr float k_useful_bottom = 140;
 
-/// Arranges the parts. If the window leaves no usable picture beside the chosen panels, they are shown
-/// narrower, then folded; the choice stays for a larger window. `scale` is window pixels per design pixel.
+/// A window below either size [design pixels] is small.
+inline constexpr float k_roomy_width = 1280, k_roomy_height = 800;
+/// Share of a small window that the picture has, at least, unless the user has arranged panels.
+inline constexpr float k_least_picture_share = 0.5f;
+
+/// Arranges the parts. On a small window the panels that the user has not arranged are narrowed and folded,
+/// the bottom strip first, until the picture has k_least_picture_share of it. If the window leaves no usable
+/// picture beside the chosen panels, they are shown narrower, then folded; the choice stays for a larger
+/// window. `scale` is window pixels per design pixel.
 Areas arrange(const Layout& layout, const ImVec2& window, float scale);
 
 }  // namespace lucerna::ui

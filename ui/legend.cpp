@@ -1,9 +1,13 @@
-// The legend of what lies over the picture, at its lower left: the ramp of a heat map, what solvers have
-// drawn (solvers::Legend), the states of tiles.
+// The legend of what lies over the picture, at its lower left: the layer shown, what solvers have drawn
+// (solvers::Legend), marks of lights, the states of tiles. Each says in words what is drawn and what its
+// colours mean.
+#include "legend.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "chart.h"
 #include "film/tile_scale.h"
@@ -18,7 +22,7 @@ constexpr float k_ramp_width = 248, k_ramp_height = 8;
 
 ImU32 ramp_ink(uint32_t ramp, float t) { return ink(shared::ramp_color(ramp, t)); }
 
-/// The ramp from left to right, with labels under the given places (0..1).
+/// The ramp from left to right, with labels under the given positions (0..1).
 void ramp_bar(ImDrawList* list, const ImVec2& at, uint32_t ramp,
               const std::vector<std::pair<float, std::string>>& labels) {
   constexpr int k_steps = 32;
@@ -29,7 +33,7 @@ void ramp_bar(ImDrawList* list, const ImVec2& at, uint32_t ramp,
     list->AddRectFilledMultiColor({at.x + a * w, at.y}, {at.x + b * w, at.y + h}, from, to, to, from);
   }
   ImFont* font = theme().fonts.small;
-  float taken = at.x - px(8);  // up to where there are labels
+  float taken = at.x - px(8);  // end of the labels so far
   for (const auto& [place, text] : labels) {
     const float x = std::floor(at.x + place * w);
     list->AddLine({x, at.y + h}, {x, at.y + h + px(3)}, colour::text_dim);
@@ -41,12 +45,6 @@ void ramp_bar(ImDrawList* list, const ImVec2& at, uint32_t ramp,
     draw_text(list, {middle - half - 1, at.y + h + px(3)}, {middle + half + px(2), at.y + h + px(18)}, text,
               colour::text, Align::left, font);
   }
-}
-
-const char* title_of(uint32_t layer) {
-  if (layer == shared::k_layer_samples) return "Samples a pixel";
-  if (layer == shared::k_layer_error) return "Relative error, estimated, of 8 \xC3\x97 8 pixels";
-  return "Device time a pixel";
 }
 
 std::vector<std::pair<float, std::string>> heat_labels(const session::Legend& legend) {
@@ -93,7 +91,7 @@ void tile_sample(ImDrawList* list, const ImVec2& lo, uint32_t state) {
   }
 }
 
-/// A square of a colour and what it stands for; returns the x behind it.
+/// A square of a colour and its meaning; returns the x behind it.
 float swatch(ImDrawList* list, const ImVec2& at, ImU32 colour, const std::string& name) {
   ImFont* font = theme().fonts.small;
   list->AddRectFilled({at.x, at.y + px(3)}, {at.x + px(10), at.y + px(13)}, colour, px(2));
@@ -103,7 +101,7 @@ float swatch(ImDrawList* list, const ImVec2& at, ImU32 colour, const std::string
   return end + px(10);
 }
 
-/// Labels of a solver's ramp; where it has none, of its range.
+/// Labels of a solver's ramp; by default the ticks of its range.
 std::vector<std::pair<float, std::string>> ramp_labels(const solvers::Legend& legend) {
   using Scale = solvers::Legend::Range::Unit;
   std::vector<std::pair<float, std::string>> labels;
@@ -124,19 +122,17 @@ std::vector<std::pair<float, std::string>> ramp_labels(const solvers::Legend& le
   return labels;
 }
 
-constexpr float k_title = 20, k_ramp = 28, k_mark = 18;  // heights
+constexpr float k_title = 20, k_ramp = 28, k_mark = 18, k_between = 8;  // heights
 
-/// With its title, without what parts it from the next.
-float height_of(const solvers::Legend& legend) {
-  float h = px(k_title);
-  if (legend.ramp) h += px(k_ramp);
+/// Without title and note.
+float body_height(const solvers::Legend& legend) {
+  float h = legend.ramp ? px(k_ramp) : 0;
   if (!legend.marks.empty())
-    h += legend.marks_in_line ? px(20) : px(k_mark * static_cast<float>(legend.marks.size()) - 2);
+    h += legend.marks_in_line ? px(20) : px(k_mark * static_cast<float>(legend.marks.size()));
   return h;
 }
 
-/// Below its title, at `at`.
-void draw_below_title(ImDrawList* list, ImVec2 at, const solvers::Legend& legend) {
+void draw_body(ImDrawList* list, ImVec2 at, const solvers::Legend& legend) {
   if (legend.ramp) {
     ramp_bar(list, at, *legend.ramp, ramp_labels(legend));
     at.y += px(k_ramp);
@@ -152,85 +148,156 @@ void draw_below_title(ImDrawList* list, ImVec2 at, const solvers::Legend& legend
   }
 }
 
-}  // namespace
+/// The legend of one thing: a title, what draws itself at a place below it, and a sentence.
+struct Block {
+  std::string title, note;
+  float body = 0;  ///< height
+  std::function<void(ImDrawList*, const ImVec2&)> draw;
 
-void draw_legend(Ui& ui, const Area& area) {
-  const session::Snapshot* s = ui.snapshot.get();
-  if (!s || !s->activity.empty()) return;
-  // The coarse first image has neither samples to be counted nor tiles; solvers draw over it too.
-  const bool heat = !s->coarse && s->legend.layer != 0, tiles = !s->coarse && s->tiles && s->accuracy;
-  std::vector<const solvers::Legend*> legends;
-  for (const auto& report : s->reports)
-    for (const solvers::Legend& legend : report->legends) legends.push_back(&legend);
-  if (!heat && !tiles && legends.empty()) return;
+  float note_height() const {
+    if (note.empty()) return 0;
+    const ImFont* font = theme().fonts.small;
+    return font->CalcTextSizeA(font->FontSize, 1e9f, px(k_ramp_width), note.c_str()).y + px(4);
+  }
+  float height(bool notes) const { return px(k_title) + body + (notes ? note_height() : 0); }
+};
+
+Block heat_block(const session::Legend& legend) {
+  const HeatWords words = heat_words(legend.layer);
+  return {words.title, words.note, px(k_ramp), [legend](ImDrawList* list, const ImVec2& at) {
+            ramp_bar(list, at, legend.ramp, heat_labels(legend));
+          }};
+}
+
+/// The error of tiles, and how many are in which state.
+Block tiles_block(const session::Accuracy& a) {
   struct Row {
     uint32_t state;
     std::string name, count;
   };
   std::vector<Row> rows;
   uint32_t heavy = 0;
-  if (tiles) {
-    const session::Accuracy& a = *s->accuracy;
-    for (const session::TileStatus& t : a.tiles) heavy += t.heavy_tailed;
-    const auto row = [&](uint32_t state, const char* name, bool always) {
-      const uint32_t n = a.count(state);
-      if (n > 0 || always) rows.push_back({state, name, count_text(n)});
+  for (const session::TileStatus& t : a.tiles) heavy += t.heavy_tailed;
+  const auto add = [&](uint32_t state, const char* name, bool always) {
+    const uint32_t n = a.count(state);
+    if (n > 0 || always) rows.push_back({state, name, count_text(n)});
+  };
+  add(shared::k_tile_waiting, "before the minimum of samples", false);
+  add(shared::k_tile_active, a.adaptive ? "at work" : "over the target", true);
+  add(shared::k_tile_done, a.adaptive ? "done" : "under the target", true);
+  add(shared::k_tile_capped, "stays over the target", false);
+  const float line = px(18);
+  const auto draw = [rows, heavy, line, target = a.target](ImDrawList* list, const ImVec2& at) {
+    std::vector<std::pair<float, std::string>> labels;
+    for (const double times : {8.0, 4.0, 2.0, 1.0})
+      labels.emplace_back(film::tile_position(times * target, target),
+                          (times == 8 ? "\xE2\x89\xA5 " : "") + tick_text(times * target, Unit::relative));
+    ramp_bar(list, at, shared::k_ramp_tiles, labels);
+    float y = at.y + px(k_ramp);
+    ImFont* font = theme().fonts.small;
+    const auto row = [&](const std::string& name, const std::string& count) {
+      const ImVec2 lo(at.x + px(20), y), hi(at.x + px(k_ramp_width), y + line);
+      draw_text(list, lo, hi, name, colour::text_dim, Align::left, font);
+      draw_text(list, lo, hi, count, colour::text, Align::right, font);
+      y += line;
     };
-    row(shared::k_tile_waiting, "before the minimum of samples", false);
-    row(shared::k_tile_active, a.adaptive ? "at work" : "over the target", true);
-    row(shared::k_tile_done, a.adaptive ? "done" : "under the target", true);
-    row(shared::k_tile_capped, "stays over the target", false);
-  }
-  const float line = px(18), pad = px(12);
-  const float heat_height = heat ? px(48) : 0;
-  const float tiles_height = tiles ? px(50) + line * static_cast<float>(rows.size() + (heavy > 0)) : 0;
-  float solver_height = 0;
-  for (const solvers::Legend* legend : legends) solver_height += height_of(*legend);
-  const float between = px(6) * static_cast<float>(size_t{heat} + size_t{tiles} + legends.size() - 1);
-  const float w = px(k_ramp_width) + 2 * pad, h = heat_height + tiles_height + solver_height + pad + between;
-  if (h > area.height() - px(24) || w > area.width() - px(24)) return;
-  const ImVec2 lo(area.lo.x + px(12), area.hi.y - h - px(12)), hi(lo.x + w, lo.y + h);
-  ImDrawList* list = card(lo, hi, 0.92f);
-  ImFont* font = theme().fonts.small;
-  float y = lo.y + px(6);
-  const auto title = [&](const std::string& text) {
-    draw_text(list, {lo.x + pad, y}, {hi.x, y + px(16)}, text, colour::text_dim, Align::left, font);
-    y += px(20);
-  };
-  if (heat) {
-    title(title_of(s->legend.layer));
-    ramp_bar(list, {lo.x + pad, y}, s->legend.ramp, heat_labels(s->legend));
-    y += heat_height - px(20) + px(6);
-  }
-  for (const solvers::Legend* legend : legends) {
-    title(legend->title);
-    draw_below_title(list, {lo.x + pad, y}, *legend);
-    y += height_of(*legend) - px(k_title) + px(6);
-  }
-  if (!tiles) return;
-  const session::Accuracy& a = *s->accuracy;
-  title("Tiles: error as seen, estimated");
-  std::vector<std::pair<float, std::string>> labels;
-  for (const double times : {8.0, 4.0, 2.0, 1.0})
-    labels.emplace_back(film::tile_position(times * a.target, a.target),
-                        (times == 8 ? "\xE2\x89\xA5 " : "") + tick_text(times * a.target, Unit::relative));
-  ramp_bar(list, {lo.x + pad, y}, shared::k_ramp_tiles, labels);
-  y += px(28);
-  const auto row = [&](const std::string& name, const std::string& count) {
-    draw_text(list, {lo.x + pad + px(20), y}, {hi.x, y + line}, name, colour::text_dim, Align::left, font);
-    draw_text(list, {lo.x, y}, {hi.x - pad, y + line}, count, colour::text, Align::right, font);
-  };
-  for (const Row& r : rows) {
-    tile_sample(list, {lo.x + pad, y + px(3)}, r.state);
-    row(r.name, r.count);
-    y += line;
-  }
-  if (heavy > 0) {
-    const ImVec2 corner(lo.x + pad + px(12), y + px(3));
+    for (const Row& r : rows) {
+      tile_sample(list, {at.x, y + px(3)}, r.state);
+      row(r.name, r.count);
+    }
+    if (heavy == 0) return;
+    const ImVec2 corner(at.x + px(12), y + px(3));
     list->AddRectFilled({corner.x - px(12), corner.y}, {corner.x, corner.y + px(12)}, colour::grey(50));
     list->AddTriangleFilled({corner.x - px(6), corner.y}, corner, {corner.x, corner.y + px(6)}, colour::text);
     row("light in rare large amounts", count_text(heavy));
+  };
+  return {
+      "Tiles: error as seen, estimated",
+      "Colour of an outline: the tile's error relative to the light around it; at the right end, the target.",
+      px(k_ramp) + line * static_cast<float>(rows.size() + (heavy > 0)), draw};
+}
+
+}  // namespace
+
+HeatWords heat_words(uint32_t layer) {
+  if (layer == shared::k_layer_samples)
+    return {"Samples per pixel", "Dark: few. Bright: as many as a pixel may take."};
+  if (layer == shared::k_layer_error)
+    return {"Error as seen, estimated",
+            "Of squares of 8 \xC3\x97 8 pixels, relative to the light around them. Middle of the scale: the "
+            "target error."};
+  return {"Device time per pixel", "Time that the paths of a pixel took. Middle of the scale: the mean."};
+}
+
+std::vector<solvers::Legend> window_legends(const session::Legend& layer, bool light_marks) {
+  std::vector<solvers::Legend> list;
+  if (layer.layer == shared::k_layer_albedo)
+    list.push_back({.title = "Albedo",
+                    .note = "Share of the light that the first surface reflects, by colour. Black: none. "
+                            "White: all."});
+  if (layer.layer == shared::k_layer_normal)
+    list.push_back({.title = "Normal",
+                    .marks = {{{1, 0.5f, 0.5f}, "+x"}, {{0.5f, 1, 0.5f}, "+y, up"}, {{0.5f, 0.5f, 1}, "+z"}},
+                    .note = "Direction that the first surface faces, in the scene's axes."});
+  if (layer.layer == shared::k_layer_depth)
+    list.push_back({.title = "Depth",
+                    .marks = {{vec3(0), "0 m"}, {vec3(1), fmt::format("{:.3g} m or farther", layer.hi)}},
+                    .note = "Distance of the first surface along the view. White too: no surface."});
+  if (light_marks)
+    list.push_back({.title = "Lights",
+                    .note =
+                        "Circle: lamp. Square: emitting surface. Cross: aim of the selected spot. A filled "
+                        "centre: on."});
+  return list;
+}
+
+Area draw_legend(Ui& ui, const Area& frame) {
+  const session::Snapshot* s = ui.snapshot.get();
+  if (!s || !s->activity.empty() || !ui.has_picture()) return {};
+  std::vector<Block> blocks;
+  // The coarse first image has neither samples to be counted nor tiles; solvers draw over it too.
+  if (!s->coarse && s->legend.layer >= shared::k_layer_samples) blocks.push_back(heat_block(s->legend));
+  const std::vector<solvers::Legend> own = window_legends(s->legend, ui.light_marks);
+  const auto add = [&](const solvers::Legend& legend) {
+    blocks.push_back({legend.title, legend.note, body_height(legend),
+                      [&legend](ImDrawList* list, const ImVec2& at) { draw_body(list, at, legend); }});
+  };
+  std::for_each(own.begin(), own.end(), add);
+  for (const auto& report : s->reports) std::for_each(report->legends.begin(), report->legends.end(), add);
+  if (!s->coarse && s->tiles && s->accuracy) blocks.push_back(tiles_block(*s->accuracy));
+  if (blocks.empty()) return {};
+
+  const float pad = px(12), edge = px(12), w = px(k_ramp_width) + 2 * pad;
+  const auto height = [&](size_t count, bool notes) {
+    float h = pad;
+    for (size_t i = 0; i < count; ++i) h += blocks[i].height(notes) + (i > 0 ? px(k_between) : 0);
+    return h;
+  };
+  // In the corner of the picture, or of the room around a small one; without sentences, then without the
+  // last blocks, where there is no room for all.
+  const auto fits = [&](const Area& area, float h) {
+    return h + 2 * edge <= area.height() && w + 2 * edge <= area.width();
+  };
+  const Area& area = fits(frame, height(blocks.size(), true)) ? frame : ui.picture;
+  const bool notes = fits(area, height(blocks.size(), true));
+  size_t shown = blocks.size();
+  while (shown > 0 && !fits(area, height(shown, notes))) --shown;
+  if (shown == 0) return {};
+  const float h = height(shown, notes);
+  const ImVec2 lo(area.lo.x + edge, area.hi.y - h - edge);
+  ImDrawList* list = card(lo, {lo.x + w, lo.y + h}, 0.92f);
+  ImFont* font = theme().fonts.small;
+  ImVec2 at(lo.x + pad, lo.y + px(6));
+  for (size_t i = 0; i < shown; ++i) {
+    const Block& block = blocks[i];
+    draw_text(list, at, {lo.x + w - pad, at.y + px(16)}, block.title, colour::text, Align::left, font);
+    block.draw(list, {at.x, at.y + px(k_title)});
+    if (notes && !block.note.empty())
+      list->AddText(font, font->FontSize, {at.x, at.y + px(k_title) + block.body}, colour::text_dim,
+                    block.note.c_str(), nullptr, px(k_ramp_width));
+    at.y += block.height(notes) + px(k_between);
   }
+  return {lo, {lo.x + w, lo.y + h}};
 }
 
 }  // namespace lucerna::ui

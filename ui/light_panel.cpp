@@ -13,17 +13,18 @@ namespace lucerna::ui {
 namespace {
 
 const char* meaning(int component) {
-  static const char* texts[] = {"Primary: emitters and direct light, also seen in mirrors and through glass.",
-                                "Secondary: light after one diffuse interreflection.",
-                                "Tertiary: light after deeper interreflection, and caustics seen in it.",
-                                "Caustic: light focused on diffuse surfaces by mirrors and glass."};
+  static const char* texts[] = {
+      "Primary: emitters and direct light, also seen in mirrors and through glass.",
+      "Secondary: light after one diffuse interreflection.",
+      "Tertiary: light after further diffuse interreflections, and caustics seen in it.",
+      "Caustic: light focused on diffuse surfaces by mirrors and glass."};
   return texts[component];
 }
 
-/// What a value of components.X means: a solver's name, two joined by a plus, or off.
+/// The meaning of a value of components.X: a solver's name, two joined by a plus, or off.
 std::string solver_help(const std::string& value) {
   if (value == "off")
-    return "Off: its paths are not traced beyond what the others need, and its light is missing.";
+    return "Off: the component is missing; its paths are traced only where other components need them.";
   const size_t plus = value.find('+');
   const solvers::SolverInfo* solver = solvers::find(value.substr(0, plus));
   const std::string first = solver ? solver->help : "";
@@ -56,14 +57,15 @@ void component_row(Ui& ui, int c, float width) {
             off ? colour::text_faint : colour::text, Align::left, theme().fonts.strong);
   ImGui::SetCursorScreenPos({at.x + width - px(48), at.y});
   if (sign_button("##show", Sign::eye, shown)) ui.act("view.show", name, !shown);
-  tooltip(fmt::format("{} the {} layer in the shown sum. Costs no samples; what is computed does not change.",
-                      shown ? "Leaves out" : "Shows", name));
+  tooltip(
+      fmt::format("{} the {} layer in the displayed sum. Keeps all samples; the computation does not change.",
+                  shown ? "Hides" : "Shows", name));
   ImGui::SetCursorScreenPos({at.x + width - px(22), at.y});
   if (sign_button("##solo", Sign::solo, ui.solo() == c, colour::accent))
     ui.act("view.solo", ui.solo() == c ? "none" : name.c_str());
   tooltip(ui.solo() == c
-              ? "Back to the layers shown before."
-              : fmt::format("Shows the {} layer alone; press again for the layers shown before.", name));
+              ? "Shows the previous layers again."
+              : fmt::format("Shows the {} layer only; press again for the previous layers.", name));
 
   // Second line: solver, share, device time.
   const float line = at.y + px(26);
@@ -71,7 +73,7 @@ void component_row(Ui& ui, int c, float width) {
   const OptionInfo* option = plan::find_option(key);
   float solver_width = px(76);
   if (option) {
-    // Two names joined are long: they take the place of the time.
+    // Two joined names are long: they take the place of the time.
     const std::string& chosen_name = ui.setting(key);
     const float beside = chosen_name.find('+') == std::string::npos ? px(154) : px(102);
     for (const std::string& solver : option->choices)
@@ -92,7 +94,7 @@ void component_row(Ui& ui, int c, float width) {
   const bool known = status && !off && ui.snapshot->samples > 0;
   const double error = known && ui.snapshot->accuracy ? ui.snapshot->accuracy->error()[index + 1] : 0;
   const double noise_share = error > 0 ? ui.snapshot->accuracy->ledger.entries().back().share(c) : 0;
-  // The share stands beside the name; error and time beside the solver.
+  // The share is beside the name; error and time beside the solver.
   if (width > px(200))
     draw_text(list, {at.x + px(100), at.y}, {at.x + width - px(56), at.y + px(22)},
               known ? fmt::format("{:.1f} %", 100 * status->share) : "\xE2\x80\x93",
@@ -107,13 +109,12 @@ void component_row(Ui& ui, int c, float width) {
             known ? colour::text_dim : colour::text_faint, Align::right);
   ImGui::SetCursorScreenPos({figures, line});
   ImGui::InvisibleButton("##figures", {std::max(1.0f, right - figures), px(24)});
-  tooltip(
-      known ? fmt::format("Estimated noise of this component as seen: root mean square over the pixels, each "
-                          "relative to the light around it. It is {:.0f} % of the picture's noise (squared). "
-                          "Beside it the device time that its rays cost per sample a pixel. Its share of "
-                          "the light is {:.1f} %, its mean luminance {:.4g}.",
-                          100 * noise_share, 100 * status->share, status->mean_luminance)
-            : "Nothing has been measured yet, or the component is off.");
+  tooltip(known ? fmt::format("Estimated noise of this component as seen: root mean square over the pixels, "
+                              "each relative to the light around it. It is {:.0f} % of the picture's noise "
+                              "(squared). Next to it the device time of its rays per sample of a pixel. Its "
+                              "share of the light is {:.1f} %, its mean luminance {:.4g}.",
+                              100 * noise_share, 100 * status->share, status->mean_luminance)
+                : "Not measured yet, or the component is off.");
 
   // Third line: the share as a bar.
   ImGui::SetCursorScreenPos({at.x + px(18), at.y + px(54)});
@@ -124,14 +125,14 @@ void component_row(Ui& ui, int c, float width) {
 
 void components(Ui& ui, float width) {
   for (int c = 0; c < session::k_components; ++c) component_row(ui, c, width);
-  // The sum: time of all, stacked.
+  // The sum: stacked times of all components.
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImDrawList* list = ImGui::GetWindowDrawList();
   double total = 0, luminance = 0;
   if (ui.snapshot && ui.snapshot->samples > 0)
     for (const session::ComponentStatus& status : ui.snapshot->components)
       total += status.ms_per_sample, luminance += status.mean_luminance;
-  draw_text(list, {at.x + px(18), at.y}, {at.x + width, at.y + px(20)}, "Time a sample", colour::text_dim);
+  draw_text(list, {at.x + px(18), at.y}, {at.x + width, at.y + px(20)}, "Time per sample", colour::text_dim);
   draw_text(list, at, {at.x + width, at.y + px(20)}, total > 0 ? ms_text(total) : "\xE2\x80\x93",
             total > 0 ? colour::text : colour::text_faint, Align::right);
   ImGui::SetCursorScreenPos({at.x + px(18), at.y + px(24)});
@@ -142,32 +143,31 @@ void components(Ui& ui, float width) {
           {static_cast<float>(ui.snapshot->components[c].ms_per_sample / total), colour::component[c]});
   stacked_bar(parts, 6, width - px(18));
   tooltip(
-      "Device time of one sample a pixel, divided among the components: amber primary, teal secondary, "
+      "Device time per sample of a pixel, divided among the components: amber primary, teal secondary, "
       "violet tertiary, coral caustic.");
   ImGui::SetCursorScreenPos({at.x, at.y + px(40)});
 }
 
-/// As many as its default is written with, and two at least.
+/// As many as in the default value, at least two.
 int decimals_of(const OptionInfo& option) {
   const size_t point = option.fallback.find('.');
   return point == std::string::npos ? 2 : std::max(2, int(option.fallback.size() - point) - 1);
 }
 
-/// Whether the name says the unit already: "Samples 256", not "Samples 256 samples".
+/// True if the name contains the unit: "Samples 256", not "Samples 256 samples".
 bool named_by_unit(std::string name, const std::string& unit) {
   for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return !unit.empty() && (" " + name + " ").find(" " + unit + " ") != std::string::npos;
 }
 
-/// Whether an option has a place of its own elsewhere in the window (or none: texts that belong to the
-/// scene).
+/// True if an option is shown elsewhere in the window, or nowhere: texts that belong to the scene.
 bool placed_elsewhere(const OptionInfo& option) {
   for (const char* head : {"components.", "show.", "film.", "overlay."})
     if (option.key.rfind(head, 0) == 0) return true;
   return option.type == OptionType::text || solvers::owner_of(option.key);
 }
 
-/// The options of the render, and what it is to do.
+/// The options of the render, and its buttons.
 void render_rows(Ui& ui) {
   for (const OptionInfo& option : plan::options())
     if (!placed_elsewhere(option)) option_control(ui, option.key, option_label(option));
@@ -177,10 +177,10 @@ void render_rows(Ui& ui) {
   ImGui::BeginDisabled(!ui.snapshot);
   if (button("##pause", paused ? "Resume" : "Pause", paused, half))
     ui.act(paused ? "render.resume" : "render.pause");
-  tooltip("Stops taking samples, and goes on later from there. Space.");
+  tooltip("Pauses sampling; Resume continues with the present samples. Space.");
   ImGui::SameLine(0, px(8));
-  if (button("##restart", "Start again", false, width - half - px(8))) ui.act("render.restart");
-  tooltip("Throws the samples away and starts the picture again. R.");
+  if (button("##restart", "Restart", false, width - half - px(8))) ui.act("render.restart");
+  tooltip("Discards all samples and restarts the picture. R.");
   ImGui::EndDisabled();
 }
 
@@ -194,7 +194,7 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
   if (option->type == OptionType::integer || option->type == OptionType::real)
     help += fmt::format(" From {:.12g} to {:.12g}{}{}.", option->lo, option->hi,
                         option->unit.empty() ? "" : " ", option->unit);
-  if (option->restarts) help += " A change starts the picture again.";
+  if (option->restarts) help += " A change restarts the picture.";
   switch (option->type) {
     case OptionType::choice: {
       int chosen =
@@ -221,13 +221,13 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
       if (whole) how.step = 1;
       if (option->hi > 4e9)
         how.hi = 65535, how.bar = false, how.travel = 0.01f,
-        how.typed_hi = 16777215;  // seeds: a range that a hand can hit
+        how.typed_hi = 16777215;  // seeds: a range that can be dragged
       if (slider("##number", name, value, how))
         ui.act("set", key,
                whole ? fmt::format("{:.0f}", std::clamp<double>(value, option->lo, option->hi))
                      : fmt::format("{:.6g}", value));
       if (option->hi > 4e9)
-        help = option->help + " Double-click to type; drag up to 65535. A change starts the picture again.";
+        help = option->help + " Double-click to type; drag up to 65535. A change restarts the picture.";
       break;
     }
     case OptionType::text:

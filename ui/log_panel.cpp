@@ -1,4 +1,4 @@
-// The log and the console under it.
+// The log and the console below it.
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
@@ -28,7 +28,7 @@ ImU32 level_colour(log::Level level) {
 
 const char* const k_level_names[] = {"debug", "info", "warning", "error"};
 
-/// Tab completes what is typed at the console, arrows go through what was typed before.
+/// Tab completes the text typed at the console, arrows browse its history.
 int edit_console(ImGuiInputTextCallbackData* data) {
   auto& ui = *static_cast<Ui*>(data->UserData);
   Console& console = ui.console;
@@ -52,7 +52,7 @@ int edit_console(ImGuiInputTextCallbackData* data) {
     const auto differ = std::mismatch(common.begin(), common.end(), word.begin(), word.end());
     common.erase(differ.first, common.end());
   }
-  // The last word is replaced; one that is complete is parted from the next, unless its value follows.
+  // The last word is replaced; a space follows a complete word, unless its value follows.
   const size_t begin = commands::last_word(typed);
   if (words.size() == 1 && common.back() != '=' && common.back() != '/') common += ' ';
   if (common.size() > typed.size() - begin || words.size() == 1)
@@ -60,7 +60,7 @@ int edit_console(ImGuiInputTextCallbackData* data) {
   return 0;
 }
 
-/// What the console says to the right of what is typed: what may follow, or how the command goes on.
+/// The console's hint to the right of the typed text: possible continuations.
 std::string console_hint(const Ui& ui) {
   const std::string& typed = ui.console.text;
   if (typed.empty()) return "";
@@ -98,7 +98,7 @@ void draw_console(Ui& ui, const Area& area) {
   ImGui::PopStyleColor();
   ImGui::PopStyleVar(2);
   console.active = ImGui::IsItemActive();
-  tooltip("Carries out a command. Tab completes, arrows go back, 'help' lists the commands. Ctrl+L.");
+  tooltip("Runs a command. Tab completes, arrows browse the history, 'help' lists the commands. Ctrl+L.");
   const float used = px(24) + text_width(console.text) + px(14);
   const std::string hint = console.active ? console_hint(ui) : console.text.empty() ? "Command" : "";
   const ImVec2 lo(area.lo.x + (console.text.empty() ? px(26) : used), area.lo.y);
@@ -144,7 +144,7 @@ void draw_log(Ui& ui, const Area& area) {
     float right = area.hi.x - px(36);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const auto chip = [&](const char* id, const std::string& text, bool on, ImU32 ink, bool counted = false) {
-      // Room for two digits, so that the first lines do not push the neighbours about.
+      // Room for two digits, so the first lines do not move the neighbours.
       const std::string head = text.substr(0, text.find(' '));
       const float w = std::max(text_width(text, theme().fonts.small),
                                counted ? text_width(head + " 00", theme().fonts.small) : 0) +
@@ -160,9 +160,9 @@ void draw_log(Ui& ui, const Area& area) {
       return pressed;
     };
     if (chip("##clear", "Clear", false, colour::text)) ui.act("log.clear");
-    tooltip("Empties the log.");
+    tooltip("Clears the log.");
     if (chip("##copy", "Copy", false, colour::text)) ui.act("log.copy");
-    tooltip("Copies the lines shown to the clipboard.");
+    tooltip("Copies the displayed lines to the clipboard.");
     right -= px(8);
     for (int level = 3; level >= 0; --level) {
       const auto l = static_cast<size_t>(level);
@@ -200,7 +200,7 @@ void draw_log(Ui& ui, const Area& area) {
                     line.text.c_str(), nullptr, room);
     }
     end_padded();
-    // Stays at the newest line until somebody scrolls up.
+    // Follows the newest line until the user scrolls up.
     if (ImGui::GetIO().MouseWheel != 0 && ImGui::IsWindowHovered())
       ui.log_follows = ImGui::GetScrollY() >= ImGui::GetScrollMaxY() - 1;
     if (ui.log_follows) ImGui::SetScrollHereY(1);

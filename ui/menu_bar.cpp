@@ -14,10 +14,10 @@
 namespace lucerna::ui {
 namespace {
 
-/// Closer together where the window is low.
+/// Smaller in a low window.
 float entry_height() { return px(ImGui::GetIO().DisplaySize.y < px(560) ? 22 : 26); }
 
-/// One entry of a menu, with its keys and the truth about it; a tick at the left when it is on.
+/// One entry of a menu with its keys and a tooltip; a tick on the left if it is on.
 bool entry(const char* name, const char* keys, const char* help, bool on = false, bool enabled = true) {
   const float width = std::max(px(232), ImGui::GetContentRegionAvail().x), height = entry_height();
   const ImVec2 lo = ImGui::GetCursorScreenPos(), hi(lo.x + width, lo.y + height);
@@ -52,10 +52,10 @@ bool begin_menu(const char* name) {
   return open;
 }
 
-/// A menu in a menu, in the place of an entry; end_submenu() if it is open.
+/// A submenu in place of an entry; end_submenu() if it is open.
 bool begin_submenu(const char* name, const char* help, bool enabled = true) {
   const float space = ImGui::GetFontSize(), height = entry_height();
-  // ImGui makes room for the text and lets its row reach half of the spacing further on both sides.
+  // ImGui makes room for the text and extends its row by half of the spacing on both sides.
   const float above = std::floor(0.5f * (height - space));
   ImGui::SetCursorPosY(ImGui::GetCursorPosY() + above);
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, height - space});
@@ -82,14 +82,14 @@ void end_menu() {
   ImGui::PopStyleVar();
 }
 
-/// A key as a menu tells it; valid until the next call.
+/// A key's name for a menu; valid until the next call.
 const char* key_name(char shortcut) {
   static char name[2];
   name[0] = shortcut, name[1] = 0;
   return shortcut ? name : nullptr;
 }
 
-/// Loads and saves the work of the solvers that keep theirs as files.
+/// Loading and saving the work of solvers that can store it in files.
 void solver_files(Ui& ui) {
   const bool picture = ui.has_picture();
   for (const solvers::SolverInfo* solver : solvers::registered()) {
@@ -102,14 +102,14 @@ void solver_files(Ui& ui) {
     ImGui::PushID(solver->name.c_str());
     if (entry(("Load " + name + "\xE2\x80\xA6").c_str(), nullptr,
               used
-                  ? fmt::format("Takes {} from a file {}.", solver->file->content, solver->file->fits).c_str()
+                  ? fmt::format("Loads {} from a file {}.", solver->file->content, solver->file->fits).c_str()
                   : unused.c_str(),
               false, used))
       ui.act("dialog." + solver->name + "_load");
     if (entry(("Save " + name + "\xE2\x80\xA6").c_str(), nullptr,
-              complete ? fmt::format("Writes {}, so that this scene need not gather them again.",
-                                     solver->file->content)
-                             .c_str()
+              complete
+                  ? fmt::format("Saves {}, so this scene need not compute them again.", solver->file->content)
+                        .c_str()
               : used ? fmt::format("{} is not complete yet.", capitalised(solver->title)).c_str()
                      : unused.c_str(),
               false, complete))
@@ -135,58 +135,55 @@ void file_menu(Ui& ui) {
   divide();
   const bool picture = ui.has_picture();
   if (entry("Save picture\xE2\x80\xA6", "Ctrl+S",
-            "Writes the picture as it is: all layers as EXR, or what is shown as PNG.", false, picture))
+            "Saves the present picture: all layers as EXR, or the displayed one as PNG.", false, picture))
     ui.act("dialog.save");
-  if (entry("Screenshot", "F12", "Writes the window, panels and all, as a PNG in the working folder."))
+  if (entry("Screenshot", "F12", "Saves the window with its panels as a PNG in the working folder."))
     ui.act("screenshot");
   divide();
   const session::Accuracy* accuracy = ui.snapshot ? ui.snapshot->accuracy.get() : nullptr;
   const bool reference = accuracy && !accuracy->reference.empty();
-  if (entry(
-          "Load reference\xE2\x80\xA6", nullptr,
-          "Takes a picture for the truth: an EXR of this view and size, rendered long and with another seed. "
-          "The plot of accuracy then shows the true error too.",
-          false, picture))
+  if (entry("Load reference\xE2\x80\xA6", nullptr,
+            "Loads a converged EXR of this view and size, rendered with another seed. The Accuracy plot then "
+            "shows the true error too.",
+            false, picture))
     ui.act("dialog.reference");
   if (entry("Clear reference", nullptr,
-            reference ? ("Forgets " + accuracy->reference + ".").c_str() : "There is none.", false,
+            reference ? ("Removes " + accuracy->reference + ".").c_str() : "No reference is loaded.", false,
             reference))
     ui.act("reference.clear");
   divide();
   solver_files(ui);
   if (entry("Save session as script\xE2\x80\xA6", nullptr,
-            "Writes what was done in this session as commands, one a line; lucerna --script does it again."))
+            "Saves the commands of this session, one per line; lucerna --script repeats them."))
     ui.act("dialog.script");
   divide();
-  if (entry("Quit", "Ctrl+Q", "Closes the window; a render in progress is given up.")) ui.act("quit");
+  if (entry("Quit", "Ctrl+Q", "Closes the window and ends the render.")) ui.act("quit");
   end_menu();
 }
 
 void edit_menu(Ui& ui) {
   if (!begin_menu("Edit")) return;
-  if (entry("Undo", "Ctrl+Z",
-            ui.can_undo() ? ("Takes back: " + ui.undo_text()).c_str() : "Nothing to take back.", false,
-            ui.can_undo()))
+  if (entry("Undo", "Ctrl+Z", ui.can_undo() ? ("Undoes: " + ui.undo_text()).c_str() : "Nothing to undo.",
+            false, ui.can_undo()))
     ui.act("undo");
   if (entry("Redo", "Ctrl+Shift+Z",
-            ui.can_redo() ? ("Does again: " + ui.redo_text()).c_str() : "Nothing to do again.", false,
-            ui.can_redo()))
+            ui.can_redo() ? ("Redoes: " + ui.redo_text()).c_str() : "Nothing to redo.", false, ui.can_redo()))
     ui.act("redo");
   divide();
-  if (entry("Select nothing", nullptr, "A click in the picture selects what is under it.", false,
+  if (entry("Deselect", nullptr, "Clears the selection. A click in the picture selects an object.", false,
             ui.selection.kind != Kind::none))
     ui.act("select.none");
   end_menu();
 }
 
-/// What can be drawn over the picture of a solver's work.
+/// Views of a solver that can be drawn over the picture.
 void solver_views(Ui& ui, const solvers::SolverInfo& solver) {
   for (size_t i = 0; i < solver.views.size(); ++i) {
     const solvers::ViewInfo& view = solver.views[i];
     const OptionInfo* option = plan::find_option(view.option);
     const std::string name = capitalised(view.label);
     if (option->type == OptionType::choice && view.ring.empty()) {
-      // An entry a value; the key goes through them, from the first.
+      // One entry per value; the key cycles through them, from the first.
       for (size_t k = 1; k < option->choices.size(); ++k) {
         const std::string& value = option->choices[k];
         const bool on = ui.setting(option->key) == value;
@@ -198,7 +195,7 @@ void solver_views(Ui& ui, const solvers::SolverInfo& solver) {
       ui.turn_view(view);
     }
     for (const std::string& key : view.refined_by) {
-      // Behind the last of the views that it refines, where any of them is on.
+      // Behind the last of the views that it refines, if any of them is on.
       bool on = false, last = true;
       for (size_t k = 0; k < solver.views.size(); ++k) {
         const std::vector<std::string>& keys = solver.views[k].refined_by;
@@ -216,7 +213,7 @@ void solver_views(Ui& ui, const solvers::SolverInfo& solver) {
   }
 }
 
-/// "Irradiance cache" of "the irradiance cache".
+/// "Irradiance cache" from "the irradiance cache".
 std::string title_of(const solvers::SolverInfo& solver) {
   const std::string& title = solver.title;
   return capitalised(title.starts_with("the ") ? title.substr(4) : title);
@@ -230,7 +227,7 @@ void view_menu(Ui& ui) {
             "The panel on the left: the four components of light and the options of the render.",
             ui.shown.left_open))
     ui.act("window.fold", "left", ui.shown.left_open);
-  // What the right panel shows; that which it shows already is folded away.
+  // Panels on the right; selecting the displayed one folds it.
   const auto side = [&](const std::string& name, const char* key, const std::string& help,
                         const std::string& what) {
     const bool on = ui.shown.right_open && ui.side == what;
@@ -254,10 +251,10 @@ void view_menu(Ui& ui) {
   divide();
   if (entry("Selection", nullptr, "Marks the selected object in the picture.", ui.brackets))
     ui.act("view.selection", !ui.brackets);
-  if (entry("Lights", "L",
-            "Marks lamps and surfaces that emit in the picture; a click on a mark selects what it is, a drag "
-            "moves a lamp.",
-            ui.light_marks))
+  if (entry(
+          "Lights", "L",
+          "Marks lamps and emissive surfaces in the picture. Click a mark to select, drag it to move a lamp.",
+          ui.light_marks))
     ui.act("view.lamps", !ui.light_marks);
   if (const OptionInfo* tiles = plan::find_option("overlay.tiles");
       entry("Tiles", "T", tiles->help.c_str(), ui.setting_on(tiles->key)))
@@ -266,8 +263,8 @@ void view_menu(Ui& ui) {
     if (const OptionInfo* option = plan::find_option(key);
         entry(option->label.c_str(), nullptr, option->help.c_str(), ui.setting_on(key)))
       ui.toggle(key);
-  if (entry("Samples as they are", "U",
-            "Neither filters the noise of the first samples nor keeps what was shown before an edit.",
+  if (entry("Unfiltered samples", "U",
+            "Shows samples only: no filter for noise, and no light from before an edit.",
             ui.setting("preview.filter") == "off"))
     ui.act("set", "preview.filter", ui.setting("preview.filter") == "off" ? "auto" : "off");
   for (const solvers::SolverInfo* solver : solvers::registered()) {
@@ -281,14 +278,13 @@ void view_menu(Ui& ui) {
     }
     ImGui::PopID();
   }
-  if (entry("Forget earlier renders", nullptr,
-            "Takes the lines of earlier renders out of the plot of accuracy.", false,
-            !ui.runs.earlier().empty()))
+  if (entry("Clear earlier renders", nullptr, "Removes the lines of earlier renders from the Accuracy plot.",
+            false, !ui.runs.earlier().empty()))
     ui.act("accuracy.clear_runs");
   divide();
-  if (begin_submenu("Resolution", "Pixels of the picture for each pixel of the window.")) {
+  if (begin_submenu("Resolution", "Pixels of the picture per pixel of the window.")) {
     for (const auto& [divisor, name] : {std::pair{1, "Full"}, {2, "Half"}, {4, "Quarter"}})
-      if (entry(name, nullptr, "Pixels of the picture for each pixel of the window; fewer converge sooner.",
+      if (entry(name, nullptr, "Pixels of the picture per pixel of the window; fewer converge faster.",
                 ui.picture_divisor == divisor))
         ui.act("view.divisor", divisor);
     end_submenu();
@@ -299,32 +295,29 @@ void view_menu(Ui& ui) {
 void camera_menu(Ui& ui) {
   if (!begin_menu("Camera")) return;
   const bool view = ui.view.has_value();
-  if (entry(
-          "Frame selection", "F",
-          "Moves the camera so that the selection, or else the whole scene, fills the picture, and not into "
-          "or behind a wall.",
-          false, view))
+  if (entry("Frame selection", "F",
+            "Moves the camera so that the selection, or otherwise the whole scene, fills the picture. The "
+            "camera stays in front of walls.",
+            false, view))
     ui.act("camera.frame");
-  if (entry("Walk along the floor", "H", "W A S D then walk at eye height instead of flying.", ui.walking,
-            view))
+  if (entry("Walk along the floor", "H", "W A S D walk at eye height instead of flying.", ui.walking, view))
     ui.act("camera.walking", !ui.walking);
   divide();
-  if (entry("Bookmark this view", "Ctrl+B", "Keeps the view for this scene, for later runs too.", false,
+  if (entry("Bookmark this view", "Ctrl+B", "Saves the view for this scene, also for later runs.", false,
             view))
     keep_view(ui);
   int row = 0;
   for (const auto& [name, line] : ui.bookmarks_here()) {
     ImGui::PushID(row++);
-    if (entry(elided(name, px(180)).c_str(), nullptr, (name + ": takes this view again.").c_str()))
+    if (entry(elided(name, px(180)).c_str(), nullptr, (name + ": restores this view.").c_str()))
       ui.act("camera.go", name);
     ImGui::PopID();
   }
   divide();
-  if (entry("Find exposure", nullptr, "Sets the exposure so that the picture as a whole is seen well.", false,
-            view))
+  if (entry("Find exposure", nullptr, "Sets the exposure for the picture as a whole.", false, view))
     ui.act("exposure.find");
-  if (entry("Exposure by something grey", "B",
-            "The next click in the picture sets the exposure so that what it hits is middle grey.",
+  if (entry("Pick middle grey", "B",
+            "The next click in the picture sets the exposure so that the clicked point is middle grey.",
             ui.dropper, view))
     ui.act("exposure.dropper", !ui.dropper);
   end_menu();
@@ -333,47 +326,45 @@ void camera_menu(Ui& ui) {
 void render_menu(Ui& ui) {
   if (!begin_menu("Render")) return;
   const bool paused = ui.snapshot && ui.snapshot->paused;
-  if (entry(paused ? "Resume" : "Pause", "Space", "Stops taking samples, and goes on later from there.",
-            false, ui.snapshot != nullptr))
+  if (entry(paused ? "Resume" : "Pause", "Space",
+            "Pauses sampling; Resume continues with the present samples.", false, ui.snapshot != nullptr))
     ui.act(paused ? "render.resume" : "render.pause");
-  if (entry("Start again", "R", "Throws the samples away and starts the picture anew.", false,
-            ui.snapshot != nullptr))
+  if (entry("Restart", "R", "Discards all samples and restarts the picture.", false, ui.snapshot != nullptr))
     ui.act("render.restart");
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const solvers::CommandInfo& command : solver->commands)
       if (entry(fmt::format("{}: {}", solver->label, uncapitalised(command.label)).c_str(),
                 key_name(command.shortcut), command.help.c_str(), false, ui.uses(*solver)))
         ui.act(solver->name + "." + command.name);
-  if (entry("Reload shaders", "F5", "Compiles the shaders again; when that fails the old ones stay."))
+  if (entry("Reload shaders", "F5", "Compiles the shaders again; if that fails the present ones stay."))
     ui.act("shaders.reload");
   divide();
-  if (entry("Give up loading", "Esc", "Gives up the load in progress; the scene shown stays.", false,
-            ui.loading()))
+  if (entry("Cancel loading", "Esc", "Cancels the load; the present scene stays.", false, ui.loading()))
     ui.act("scene.cancel");
   end_menu();
 }
 
 void help_menu(Ui& ui) {
   if (!begin_menu("Help")) return;
-  if (entry("Keys and mouse", "F1", "How to move and what the keys do.")) ui.act("window.keys");
-  if (entry("First steps", nullptr, "What the first start has told.")) ui.act("window.welcome");
-  if (entry("Commands", nullptr, "Lists in the log what can be typed below it and written into scripts."))
+  if (entry("Keys and mouse", "F1", "Navigation and keys.")) ui.act("window.keys");
+  if (entry("First steps", nullptr, "The introduction of the first start.")) ui.act("window.welcome");
+  if (entry("Commands", nullptr, "Lists the commands of the console and of scripts in the log."))
     ui.typed.push_back("help");
   end_menu();
 }
 
-/// What of the picture is not its samples: "42 % from before", "filtered", or "filtered, 2.4 % off" where all
-/// of it is. Empty where nothing is.
+/// The parts of the picture besides its samples: "42 % from before the edit", "filtered", or, if all of it
+/// is, "filtered, 2.4 % off". Empty if there are none.
 std::string preview_text(const session::Snapshot& s) {
   if (s.stale > 0.005)
-    return fmt::format("{} from before", padded(fmt::format("{:.0f} %", 100 * s.stale), 5));
+    return fmt::format("{} from before the edit", padded(fmt::format("{:.0f} %", 100 * s.stale), 5));
   if (s.filtered >= 1 && s.shown_error)
     return fmt::format("filtered, {} off", percent_text(s.shown_error->median));
   return s.filtered > 0.02 ? "filtered" : "";
 }
 
-/// "rendering   142 / 256 samples · 1.82 % · 12.3 s", each number in the width of the largest; then shorter
-/// texts for less room.
+/// "rendering   142 / 256 samples · 1.82 % · 12.3 s", each number as wide as its maximum; then shorter texts
+/// for less room.
 std::array<std::string, 3> state_texts(const session::Snapshot& s) {
   const bool adaptive = s.accuracy && s.accuracy->adaptive;
   const size_t digits = fmt::format("{}", s.max_samples).size();
@@ -398,8 +389,8 @@ std::array<std::string, 3> state_texts(const session::Snapshot& s) {
           fmt::format("{} · {}", count, noise), noise};
 }
 
-/// How much of the work is done, 0..1: of what is prepared, of the samples, or in adaptive sampling of the
-/// rays forecast.
+/// The completed part of the work, 0..1: of preparation, of the samples, or in adaptive sampling of the
+/// forecast rays.
 float done_part(const session::Snapshot& s) {
   if (!s.preparing.empty()) return static_cast<float>(std::max(0.0, s.preparing_done));
   if (s.accuracy && s.accuracy->adaptive) {
@@ -415,7 +406,7 @@ float done_part(const session::Snapshot& s) {
 void draw_menu_bar(Ui& ui, const Area& area) {
   begin_panel("##bar", area, colour::bar, false);
   ImDrawList* list = ImGui::GetWindowDrawList();
-  // Menus. The bar itself is ours, so that it can hold more than menus.
+  // Menus. The bar is drawn here, so it can hold more than menus.
   ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, {px(8), 0.5f * (px(k_bar_height) - ImGui::GetFontSize())});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(16), 0});
   float menus_end = area.lo.x;
@@ -426,23 +417,23 @@ void draw_menu_bar(Ui& ui, const Area& area) {
   }
   ImGui::PopStyleVar(2);
 
-  // The rest of the bar is drawn over the whole of it; after its menus ImGui clips to what lies below them.
+  // The rest is drawn over the whole bar; after its menus ImGui clips to the area below them.
   ImGui::PushClipRect(area.lo, area.hi, false);
   const session::Snapshot* s = ui.snapshot.get();
-  // The scene's name stands over the picture, or behind the menus where they reach further.
+  // The scene's name is above the picture, or behind the menus if they extend further.
   const float left =
       std::max(menus_end + px(8), area.lo.x + px((ui.shown.left_open ? ui.shown.left : 0) + 8));
   float right = area.hi.x - px(16), state_left = right;
   if (s && ui.scene && s->max_samples > 0) {
     const std::array<std::string, 3> states = state_texts(*s);
-    // The numbers stand still: the field is as wide as its longest text.
+    // The numbers stay in place: the field is as wide as its longest text.
     const std::array<std::string, 3> longest = state_texts([&] {
       session::Snapshot widest;
       widest.samples = s->max_samples, widest.max_samples = s->max_samples, widest.seconds = 99.9,
       widest.mean_samples = s->max_samples, widest.accuracy = s->accuracy, widest.coarse = true;
       return widest;
     }());
-    // As much of it as there is room for behind the menus.
+    // The longest text that fits behind the menus.
     const auto width_of = [&](size_t i) { return std::max(text_width(longest[i]), text_width(states[i])); };
     size_t which = 0;
     while (which + 1 < states.size() && right - width_of(which) < menus_end + px(8)) ++which;
@@ -450,26 +441,26 @@ void draw_menu_bar(Ui& ui, const Area& area) {
     draw_text(list, {state_left, area.lo.y}, {right, area.hi.y}, elided(states[which], right - state_left),
               colour::text, Align::right);
     const float preview_end = state_left - px(16),
-                preview_begin = preview_end - text_width("filtered, 88.8 % off");
+                preview_begin = preview_end - text_width("100 % from before the edit");
     if (const std::string preview = preview_text(*s); !preview.empty() && preview_begin > menus_end) {
       draw_text(list, {preview_begin, area.lo.y}, {preview_end, area.hi.y}, preview, colour::accent,
                 Align::right);
       ImGui::SetCursorScreenPos({preview_begin, area.lo.y});
       ImGui::InvisibleButton("##preview", {preview_end - preview_begin, area.hi.y - area.lo.y - px(2)});
       const std::string off =
-          s->shown_error ? fmt::format(" It is off by about {}.", percent_text(s->shown_error->median)) : "";
+          s->shown_error ? fmt::format(" Its error is about {}.", percent_text(s->shown_error->median)) : "";
       tooltip(
-          "What is shown is not the samples alone: light from before the last edit stays until the new is "
-          "better, and the noise of the first samples is filtered." +
-          off + " EXR files have the samples; a PNG is saved either way. U shows them as they are.");
+          "The displayed picture is not samples only: light from before the last edit stays until the new "
+          "light is better, and the noise of few samples is filtered." +
+          off +
+          " EXR files store the samples; a PNG can be saved either way. U shows the unfiltered samples.");
     }
     ImGui::SetCursorScreenPos({state_left, area.lo.y});
     ImGui::InvisibleButton("##state", {std::max(1.0f, right - state_left), area.hi.y - area.lo.y - px(2)});
-    tooltip(
-        (which > 0 ? states[0] + ". " : "") +
-        "Samples a pixel, noise as seen (estimated; the panel Accuracy shows that of the tiles beside it), "
-        "and the time that has gone by since this picture was begun, pauses left out.");
-    // Room for preview_text(), so that nothing moves when it goes.
+    tooltip((which > 0 ? states[0] + ". " : "") +
+            "Samples per pixel, noise as seen (estimated; the Accuracy panel also shows that of the tiles), "
+            "and the time since this picture was started, without pauses.");
+    // Room for preview_text(), so nothing moves when it disappears.
     right = preview_begin - px(24);
   }
   if (s && !s->device.empty()) {
@@ -485,7 +476,7 @@ void draw_menu_bar(Ui& ui, const Area& area) {
     draw_text(list, {left, area.lo.y}, {right, area.hi.y}, name, colour::text, Align::left,
               theme().fonts.strong);
   }
-  // How far the picture is, as a hairline under its state.
+  // Progress of the picture as a thin line under its state.
   list->AddRectFilled({area.lo.x, area.hi.y - 1}, area.hi, colour::hairline);
   if (s && ui.scene && s->max_samples > 0 && !s->finished) {
     const float done = done_part(*s);

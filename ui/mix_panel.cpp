@@ -1,4 +1,4 @@
-// The light mix: every group of lights with its strength, colour, mute and solo, and mixes with names.
+// The light mix: every light group with its strength, colour, mute and solo, and named presets.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -37,11 +37,12 @@ void group_row(Ui& ui, const scene::LightGroup& group, const scene::GroupMix& mi
             elided(group.name, width - px(70)), silent ? colour::text_faint : colour::text);
   ImGui::SetCursorScreenPos({at.x + width - px(48), at.y});
   if (sign_button("##mute", Sign::power, !mix.mute)) ui.act("mix.set", group.name, named("mute", !mix.mute));
-  tooltip(mix.mute ? "Takes the group's light back in." : "Takes the group's light out of the picture.");
+  tooltip(mix.mute ? "Switches the group's light on again."
+                   : "Mutes the group: removes its light from the picture.");
   ImGui::SetCursorScreenPos({at.x + width - px(22), at.y});
   if (sign_button("##solo", Sign::solo, mix.solo, colour::accent))
     ui.act("mix.set", group.name, named("solo", !mix.solo));
-  tooltip(mix.solo ? "Back to all groups." : "Shows the light of this group without the others.");
+  tooltip(mix.solo ? "Shows all groups again." : "Solo: shows the light of this group only.");
   ImGui::SetCursorScreenPos({at.x, at.y + px(24)});
   float ev = mix.ev;
   ImGui::BeginDisabled(mix.mute);
@@ -55,7 +56,7 @@ void group_row(Ui& ui, const scene::LightGroup& group, const scene::GroupMix& mi
               .typed_lo = -scene::k_most_ev,
               .typed_hi = scene::k_most_ev}))
     ui.act("mix.set", group.name, named("ev", ev));
-  tooltip("Strength of the group in the picture: a factor of 2 to this power.");
+  tooltip("Strength of the group in exposure values: a factor of 2 to this power.");
   vec3 picked = tint;
   const float half = std::floor(0.5f * (width - px(6)));
   ImGui::PushItemWidth(half);
@@ -63,7 +64,7 @@ void group_row(Ui& ui, const scene::LightGroup& group, const scene::GroupMix& mi
   if (colour_field("##tint", "Tint", picked) && strength_of(picked) > 0)
     ui.act("mix.set", group.name, named("color", tint_of(picked)));
   ImGui::PopItemWidth();
-  tooltip("Multiplies the colour of the group's lights. Press to choose another; white leaves it.");
+  tooltip("Multiplies the colour of the group's lights; white keeps it. Press to choose a colour.");
   const NearestKelvin nearest = nearest_kelvin(tint);
   float kelvin = nearest.kelvin;
   ImGui::SetCursorScreenPos({at.x + half + px(6), line});
@@ -78,12 +79,12 @@ void group_row(Ui& ui, const scene::LightGroup& group, const scene::GroupMix& mi
               .travel = 0.5f},
              width - half - px(6)))
     ui.act("mix.set", group.name, named("kelvin", kelvin));
-  tooltip("Tints by the colour of a black body of that temperature; 6500 K is nearly white.");
+  tooltip("Tints by the colour of a black body of this temperature; 6500 K is nearly white.");
   ImGui::EndDisabled();
   ImGui::SetCursorScreenPos({at.x, ImGui::GetCursorScreenPos().y});
 }
 
-/// Mixes with names, and a slider between two of them.
+/// Named mixes, and a slider between two of them.
 void preset_rows(Ui& ui) {
   const scene::MixPresets presets = ui.mix_presets();
   std::vector<std::string> names;
@@ -96,10 +97,10 @@ void preset_rows(Ui& ui) {
     const bool chosen = scene::mix_text(mix) == scene::mix_text(ui.light_mix());
     if (button("##preset", elided(name, width - px(52)), chosen, width - px(28)))
       ui.act("mix.preset.load", name);
-    tooltip(fmt::format("{}: takes this mix up.", name));
+    tooltip(fmt::format("{}: loads this mix.", name));
     ImGui::SameLine(0, px(6));
     if (sign_button("##forget", Sign::close, false)) forgotten = name;
-    tooltip("Forgets this preset.");
+    tooltip("Deletes this preset.");
     ImGui::PopID();
   }
   if (!forgotten.empty()) ui.act("mix.preset.delete", forgotten);
@@ -114,23 +115,25 @@ void preset_rows(Ui& ui) {
     ImGui::SameLine(0, px(6));
     moved = choice("##to", "", names, to, width - half - px(6)) || moved;
     tooltip("The mix at its right end.");
-    moved = slider("##blend", "Between", amount, {.lo = 0, .hi = 1, .decimals = 2}) || moved;
+    moved = slider("##blend", "Blend", amount, {.lo = 0, .hi = 1, .decimals = 2}) || moved;
     tooltip("A mix between the two, linearly in light.");
     if (moved)
       ui.act("mix.preset.blend", names[static_cast<size_t>(from)], names[static_cast<size_t>(to)], amount);
   }
   const float half = std::floor(0.5f * (width - px(6)));
-  if (button("##save", "Keep as preset", false, half)) {
+  if (button("##save", "Save preset", false, half)) {
     std::string name;
     for (int n = 1; name.empty() || presets.contains(name); ++n) name = fmt::format("mix {}", n);
     ui.act("mix.preset.save", name);
   }
-  tooltip("Keeps this mix under a name of its own; mix.preset.save NAME in the console chooses the name.");
+  tooltip("Saves this mix as a preset; mix.preset.save NAME in the console sets the name.");
   ImGui::SameLine(0, px(6));
   if (button("##reset", "Reset", false, width - half - px(6))) ui.act("mix.reset");
-  tooltip("All groups as the scene has them.");
-  if (button("##apply", "Write into the lights", false, width)) ui.act("mix.apply");
-  tooltip("Makes the mix the lights' own strength and colour. The light stays the same; undo takes it back.");
+  tooltip("Resets all groups to the scene's light.");
+  if (button("##apply", "Apply to lights", false, width)) ui.act("mix.apply");
+  tooltip(
+      "Sets strength and colour of the lights to the mix. The picture's light stays the same. Can be "
+      "undone.");
 }
 
 }  // namespace
@@ -141,22 +144,22 @@ void draw_mix(Ui& ui) {
   const std::vector<vec3> weights = scene::mix_weights(mix, groups);
   const std::string how = ui.setting("relight.enabled");
   const bool keeps = how != "off", by_component = how == "on";
-  const float half = std::floor(0.5f * (ImGui::CalcItemWidth() - px(6)));
-  if (button("##apart", "Keep apart", keeps, half)) ui.act("set", "relight.enabled", keeps ? "off" : "auto");
+  const float both = ImGui::CalcItemWidth() - px(6), first = std::floor(0.56f * both);
+  if (button("##apart", "Track light groups", keeps, first))
+    ui.act("set", "relight.enabled", keeps ? "off" : "auto");
   tooltip(
-      "The picture keeps its light apart by groups, so that a mix costs no ray: 16 bytes a pixel for each. "
-      "The picture starts again.");
+      "Stores the light of each group separately, so a mix traces no ray. Takes 16 bytes per pixel and "
+      "group. A change restarts the picture.");
   ImGui::SameLine(0, px(6));
-  if (button("##components", "By component", by_component, half))
+  if (button("##components", "By component", by_component, both - first))
     ui.act("set", "relight.enabled", by_component ? "auto" : "on");
   tooltip(
-      "Keeps each group's light by component, too: 200 bytes a pixel for each group, and more time. Without "
-      "it "
-      "the picture of a mix is right, and its components are estimates. The picture starts again.");
+      "Stores each group's light by component. Takes 200 bytes per pixel and group, and more time. Without "
+      "it the picture of a mix is exact, but its components are estimates. A change restarts the picture.");
   const std::string why = ui.snapshot ? ui.snapshot->lights_together : "";
   if (!why.empty()) {
-    label("A change lights the picture anew", colour::text_faint, nullptr, ImGui::CalcItemWidth());
-    tooltip("Light is not kept apart by groups: " + why + ".");
+    label("A new mix restarts the picture", colour::text_faint, nullptr, ImGui::CalcItemWidth());
+    tooltip("Light groups are not tracked: " + why + ".");
   }
   for (size_t g = 0; g < groups.groups.size(); ++g) {
     const auto found = mix.find(groups.groups[g].name);

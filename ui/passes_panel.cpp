@@ -1,4 +1,4 @@
-// The panel of passes: what each stage takes, a stacked bar a pass, and in all.
+// The Passes panel: the time of each stage, as a stacked bar per pass, and in total.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,8 +15,7 @@ using session::PassStatus;
 using session::Snapshot;
 using session::StageStatus;
 
-/// Greys of different lightness, so that neighbours in a bar part without claiming a meaning; what the host
-/// does is bluish.
+/// Greys of different lightness that separate neighbours in a bar; host stages are bluish.
 ImU32 stage_colour(size_t index, bool host) {
   static constexpr int steps[] = {178, 126, 152, 104, 190, 138, 116, 164};
   const int v = steps[index % 8];
@@ -35,13 +34,11 @@ std::string machine_text(const Snapshot& s) {
       "{} rays since the picture started{}",
       s.device, s.tracer, s.width, s.height, megabytes_text(s.device_mb), megabytes_text(s.host_mb),
       count_text(static_cast<double>(s.rays)),
-      s.dropped == 0
-          ? ""
-          : fmt::format("\n{} contributions were refused because they were not finite", s.dropped));
+      s.dropped == 0 ? "" : fmt::format("\n{} non-finite contributions were dropped", s.dropped));
 }
 
 void pass_tooltip(const Snapshot& s, const PassStatus& pass) {
-  std::string text = fmt::format("{} in all, {} paths, up to {} samples a pixel", ms_text(total_of(pass)),
+  std::string text = fmt::format("{} in total, {} paths, up to {} samples per pixel", ms_text(total_of(pass)),
                                  count_text(static_cast<double>(pass.paths)), pass.samples);
   for (size_t i = 0; i < pass.stage_ms.size() && i < s.stages.size(); ++i)
     text += fmt::format("\n{}: {}{}", s.stages[i].name, ms_text(double{pass.stage_ms[i]}),
@@ -49,7 +46,7 @@ void pass_tooltip(const Snapshot& s, const PassStatus& pass) {
   tooltip(text);
 }
 
-/// The newest passes, the newest at the right.
+/// The latest passes, the newest on the right.
 void pass_bars(const Snapshot& s, const Area& area) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   list->AddLine({area.lo.x, area.hi.y}, {area.hi.x, area.hi.y}, colour::hairline);
@@ -144,7 +141,7 @@ void draw_passes(Ui& ui, const Area& area) {
     if (s && s->accuracy && !s->stages.empty()) {
       const float rows = std::min(px(236), std::floor(0.58f * inside.width()));
       const float chart = inside.hi.x - rows - px(16);
-      // The bar of all passes lies under those of each.
+      // The bar of all passes is below those of each pass.
       pass_bars(*s, {inside.lo, {chart, inside.hi.y - px(14)}});
       double total = 0;
       for (const StageStatus& stage : s->stages) total += stage.ms;
@@ -153,7 +150,7 @@ void draw_passes(Ui& ui, const Area& area) {
         parts.push_back({static_cast<float>(s->stages[i].ms / total), stage_colour(i, s->stages[i].host)});
       ImGui::SetCursorScreenPos({inside.lo.x, inside.hi.y - px(8)});
       stacked_bar(parts, 8, chart - inside.lo.x);
-      tooltip(fmt::format("All passes since the picture started, {}, in the order of the rows at the right.",
+      tooltip(fmt::format("All passes since the picture started, {}, in the order of the rows on the right.",
                           ms_text(total)));
       stage_rows(s->stages, {chart + px(16), inside.lo.y}, rows, inside.height());
     } else {

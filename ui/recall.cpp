@@ -36,11 +36,11 @@ fs::path state_file() {
   return {};
 }
 
-/// Held while this lives, unless another process holds it.
+/// A lock on the file for the lifetime of this object, unless another process holds it.
 class Lock {
  public:
   explicit Lock(const fs::path& file) : handle_(open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
-    // Where no lock can be had at all, as on some network folders, saving goes on without.
+    // Where locks are not supported, as on some network folders, the state is saved without one.
     held_ = handle_ < 0 || flock(handle_, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK;
   }
   ~Lock() {
@@ -55,7 +55,7 @@ class Lock {
   bool held_ = false;
 };
 
-/// Nothing where there is none, or no JSON object.
+/// Null if there is no file, or no JSON object.
 Json read_state() {
   try {
     const Json json = Json::parse(read_file(state_file()), nullptr, false);
@@ -72,6 +72,9 @@ Json state_of(const Ui& ui) {
   json["strip"] = {{"passes", ui.layout.passes_share}, {"log", ui.layout.log_share}};
   json["left_open"] = ui.layout.left_open, json["right_open"] = ui.layout.right_open,
   json["bottom_open"] = ui.layout.bottom_open;
+  json["arranged"] = {{"left", ui.layout.left_arranged},
+                      {"right", ui.layout.right_arranged},
+                      {"bottom", ui.layout.bottom_arranged}};
   json["welcomed"] = ui.welcomed;
   auto& bookmarks = json["bookmarks"] = Json::object();
   for (const auto& [scene, views] : ui.bookmarks)
@@ -86,7 +89,7 @@ struct Lists {
   std::map<std::string, commands::Workspace::Bookmarks> bookmarks;
 };
 
-/// Values of another type are passed over: another program's file, or an older one.
+/// Values of another type are ignored: the file of another program or of an older version.
 Lists lists_of(const Json& json) {
   const auto part = [](const Json& from, const std::string& key) {
     const auto found = from.find(key);
@@ -119,6 +122,12 @@ void take_panels(const Json& json, Ui& ui) {
     layout.left_open = json.value("left_open", true);
     layout.right_open = json.value("right_open", true);
     layout.bottom_open = json.value("bottom_open", true);
+    // A file without this holds what the user has changed where it differs from the defaults.
+    const auto arranged = json.value("arranged", Json::object());
+    const Layout fresh;
+    layout.left_arranged = arranged.value("left", !layout.left_open || layout.left != fresh.left);
+    layout.right_arranged = arranged.value("right", !layout.right_open || layout.right != fresh.right);
+    layout.bottom_arranged = arranged.value("bottom", !layout.bottom_open || layout.bottom != fresh.bottom);
     ui.layout = layout;
     ui.welcomed = json.value("welcomed", false);
     const auto sections = json.value("sections", Json::object());
@@ -127,7 +136,7 @@ void take_panels(const Json& json, Ui& ui) {
   }
 }
 
-/// `theirs` with what changed from `before` to `mine`.
+/// `theirs` with the changes from `before` to `mine`.
 Json merged(const Json& before, const Json& mine, Json theirs) {
   if (!theirs.is_object()) return mine;
   for (const auto& [key, value] : mine.items()) {
@@ -144,7 +153,7 @@ Json merged(const Json& before, const Json& mine, Json theirs) {
   return theirs;
 }
 
-/// The files that were put in front of `before` to make `mine`, then `theirs`.
+/// The files added in front of `before` to make `mine`, followed by `theirs`.
 Files merged_recent(const Files& before, const Files& mine, const Files& theirs) {
   const auto without = [](const Files& list, const Files& front) {
     Files rest;
@@ -165,9 +174,9 @@ Files merged_recent(const Files& before, const Files& mine, const Files& theirs)
 }  // namespace
 
 struct Memory::Kept {
-  Json saved;              ///< of this window, as it was when it was last read or written
-  Json seen;               ///< as it was when follow() looked last
-  double changed_at = -1;  ///< when that differed from what it was before
+  Json saved;              ///< this window's state when it was last read or written
+  Json seen;               ///< the state at the last call of follow()
+  double changed_at = -1;  ///< time of the last change of `seen`
   bool warned = false;
 };
 
@@ -178,7 +187,7 @@ Memory::Memory(Ui& ui) : ui_(ui), kept_(std::make_unique<Kept>()) {
 }
 
 Memory::~Memory() {
-  // Another window that is stopped while it holds the lock is not waited for without end.
+  // Waits a limited time for another window that was stopped while holding the lock.
   for (int i = 0; state_of(ui_) != kept_->saved && !save() && i < 100; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
 }

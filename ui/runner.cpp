@@ -26,8 +26,8 @@ constexpr double k_longest_wait = 300;   // seconds
 constexpr double k_between_moves = 1.5;  // seconds
 const std::vector<std::string> k_buttons{"left", "right", "middle"};
 
-/// That the picture of a window may be written there. Throws Error where another file is that it would
-/// replace.
+/// Checks that a picture of the window may be written to `file`. Throws Error if it would replace any other
+/// file.
 std::string checked_target(const std::string& file) {
   if (is_plain_file(file)) {
     bool ours = false;
@@ -35,12 +35,12 @@ std::string checked_target(const std::string& file) {
       ours = film::read_metadata(file).count(k_window_mark) > 0;
     } catch (const Error&) {
     }
-    if (!ours) throw Error(file, "is there already and no picture of the window: another name is needed");
+    if (!ours) throw Error(file, "exists and is no picture of the window: choose another name");
   }
   return file;
 }
 
-/// A name of the working folder that no file has.
+/// An unused file name in the working folder.
 std::string free_name() {
   const std::string name = fmt::format("lucerna-{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr)));
   std::string file = name + ".png";
@@ -54,17 +54,17 @@ int button_of(const commands::Arguments& a) {
   return static_cast<int>(std::find(k_buttons.begin(), k_buttons.end(), name) - k_buttons.begin());
 }
 
-/// A key that is held: a modifier by itself too. Throws Error when there is none such.
+/// The GLFW key of a held key, which can be a modifier. Throws Error if there is none.
 int held_key_of(const std::string& name) {
   if (name == "ctrl") return GLFW_KEY_LEFT_CONTROL;
   if (name == "shift") return GLFW_KEY_LEFT_SHIFT;
   if (name == "alt") return GLFW_KEY_LEFT_ALT;
   const auto [key, mods] = key_of(name);
-  if (mods != 0) throw Error("", fmt::format("'{}': one key at a time is held", name));
+  if (mods != 0) throw Error("", fmt::format("'{}': expected one key", name));
   return key;
 }
 
-/// The first script in the row of calls.
+/// The first script in the chain of calls.
 const Call& root(const Call& call) {
   const Call* at = &call;
   while (at->by) at = at->by.get();
@@ -97,8 +97,8 @@ void Runner::add_script_commands() {
   auto& registry = ui_.registry;
   registry.add(
       {.name = "quit",
-       .help = "Ends the program. In a script: once all that was commanded is done; without a status with 1 "
-               "after an error, else with 0.",
+       .help = "Ends the program. In a script: after all commands are done; without a status with 1 after an "
+               "error, otherwise with 0.",
        .parameters = {{.name = "status", .type = Type::integer, .lo = 0, .hi = 255, .optional = true}},
        .run =
            [this](const Arguments& a) {
@@ -108,7 +108,7 @@ void Runner::add_script_commands() {
        .done =
            [this](const Arguments& a) {
              ui_.wake();
-             // Errors of what was done last are read a frame later than that it was done.
+             // Errors of the last command are read one frame after it is done.
              const bool settled = ui_.snapshot ? ui_.up_to_date() : ui_.session.commands() == 0;
              settled_ = settled ? settled_ + 1 : 0;
              if (settled_ < 2) return false;
@@ -119,9 +119,8 @@ void Runner::add_script_commands() {
        .recorded = false});
   registry.add(
       {.name = "screenshot",
-       .help = "Writes the window, panels and all, as PNG; without a name in the working folder, under "
-               "one that no file has. A file that is there already is replaced only if it is such a "
-               "picture.",
+       .help = "Saves the window with its panels as PNG; without a name under an unused name in the working "
+               "folder. An existing file is replaced only if it is such a picture.",
        .parameters =
            {{.name = "file", .type = Type::file, .choices = {".png"}, .optional = true, .writes = true}},
        .run =
@@ -137,13 +136,13 @@ void Runner::add_script_commands() {
        .recorded = false});
   registry.add(
       {.name = "measure",
-       .help = "In a script: measures frame times and answers to camera moves; prints one JSON line.",
+       .help = "In a script: measures frame times and response times to camera moves; prints one JSON line.",
        .parameters = {{.name = "time", .type = Type::real, .lo = 0.1, .hi = 3600, .unit = "seconds"}},
        .run = [this](const Arguments& a) { measure(a.real("time")); },
        .done = [this](const Arguments&) { return measured(); },
        .recorded = false});
   registry.add({.name = "script.run",
-                .help = "Carries out the commands of a file.",
+                .help = "Runs the commands of a file.",
                 .parameters = {{.name = "file", .type = Type::file, .choices = {".lucerna"}}},
                 .run = [this](const Arguments& a) { run_script(a.text("file")); },
                 .recorded = false});
@@ -156,7 +155,7 @@ std::function<bool(const commands::Arguments&)> Runner::drawn() {
 void Runner::add_mouse_commands() {
   auto& registry = ui_.registry;
   registry.add({.name = "drop",
-                .help = "Does what dropping the file on the window does.",
+                .help = "Acts as if the file were dropped on the window.",
                 .parameters = {{.name = "file", .type = Type::file}},
                 .run = [this](const Arguments& a) { ui_.drops.push_back(a.text("file")); },
                 .done = drawn(),
@@ -198,7 +197,7 @@ void Runner::add_key_commands() {
                 .done = drawn(),
                 .recorded = false});
   registry.add({.name = "key.hold",
-                .help = "In a script: holds a key down, such as w or ctrl, shift, alt; or lets it go.",
+                .help = "In a script: holds a key down, such as w or ctrl, shift, alt; or releases it.",
                 .parameters = {{.name = "name"}, {.name = "down", .type = Type::boolean}},
                 .check = [](const Arguments& a) { held_key_of(a.text("name")); },
                 .run =
@@ -218,7 +217,7 @@ void Runner::add_key_commands() {
 void Runner::advance() {
   for (const std::string& line : std::exchange(ui_.typed, {})) console(line);
   while (running() && !ui_.status) {
-    // A script may put steps behind the one that is being carried out.
+    // A script may insert steps behind the one that is running.
     const Step step = steps_.front();
     if (!current_.command && waits_for_earlier(step)) {
       ui_.wake();
@@ -288,16 +287,16 @@ void Runner::run_script(const std::string& file) {
   const std::shared_ptr<const Call> by = in_script_ ? steps_.front().call : nullptr;
   const std::string form = one_form(file);
   for (const Call* call = by.get(); call; call = call->by.get())
-    if (call->file == form) throw Error(file, "is being carried out already: a script cannot run itself");
+    if (call->file == form) throw Error(file, "is already running: a script cannot run itself");
   const auto call =
       std::make_shared<const Call>(Call{.file = form, .by = by, .own = false, .errors = ui_.error_count});
   auto steps = parse_script(ui_.registry, read_script(file), file);
   for (Step& step : steps) step.call = call;
-  // After the step that is being carried out, which stands in front.
+  // After the running step, which is at the front.
   steps_.insert(steps_.begin() + (steps_.empty() ? 0 : 1), steps.begin(), steps.end());
 }
 
-/// A line at the console acts at once; its failures are for the one who typed it, not for the strip.
+/// A line at the console runs immediately; its failures are shown there, not in the error strip.
 void Runner::console(const std::string& line) {
   ui_.print(log::Level::info, "\xE2\x80\xBA " + line);
   try {
@@ -331,7 +330,7 @@ bool Runner::measured() {
     m.next_move = ui_.now + k_between_moves;
     ++m.moves;
   }
-  // The answer to the last move is waited for, but not for ever.
+  // Waits for the response to the last move, for a limited time.
   if (ui_.now < m.end || (!answered && ui_.now < m.end + 10)) return false;
   std::fputs(
       fmt::format("{{\"measure\": {{\"seconds\": {:.2f}, \"frames\": {}, \"frame_ms_p50\": {:.2f}, "
@@ -352,9 +351,9 @@ void Runner::presented(double interval_ms) {
   ++frames_;
   if (!measure_) return;
   Measure& m = *measure_;
-  // Before the first frame the window may have slept for want of anything to draw.
+  // Before the first frame the window may have slept without anything to draw.
   if (std::exchange(m.begun, true)) m.frames.push_back(interval_ms);
-  // The first picture on the screen that was made with the new camera.
+  // The first picture on the screen with the new camera.
   if (m.moved_at >= 0 && ui_.snapshot && commands::same_view(ui_.snapshot->camera, m.target)) {
     m.coarse.push_back(1e3 * (ui_.time() - m.moved_at));
     m.moved_at = -1;

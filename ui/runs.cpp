@@ -16,7 +16,7 @@ bool should_keep(const Run& run) {
   return lines.size() >= k_least_lines && lines.back().wall_s >= k_least_seconds && lines.back().error[0] > 0;
 }
 
-/// Settings that change what is shown, not what is computed.
+/// Settings that change the display, not the computation.
 bool only_shown(const std::string& key) {
   for (const char* head : {"film.", "show.", "overlay.", "camera", "about"})
     if (key.starts_with(head)) return true;

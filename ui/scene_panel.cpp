@@ -16,8 +16,7 @@
 namespace lucerna::ui {
 namespace {
 
-/// A row that can be chosen: mark, name (elided), a dim note at the right end. Returns whether it was
-/// pressed.
+/// A selectable row: mark, name (elided), a dim note at the right end. Returns true if it was pressed.
 bool list_row(const char* id, bool chosen, const std::string& name, const std::string& note, ImU32 mark,
               float inset_right, float height = 24) {
   const float width = ImGui::CalcItemWidth();
@@ -46,7 +45,7 @@ bool list_row(const char* id, bool chosen, const std::string& name, const std::s
 std::string name_or(const std::string& name, const char* kind, size_t index) {
   return name.empty() ? fmt::format("{} {}", kind, index + 1) : name;
 }
-/// What a press on a row does: selects, or takes the selection away.
+/// A press on a row selects, or clears the selection.
 void choose(Ui& ui, bool chosen, const char* kind, size_t index) {
   ui.chosen_in_list = true;
   if (chosen)
@@ -56,7 +55,8 @@ void choose(Ui& ui, bool chosen, const char* kind, size_t index) {
 }
 void quiet_line(const std::string& text) { label(text, colour::text_faint); }
 
-/// A sign at the right of the row that begins at `row` and has just been made. Whether it was pressed.
+/// A sign at the right end of the row that begins at `row` and was just drawn. Returns true if it was
+/// pressed.
 bool row_sign(const ImVec2& row, const char* id, Sign sign, bool on, const char* help) {
   const float below = ImGui::GetCursorScreenPos().y;
   ImGui::SetCursorScreenPos({row.x + ImGui::CalcItemWidth() - px(22), row.y + px(1)});
@@ -66,7 +66,7 @@ bool row_sign(const ImVec2& row, const char* id, Sign sign, bool on, const char*
   return pressed;
 }
 
-/// Scrolls so that the row at `y` (window pixels) is in view.
+/// Scrolls so that the row at `y` (window pixels) is visible.
 void show_row(float y) {
   const ImVec2 window = ImGui::GetWindowPos();
   if (y < window.y || y + px(24) > window.y + ImGui::GetWindowHeight())
@@ -94,37 +94,36 @@ void cameras(Ui& ui) {
     if (slider("##height", "Height", height,
                {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m"}))
       ui.act("camera.height", height);
-    tooltip("Height of what an orthographic camera sees.");
+    tooltip("Height of an orthographic camera's view.");
   } else {
-    // The command takes the angle: it means the same in a window of any shape.
+    // The command takes the angle, which has the same meaning in a window of any shape.
     float lens = commands::focal_length_mm(view.camera.yfov, ui.aspect);
     if (slider("##lens", "Lens", lens, {.lo = 8, .hi = 200, .log = true, .decimals = 1, .unit = "mm"}))
       ui.act("camera.fov", commands::yfov_from_focal_length(lens, ui.aspect) * 180 / k_pi);
-    tooltip(fmt::format(
-        "Focal length for a frame 36 mm wide; now a field of view of {:.1f}\xC2\xB0 from top to bottom.",
-        view.camera.yfov * 180 / k_pi));
+    tooltip(fmt::format("Focal length for a frame 36 mm wide; the vertical field of view is {:.1f}\xC2\xB0.",
+                        view.camera.yfov * 180 / k_pi));
   }
   float speed = ui.speed;
   if (slider("##speed", "Fly speed", speed,
              {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m/s"}))
     ui.act("camera.speed", speed);
   tooltip(
-      "Speed of flight with W A S D Q E while the pointer is over the picture; Shift flies four times "
-      "faster.");
+      "Speed of flight with W A S D Q E while the pointer is over the picture; Shift flies four times as "
+      "fast.");
   if (!view.camera.orthographic) {
     if (button("##walk", "Walk along the floor", ui.walking, ImGui::CalcItemWidth()))
       ui.act("camera.walking", !ui.walking);
-    tooltip("W A S D then walk at eye height, up and down stairs. H.");
+    tooltip("W A S D walk at eye height, also on stairs. H.");
     float height = ui.eye_height;
     if (ui.walking) {
       if (slider("##eye_height", "Eye height", height,
                  {.lo = 0.1f, .hi = 10, .log = true, .decimals = 2, .unit = "m"}))
         ui.act("camera.eye_height", height);
-      tooltip("Of the eye above the floor. Q and E too.");
+      tooltip("Height of the eye above the floor. Q and E change it too.");
     }
   }
   const vec3 eye = commands::eye_of(view.camera);
-  value_row("Eye",
+  value_row("Position",
             fmt::format("{} {} {} m", padded(real_text(eye.x, 2), 6), padded(real_text(eye.y, 2), 6),
                         padded(real_text(eye.z, 2), 6)),
             "Position of the camera: x, y (up), z in metres.");
@@ -134,16 +133,16 @@ void cameras(Ui& ui) {
     ImGui::PushID(row++);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     if (list_row("##bookmark", false, name, "bookmark", 0, 28)) ui.act("camera.go", name);
-    tooltip(fmt::format("{}: takes this view again.", name));
-    if (row_sign(at, "##forget", Sign::close, false, "Takes the bookmark away.")) forgotten = name;
+    tooltip(fmt::format("{}: restores this view.", name));
+    if (row_sign(at, "##forget", Sign::close, false, "Deletes the bookmark.")) forgotten = name;
     ImGui::PopID();
   }
   if (!forgotten.empty()) ui.act("camera.forget", forgotten);
   if (button("##bookmark", "Bookmark this view", false, ImGui::CalcItemWidth())) keep_view(ui);
-  tooltip("Keeps the view for this scene, for later runs too. Ctrl+B.");
+  tooltip("Saves the view for this scene, also for later runs. Ctrl+B.");
 }
 
-/// Colour by a picker and by temperature: `command` is run with color_name or kelvin.
+/// Colour by a picker and by temperature: runs `command` with color_name or kelvin.
 void colour_rows(Ui& ui, const char* command, size_t item, const char* color_name, const vec3& tint,
                  const std::string& note = "") {
   vec3 picked = tint;
@@ -169,7 +168,7 @@ void colour_rows(Ui& ui, const char* command, size_t item, const char* color_nam
              "temperature.");
 }
 
-/// What a selected lamp is, beside its strength.
+/// Properties of a selected lamp besides its strength.
 void light_details(Ui& ui, size_t i, const scene::Light& light) {
   colour_rows(ui, "light.set", i + 1, "color", tint_of(light.intensity));
   if (light.kind != scene::LightKind::directional) {
@@ -179,7 +178,7 @@ void light_details(Ui& ui, size_t i, const scene::Light& light) {
             "##power", "Power", power,
             {.lo = 1e-3f, .hi = 1e6f, .log = true, .decimals = 2, .unit = "W", .bar = false, .travel = 0.2f}))
       ui.act("light.set", i + 1, named("power", power));
-    tooltip("All the light that the lamp gives off, in its strongest channel.");
+    tooltip("Total power of the lamp, in its strongest channel.");
     const vec3 middle = ui.core.empty() ? vec3(0) : ui.core.centre();
     const float radius = std::max(ui.core.empty() ? 1.0f : ui.core.radius(), 1e-2f);
     const float reach = 4 * radius + glm::length(middle);
@@ -193,7 +192,7 @@ void light_details(Ui& ui, size_t i, const scene::Light& light) {
                     .typed_lo = -1e6f,
                     .typed_hi = 1e6f}) >= 0)
       ui.act("light.set", i + 1, named("position", position));
-    tooltip("Place of the lamp in metres: x, y (up), z.");
+    tooltip("Position of the lamp: x, y (up), z in metres.");
   }
   if (light.kind != scene::LightKind::point) {
     const commands::Bearing bearing = commands::bearing_of(light.direction);
@@ -201,24 +200,24 @@ void light_details(Ui& ui, size_t i, const scene::Light& light) {
     if (slider("##azimuth", "Azimuth", azimuth,
                {.lo = 0, .hi = 360, .decimals = 1, .unit = "\xC2\xB0", .typed_lo = -360, .typed_hi = 360}))
       ui.act("light.set", i + 1, named("azimuth", azimuth));
-    tooltip("From where it shines, as on a compass seen from above: 0 from \xE2\x88\x92Z, 90 from +X.");
+    tooltip("Compass direction from which the light comes: 0 from \xE2\x88\x92Z, 90 from +X.");
     if (slider("##elevation", "Elevation", elevation,
                {.lo = -90, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
       ui.act("light.set", i + 1, named("elevation", elevation));
-    tooltip("From how high above the horizon it shines; 90 from straight above.");
+    tooltip("Angle above the horizon from which the light comes; 90 is vertical.");
   }
   if (light.kind == scene::LightKind::spot) {
     float cone = light.outer_cone * 180 / k_pi, inner = light.inner_cone * 180 / k_pi;
     if (slider("##cone", "Cone", cone, {.lo = 0.5f, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
       ui.act("light.set", i + 1, named("cone", cone));
-    tooltip("Angle from the axis at which there is no light any more.");
+    tooltip("Angle from the axis at which the light ends.");
     if (slider("##inner", "Inner cone", inner, {.lo = 0, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
       ui.act("light.set", i + 1, named("inner_cone", inner));
-    tooltip("Angle from the axis at which its light begins to fade.");
+    tooltip("Angle from the axis at which the light begins to fade.");
   }
 }
 
-/// A row of the list of lights with its switch, and what is under it when chosen. Returns whether its switch
+/// A row of the list of lights with its switch, and its properties if selected. Returns true if its switch
 /// was pressed.
 bool light_row(Ui& ui, bool chosen, bool reveal, const std::string& name, const char* note, const vec3& tint,
                bool on, const char* kind, size_t index) {
@@ -226,11 +225,11 @@ bool light_row(Ui& ui, bool chosen, bool reveal, const std::string& name, const 
   if (chosen && reveal) show_row(at.y);
   if (list_row("##light", chosen, name, note, colour::with_alpha(display_colour(tint), on ? 1.0f : 0.3f), 28))
     choose(ui, chosen, kind, index);
-  tooltip(fmt::format("{}. Selects it, to edit it here; F then frames it.", name));
+  tooltip(fmt::format("{}. Press to select and edit it; F frames it.", name));
   return row_sign(at, "##on", Sign::power, on, on ? "Switches the light off." : "Switches the light on.");
 }
 
-/// Drags move by a share of the value; a light turned down to nothing starts from a thousandth.
+/// Drags scale the value; a light of strength 0 starts from a thousandth.
 Slider strength_slider(const char* unit) {
   return {.lo = 1e-3f, .hi = 1e5f, .log = true, .decimals = 2, .unit = unit, .bar = false, .travel = 0.25f};
 }
@@ -243,7 +242,7 @@ void emission_slider(Ui& ui, uint32_t index) {
   if (slider("##strength", "Radiance", shown, how))
     ui.act("material.set", index + 1, named("strength", shown));
   ImGui::EndDisabled();
-  tooltip("Radiance that the surface emits, of its strongest channel; a texture goes on multiplying it.");
+  tooltip("Emitted radiance of the surface's strongest channel; its texture multiplies it.");
 }
 
 void light_rows(Ui& ui, bool reveal) {
@@ -266,13 +265,13 @@ void light_rows(Ui& ui, bool reveal) {
     if (slider("##strength", sun ? "Irradiance" : "Intensity", shown, how))
       ui.act("light.set", i + 1, named("intensity", shown));
     ImGui::EndDisabled();
-    tooltip(sun ? "Irradiance on a surface that faces the light, of its strongest channel."
-                : "Radiant intensity of the strongest channel.");
+    tooltip(sun ? "Irradiance on a surface that faces the light, in its strongest channel."
+                : "Radiant intensity in the strongest channel.");
     if (chosen) light_details(ui, i, light);
     ImGui::PopID();
     gap(4);
   }
-  // Surfaces that emit are lights as well; in many interiors the only ones.
+  // Emissive surfaces are lights too; in many interiors the only ones.
   for (const uint32_t index : glowing) {
     const scene::Material m = ui.material(index);
     ImGui::PushID(static_cast<int>(lights.size() + index));
@@ -300,7 +299,7 @@ void environment(Ui& ui) {
       : dark ? "none"
              : "even radiance",
       std::string(image ? "A latitude-longitude image around the scene." : "Radiance from every direction.") +
-          " Drop an .exr or .hdr on the window to light the scene by it.");
+          " Drop an .exr or .hdr file on the window to replace it.");
   gap(4);
   ImGui::BeginDisabled(dark);
   float shown = std::max(ui.environment_scale(), 1e-3f);
@@ -318,13 +317,14 @@ void environment(Ui& ui) {
   float turn = std::remainder(ui.environment_rotation(), 360.0f);
   if (slider("##rotation", "Rotation", turn, {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0"}))
     ui.act("environment.set", named("rotation", turn));
-  tooltip("Turns the image counter-clockwise, seen from above. Ctrl and a drag in the picture turn it too.");
+  tooltip("Rotates the image counter-clockwise, seen from above. Ctrl + drag in the picture rotates it too.");
   ImGui::EndDisabled();
   ImGui::EndDisabled();
   option_control(ui, "film.background", "Background");
   if (!ui.environment_file().empty()) {
-    if (button("##own", "The scene's own again", false, ImGui::CalcItemWidth())) ui.act("environment.own");
-    tooltip("Lights the scene by the environment that it came with.");
+    if (button("##own", "Restore scene environment", false, ImGui::CalcItemWidth()))
+      ui.act("environment.own");
+    tooltip("Uses the environment from the scene file.");
   }
 }
 
@@ -335,12 +335,12 @@ void material_details(Ui& ui, uint32_t index, const scene::Material& m) {
   vec3 colour(m.base_color);
   if (colour_field("##base", "Base colour", colour, m.base_color_texture ? "\xC3\x97 texture" : ""))
     set(named("color", colour));
-  tooltip("Share of the light that is reflected, linear. Press to choose another.");
+  tooltip("Reflectance, linear. Press to choose a colour.");
   float roughness = m.roughness, metallic = m.metallic;
   if (slider("##roughness", std::string("Roughness") + textured(m.metallic_roughness_texture), roughness,
              {.decimals = 3}))
     set(named("roughness", roughness));
-  tooltip("Perceptual roughness: 0 a mirror, 1 matt.");
+  tooltip("Perceptual roughness: 0 is a mirror, 1 is matt.");
   if (slider("##metallic", std::string("Metalness") + textured(m.metallic_roughness_texture), metallic,
              {.decimals = 3}))
     set(named("metallic", metallic));
@@ -349,40 +349,40 @@ void material_details(Ui& ui, uint32_t index, const scene::Material& m) {
     emission_slider(ui, index);
     colour_rows(ui, "material.set", index + 1, "emission_color", tint_of(ui.emission(index)),
                 m.emission_texture ? "\xC3\x97 texture" : "");
-    if (button("##dark", "Emit nothing", false, ImGui::CalcItemWidth())) set(named("strength", 0));
-    tooltip("Takes its emission away. Undo brings it back.");
+    if (button("##dark", "Remove emission", false, ImGui::CalcItemWidth())) set(named("strength", 0));
+    tooltip("Makes the surface non-emissive. Can be undone.");
   } else if (!m.unlit) {
-    if (button("##glow", "Let it emit light", false, ImGui::CalcItemWidth())) set(named("strength", 1));
-    tooltip("Makes the surface a light of radiance 1, to be edited here and under Lights.");
+    if (button("##glow", "Add emission", false, ImGui::CalcItemWidth())) set(named("strength", 1));
+    tooltip("Makes the surface a light of radiance 1; edit it here or under Lights.");
   }
   if (m.transmission > 0)
     value_row("Transmission", fmt::format("{:.3f}{}", m.transmission, textured(m.transmission_texture)),
-              "Share of light let through.");
+              "Share of light that is transmitted.");
   if (m.transmission > 0 || m.ior != 1.5f)
     value_row("Index of refraction", fmt::format("{:.3f}", m.ior),
-              "0 means a mirror-like boundary (as KHR_materials_ior says).");
+              "0 is a fully reflecting boundary (as in KHR_materials_ior).");
   if (m.thickness > 0) {
-    value_row("Body", "solid", "Light refracts on entering and is absorbed inside.");
+    value_row("Body", "solid", "A solid: light is refracted at the surface and absorbed inside.");
     if (std::isfinite(m.attenuation_distance))
       value_row("Absorbs to",
                 fmt::format("{} in {:.3g} m", colour_text(m.attenuation_color), m.attenuation_distance),
                 "Colour of white light after that distance.");
   } else if (m.transmission > 0) {
-    value_row("Body", "thin wall", "No thickness: light passes without bending.");
+    value_row("Body", "thin wall", "No thickness: light passes without refraction.");
   }
   if (m.diffuse_transmission > 0)
     value_row("Diffuse transmission", fmt::format("{:.3f}", m.diffuse_transmission),
-              "Share of light scattered through.");
+              "Share of light that is transmitted diffusely.");
   if (m.alpha_mode != scene::AlphaMode::opaque)
     value_row(
         "Coverage",
         m.alpha_mode == scene::AlphaMode::mask ? fmt::format("cut at {:.2f}", m.alpha_cutoff) : "blended",
-        "What alpha means.");
+        "Meaning of alpha.");
   if (m.normal_texture)
     value_row("Normal texture", fmt::format("\xC3\x97 {:.2f}", m.normal_scale),
               "Strength of the normal texture.");
-  if (m.unlit) value_row("Unlit", "yes", "Shown as it is; lights nothing.");
-  if (m.double_sided) value_row("Double-sided", "yes", "Its back side emits as its front does.");
+  if (m.unlit) value_row("Unlit", "yes", "Shown with its base colour; neither lit nor a light.");
+  if (m.double_sided) value_row("Double-sided", "yes", "The back side emits like the front side.");
 }
 
 void materials(Ui& ui, bool reveal) {
@@ -401,7 +401,7 @@ void materials(Ui& ui, bool reveal) {
     if (list_row("##material", chosen, name_or(m.name, "Material", i), note,
                  display_colour(emits ? m.emission / strength_of(m.emission) : vec3(m.base_color)), 0))
       choose(ui, chosen, "material", index);
-    tooltip(fmt::format("{}. Selects the material; F then frames what is made of it.",
+    tooltip(fmt::format("{}. Press to select the material; F frames its objects.",
                         name_or(m.name, "Material", i)));
     if (chosen) {
       ImGui::Indent(px(18));
@@ -419,7 +419,7 @@ void objects(Ui& ui, bool reveal) {
   const auto& list = ui.scene->instances;
   if (reveal && ui.selection.kind == Kind::instance)
     show_row(ImGui::GetCursorScreenPos().y + px(24) * static_cast<float>(ui.selection.index));
-  // Long lists draw only the rows in view.
+  // Long lists draw only the visible rows.
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(list.size()), px(24));
   while (clipper.Step())
@@ -430,7 +430,7 @@ void objects(Ui& ui, bool reveal) {
       ImGui::PushID(i);
       if (list_row("##object", chosen, name_or(instance.name, "Object", index), "", 0, 0))
         choose(ui, chosen, "object", index);
-      tooltip("Selects the object; F then frames it.");
+      tooltip("Press to select the object; F frames it.");
       ImGui::PopID();
     }
 }
@@ -457,7 +457,7 @@ void draw_scene_panel(Ui& ui, const Area& area) {
       ImGui::PopStyleVar();
     });
   };
-  // What has been selected elsewhere, by a click in the picture say, is brought into view.
+  // A selection made elsewhere, for example by a click in the picture, is scrolled into view.
   const bool reveal = ui.reveals();
   if (reveal && ui.selection.kind == Kind::instance) ui.sections["Objects"] = true;
   if (reveal && ui.selection.kind == Kind::material) ui.sections["Materials"] = true;

@@ -22,7 +22,7 @@ std::vector<std::string> read_script(const std::string& file) {
   if (file.empty()) throw Error("script", "expected a file name, found ''");
   const std::string text = read_file(file);
   if (text.find('\0') != std::string::npos)
-    throw Error(file, "is no text; expected a script, one command a line");
+    throw Error(file, "is not a text file; expected a script, one command per line");
   std::istringstream in(text);
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) lines.push_back(line);

@@ -1,5 +1,5 @@
-// The panel of a solver, on the right in the scene's place: what it tells of its work (solvers/report.h),
-// then its options. And the titles by which the right panel is told what to show.
+// The panel of a solver, on the right in the scene's place: its report (solvers/report.h), then its options.
+// Also the tabs of the right panel.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,24 +20,24 @@ using solvers::Report;
 using solvers::SolverInfo;
 
 constexpr float k_tabs_height = 32;
-constexpr float k_narrow = 236;  // of a panel's content: below, shorter words and fewer columns
+constexpr float k_narrow = 236;  // width of a panel's content below which words are shorter and columns fewer
 
 bool narrow() { return ImGui::CalcItemWidth() < px(k_narrow); }
 
-/// Text over as many lines as it takes.
+/// Wrapped text.
 void paragraph(const std::string& text, ImU32 colour = colour::text_dim) {
   ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + ImGui::CalcItemWidth());
   label(text, colour);
   ImGui::PopTextWrapPos();
 }
 
-/// What a sentence gains by the key that does it.
+/// A help sentence with its key.
 std::string with_key(const std::string& help, char shortcut) {
   return shortcut ? fmt::format("{} {}.", help, shortcut) : help;
 }
 
-/// Draws the items of a section. What can be pressed has ids of its own meaning, so that an item that comes
-/// or goes above it takes no press away.
+/// Draws the items of a section. Controls have ids by meaning, so an item that appears or disappears above
+/// does not lose a press.
 class Items {
  public:
   Items(Ui& ui, const SolverInfo& solver) : ui_(ui), solver_(solver) {}
@@ -103,7 +103,7 @@ class Items {
   void operator()(const solvers::StepStrip& strip);
 
  private:
-  /// Of one of so many buttons side by side.
+  /// Width of one of n buttons side by side.
   static float part_width(size_t n) {
     const float gaps = px(4) * static_cast<float>(n - 1);
     return std::floor((ImGui::CalcItemWidth() - gaps) / static_cast<float>(n));
@@ -142,7 +142,7 @@ void Items::operator()(const solvers::Histogram& histogram) {
   ImGui::SetCursorScreenPos({lo.x, hi.y + px(18)});
 }
 
-/// Parts in greys, as stages are; what the host does is bluish.
+/// Greys for parts, as for stages; host parts are bluish.
 ImU32 part_ink(size_t part, bool host) {
   static constexpr std::array<int, 7> k_greys{178, 140, 160, 118, 152, 98, 132};
   const int v = k_greys[part % k_greys.size()];
@@ -220,12 +220,12 @@ void Items::operator()(const solvers::Table& table) {
   ImGui::PopID();
 }
 
-/// Steps in a row: what is done, and what has ended last.
+/// A row of steps: the completed ones, and the last one.
 void Items::operator()(const solvers::StepStrip& strip) {
   const int n = static_cast<int>(strip.steps.size());
   const float width = ImGui::CalcItemWidth(), height = px(20);
-  // What the names leave over is shared out. Where there is no room for all, only the one that matters is
-  // named and has its width, and the others share the rest.
+  // The space beyond the names is distributed. Without room for all names only the current step is named, and
+  // the others share the rest.
   ImFont* font = theme().fonts.small;
   const float gaps = px(2) * static_cast<float>(n - 1);
   float left = width - gaps;
@@ -263,13 +263,13 @@ void Items::operator()(const solvers::StepStrip& strip) {
   ImGui::SetCursorScreenPos({lo.x, lo.y + height + px(6)});
 }
 
-/// A section of the panel around what `draw` draws.
+/// A section of the panel with the content that `draw` draws.
 template <class Draw>
 void block(Ui& ui, const std::string& title, const std::string& note, const Draw& draw) {
   panel_block(ui, title.c_str(), true, note, 10, draw);
 }
 
-/// The components that a solver serves, as words.
+/// The components that a solver can compute, as words.
 std::vector<std::string> served(const SolverInfo& solver) {
   std::vector<std::string> names;
   for (size_t c = 0; c < solver.serves.size(); ++c)
@@ -284,18 +284,18 @@ std::string joined(const std::vector<std::string>& names, const std::string& hea
   return text;
 }
 
-/// Nobody uses it: how to.
+/// A solver that is not used: how to use it.
 void unused(Ui& ui, const SolverInfo& solver) {
-  paragraph(fmt::format("No component takes its light from {}.", solver.title));
+  paragraph(fmt::format("No component is computed by {}.", solver.title));
   gap(8);
   const std::vector<std::string> names = served(solver);
   if (button("##use", fmt::format("Use it for {} light", joined(names)), false, ImGui::CalcItemWidth()))
     for (const std::string& name : names) ui.act("set", "components." + name, solver.name);
-  tooltip(fmt::format("Sets {} to {}; the panel of light chooses each alone.", joined(names, "components."),
+  tooltip(fmt::format("Sets {} to {}; the Light panel sets each separately.", joined(names, "components."),
                       solver.name));
 }
 
-/// Options that have a control elsewhere in the panel.
+/// Options with a control elsewhere in the panel.
 std::set<std::string> placed(const SolverInfo& solver, const Report* report) {
   std::set<std::string> keys;
   for (const solvers::ViewInfo& view : solver.views) keys.insert(view.option);
@@ -310,7 +310,7 @@ std::set<std::string> placed(const SolverInfo& solver, const Report* report) {
 
 void options(Ui& ui, const SolverInfo& solver, const Report* report) {
   const std::set<std::string> elsewhere = placed(solver, report);
-  // What does not bear its name tells how a view of it is drawn, and has its place beside that.
+  // Other options control how a view is drawn, and are shown beside that view.
   for (const OptionInfo& option : solver.options)
     if (option.key.starts_with(solver.name + ".") && option.type != OptionType::text &&
         !elsewhere.contains(option.key))
@@ -381,7 +381,7 @@ void draw_solver_panel(Ui& ui, const SolverInfo& solver, const Area& area) {
     block(ui, solver.label, "", [&] { unused(ui, solver); });
   } else if (!report) {
     block(ui, solver.label, "", [&] {
-      paragraph(ui.scene ? "Nothing has been asked of it yet." : "No scene is open.", colour::text_faint);
+      paragraph(ui.scene ? "It has not been used yet." : "No scene is open.", colour::text_faint);
     });
   } else {
     Items draw(ui, solver);

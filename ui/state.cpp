@@ -41,7 +41,7 @@ double Ui::time() { return clock().seconds(); }
 Ui::Ui(session::Session& s) : Workspace(s) { add_window_commands(*this); }
 
 void Ui::act_line(const std::string& line) {
-  // What changes as soon as it is pressed belongs to the drag that begins there.
+  // A change at the moment of a press belongs to the drag that begins there.
   if (gesture == 0 && ImGui::GetActiveID() != 0) follow_gesture();
   try {
     run(line, gesture);
@@ -85,13 +85,13 @@ void Ui::say_blocked() {
 }
 
 void Ui::measured(const std::string& text) {
-  notice(text + ". Ctrl+Z takes it back.", 8);
+  notice(text + ". Ctrl+Z undoes it.", 8);
   print(log::Level::info, text);
 }
 
 std::vector<std::pair<std::string, std::string>> Ui::set_with(const std::string& key,
                                                               const std::string& value) {
-  // The target's line stays where it is when the way of sampling changes.
+  // The target's line stays in place when the sampling mode changes.
   if (key == "sampling.target_error") what_if_asked = false;
   if (key != "sampling.mode" || value == setting(key)) return {};
   if (value == "uniform") {
@@ -123,7 +123,7 @@ void Ui::scene_changed() {
   flight = {};
   errors.clear();
   if (!scene->unknown_extensions.empty())
-    notice(fmt::format("Not supported, shown without: {}", fmt::join(scene->unknown_extensions, ", ")), 12);
+    notice(fmt::format("Not supported and ignored: {}", fmt::join(scene->unknown_extensions, ", ")), 12);
   if (scene->file.empty()) return;
   const std::string file = absolute_path(scene->file).string();
   std::erase(recent, file);
@@ -135,7 +135,7 @@ std::string Ui::next_side() const {
   std::vector<std::string> sides;
   for (const solvers::SolverInfo* solver : solvers::registered())
     if (solver->has_panel() && uses(*solver)) sides.push_back(solver->name);
-  // Where none is in use a panel says how to use it.
+  // Without a solver in use a panel shows how to use one.
   for (const solvers::SolverInfo* solver : solvers::registered())
     if (solver->has_panel() && sides.empty()) sides.push_back(solver->name);
   if (sides.empty()) return k_scene_side;
@@ -155,7 +155,7 @@ void Ui::turn_view(const solvers::ViewInfo& view) {
   if (!option) return;
   if (option->type != OptionType::choice) return toggle(view.option);
   const std::vector<std::string>& ring = view.ring.empty() ? option->choices : view.ring;
-  // A value beside the ring is one more that is on: off comes next.
+  // A value outside the ring counts as on: off is next.
   const auto at = std::find(ring.begin(), ring.end(), setting(view.option));
   act("set", view.option, at == ring.end() || at + 1 == ring.end() ? ring.front() : *(at + 1));
 }
@@ -169,7 +169,7 @@ bool Ui::inspects_pointer() const {
 }
 
 std::string panel_help(const solvers::SolverInfo& solver) {
-  return capitalised(solver.title) + ": its work, what it shows of it over the picture, its options.";
+  return capitalised(solver.title) + ": its state, its views over the picture, its options.";
 }
 
 std::string capitalised(std::string text) {

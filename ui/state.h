@@ -177,7 +177,8 @@ struct Ui : commands::Workspace {
   bool inspects_pointer() const;
   /// The last inspected place of a pointer at rest, as inspect.at takes it.
   std::optional<vec2> asked;
-  /// Inspections known here, and whether a script has asked since the pointer moved: then it asks nothing.
+  /// Inspections known here, and whether a script has inspected a point since the pointer moved: then the
+  /// pointer inspects nothing.
   uint64_t inspections_known = 0;
   bool script_asked = false;
 
@@ -273,10 +274,11 @@ void draw_log(Ui& ui, const Area& area);
 void draw_empty_state(Ui& ui, const Area& area);
 /// Progress, errors and first steps over the picture; part of draw_picture.
 void draw_cards(Ui& ui, const Area& area);
-/// Over the picture's lower left corner; part of draw_picture.
-void draw_legend(Ui& ui, const Area& area);
-/// The result of inspect.at, in a card over the picture; part of draw_picture.
-void draw_inspection(Ui& ui, const Area& area);
+/// Over the picture's lower left corner; part of draw_picture. Returns its area, which is empty if there is
+/// no legend.
+Area draw_legend(Ui& ui, const Area& frame);
+/// The result of inspect.at, in a card over the picture that does not cover `legend`; part of draw_picture.
+void draw_inspection(Ui& ui, const Area& area, const Area& legend);
 /// Bookmarks the view under the next free name, with a notice.
 void keep_view(Ui& ui);
 void draw_splitters(Ui& ui, const Areas& areas);

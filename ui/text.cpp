@@ -45,7 +45,7 @@ float text_width(const std::string& text, ImFont* font) {
 
 std::string elided(const std::string& text, float max_width, ImFont* font, bool middle) {
   if (text_width(text, font) <= max_width) return text;
-  // Bisection over the bytes kept; cuts are moved to the edge of a code point.
+  // Bisection over the number of bytes kept; cuts are moved to a code point's border.
   const auto made = [&](size_t kept) {
     if (!middle) {
       while (kept > 0 && kept < text.size() && continuation(text[kept])) --kept;

@@ -31,7 +31,7 @@ ImU32 mix(ImU32 a, ImU32 b, float t) {
 
 namespace {
 
-/// Inter's line height over its em; ImGui sizes fonts by line height, people by em.
+/// Inter's line height over its em; ImGui sizes fonts by line height, designers by em.
 constexpr float k_line_over_em = 1.21f;
 
 std::vector<fs::path> font_folders() {
@@ -51,8 +51,7 @@ fs::path find_font(const char* weight) {
   return {};
 }
 
-/// Latin with its accents (names of lights and files), the signs of units, arrows and punctuation that the
-/// window uses.
+/// Latin with accents (names of lights and files), units, arrows and punctuation that the window uses.
 const ImWchar* glyph_ranges() {
   static const ImWchar ranges[] = {0x0020, 0x024F, 0x0370, 0x03FF, 0x0400, 0x045F, 0x2007, 0x2027,
                                    0x2030, 0x205F, 0x20AC, 0x20AC, 0x2190, 0x2193, 0x2212, 0x2212,
@@ -60,7 +59,7 @@ const ImWchar* glyph_ranges() {
   return ranges;
 }
 
-/// Gives all digits one width (and the figure space and the signs with them), so that numbers do not jitter.
+/// Gives all digits, the figure space and the signs one width, so numbers do not jitter.
 void make_tabular(ImFont* font) {
   if (!font) return;
   float width = 0;

@@ -19,7 +19,7 @@
 namespace lucerna::ui {
 namespace {
 
-constexpr double k_settle = 0.15;  // seconds a viewport size must last before the renderer is told
+constexpr double k_settle = 0.15;  // seconds that a viewport size must last before it is sent to the renderer
 constexpr size_t k_log_lines = 2000;
 
 class Viewer {
@@ -71,10 +71,10 @@ class Viewer {
     return lines;
   }
 
-  /// Scripted runs leave no trace.
+  /// Scripted runs save nothing.
   bool remembers() const { return options_.remember && options_.script.empty(); }
 
-  /// Sleeps while there is nothing to draw; otherwise holds the display's rate.
+  /// Sleeps while there is nothing to draw; otherwise keeps the display's rate.
   void pause_until_needed() {
     double sleep = 1.0;
     if (ui_.frames_wanted > 0)
@@ -88,9 +88,9 @@ class Viewer {
     if (window_.wait(sleep)) ui_.wake(3), hovering_since_ = ui_.time();
   }
 
-  /// Takes in what came from outside: snapshots, log lines, dropped files.
+  /// Reads external input: snapshots, log lines, dropped files.
   void collect() {
-    // Errors first: the workspace asks whether there were any.
+    // Errors first: the workspace queries whether there were any.
     ui_.now = ui_.time();
     for (LogLine& line : inbox_.take()) {
       if (line.level == log::Level::error) ui_.fail(line.text), ++ui_.error_count;
@@ -116,12 +116,12 @@ class Viewer {
     ui_.follow_busy();
     if (ui_.busy_seconds() > 0) ui_.wake(1);
     if (!ui_.note.text.empty() && ui_.now >= ui_.note.until) ui_.note.text.clear(), ui_.wake(2);
-    // Tooltips and the text cursor need a frame after the pointer has come to rest.
+    // Tooltips and the text cursor need a frame after the pointer has stopped.
     if (ui_.now - hovering_since_ < 0.7 || ImGui::GetIO().WantTextInput) ui_.wake(1);
     if (runner_.measuring() || ui_.moving) ui_.wake(1);
   }
 
-  /// What a script does with mouse, keyboard and window comes in where a person's doings do.
+  /// A script's mouse, keyboard and window input takes the same path as a user's.
   void inject() {
     if (ui_.size) window_.set_size(ui_.size->first, ui_.size->second), ui_.size.reset();
     if (ui_.scale) window_.set_scale(*ui_.scale), ui_.scale.reset();
@@ -137,7 +137,7 @@ class Viewer {
     for (const std::string& file : std::exchange(ui_.drops, {})) window_.drop(file);
   }
 
-  /// A selection outlives edits, but not what it points at.
+  /// A selection survives edits, but not the removal of its object.
   void hold_selection() {
     const auto& s = ui_.selection;
     const size_t count = !ui_.scene                 ? 0
@@ -150,7 +150,8 @@ class Viewer {
 
   void draw() {
     if (std::exchange(fresh_picture_, false) && !ui_.snapshot->rgba.empty()) {
-      ui_.texture = window_.upload(ui_.snapshot->rgba, ui_.snapshot->width, ui_.snapshot->height);
+      ui_.texture = window_.upload(ui_.snapshot->rgba, ui_.snapshot->scale * ui_.snapshot->width,
+                                   ui_.snapshot->scale * ui_.snapshot->height);
       ui_.texture_width = ui_.snapshot->width, ui_.texture_height = ui_.snapshot->height;
     }
     --ui_.frames_wanted;
@@ -167,7 +168,7 @@ class Viewer {
     window_.end_frame();
     if (!ui_.shot.file.empty()) {
       ui_.wake(2);
-      // What was asked for before is in the picture, unless a scene is still being loaded.
+      // Waits until the picture shows earlier commands, unless a scene is loading.
       const bool waits = ui_.snapshot && ui_.snapshot->activity.empty() && !ui_.up_to_date();
       if (!waits && ui_.shot.settle-- <= 0) screenshot(std::exchange(ui_.shot.file, {}));
     }
@@ -179,7 +180,7 @@ class Viewer {
     send();
   }
 
-  /// Gives the picture the size that there is room for, once that has settled.
+  /// Sets the picture's size to the available area once that has stopped changing.
   void send() {
     const ImVec2 ratio = ImGui::GetIO().DisplayFramebufferScale;
     const auto divided = [&](float units, float scale) {
@@ -188,6 +189,8 @@ class Viewer {
     const std::pair<uint32_t, uint32_t> room{divided(ui_.picture.width(), ratio.x),
                                              divided(ui_.picture.height(), ratio.y)};
     const std::pair<uint32_t, uint32_t> size = ui_.picture_size.value_or(room);
+    if (std::exchange(sent_scale_, ui_.picture_divisor) != ui_.picture_divisor)
+      ui_.session.set_window_scale(static_cast<uint32_t>(ui_.picture_divisor));
     const bool first = wanted_size_.first == 0;
     if (size != wanted_size_) wanted_size_ = size, size_changed_at_ = ui_.now;
     if (size_changed_at_ >= 0 && (ui_.now - size_changed_at_ >= k_settle || first || ui_.picture_size)) {
@@ -240,6 +243,7 @@ class Viewer {
   bool fresh_picture_ = false;
   double last_draw_ = -1, last_present_ = 0, hovering_since_ = -10;
   std::pair<uint32_t, uint32_t> wanted_size_{0, 0};
+  int sent_scale_ = 1;  ///< picture_divisor as the session has it
   double size_changed_at_ = -1;
 };
 

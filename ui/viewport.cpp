@@ -1,4 +1,4 @@
-// The middle: the view toolbar, the picture, and moving in it.
+// The middle of the window: the view toolbar, the picture, and navigation in it.
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui_internal.h>
@@ -24,18 +24,18 @@ ImU32 layer_mark(const std::string& layer) {
 }
 
 std::string layer_help(const std::string& layer) {
-  if (layer == "beauty") return "Shows the sum of the components whose eye is open.";
+  if (layer == "beauty") return "Shows the sum of the components whose eye is on.";
   if (layer_mark(layer)) return fmt::format("Shows the {} component.", layer);
   if (layer == "albedo") return "Shows the reflectance of the first surface.";
   if (layer == "normal") return "Shows the shading normal of the first surface.";
   if (layer == "depth") return "Shows the distance to the first surface.";
   if (layer == "samples") return "Shows the samples taken in each pixel.";
-  if (layer == "error") return "Shows the estimated error as seen: relative to the light around.";
-  if (layer == "cost") return "Shows the device time that each pixel's paths took.";
+  if (layer == "error") return "Shows the estimated error as seen: relative to the surrounding light.";
+  if (layer == "cost") return "Shows the device time of each pixel's paths.";
   return fmt::format("Shows the layer {}.", layer);
 }
 
-/// Layers as buttons; what does not fit goes into a list.
+/// Layers as buttons; those that do not fit are in a list.
 void layer_buttons(Ui& ui, float room) {
   const OptionInfo* option = plan::find_option("film.layer");
   if (!option) return;
@@ -50,7 +50,7 @@ void layer_buttons(Ui& ui, float room) {
   size_t fitting = layers.size();
   bool letters = false;
   if (all > room) {
-    // Components stay together: beauty and the four, by name or by their first letters, or the list alone.
+    // Components stay together: beauty and the four, by name or by first letters, or the list only.
     constexpr size_t k_together = 1 + session::k_components;
     const auto need = [&](bool short_names) {
       float sum = width_of(layers[0]) + between + (short_names ? px(76) : list_width);
@@ -78,11 +78,11 @@ void layer_buttons(Ui& ui, float room) {
     const bool none = chosen < 0;
     if (choice("##layers", none ? "More" : "", names, chosen, list_width))
       ui.act("set", "film.layer", rest[static_cast<size_t>(chosen)]);
-    tooltip("Further layers.");
+    tooltip("More layers.");
   }
 }
 
-constexpr float k_drag = 3;  // design pixels that part a drag from a click
+constexpr float k_drag = 3;  // design pixels that distinguish a drag from a click
 
 bool dragging() {
   for (int button = 0; button < 3; ++button)
@@ -90,13 +90,12 @@ bool dragging() {
   return false;
 }
 
-/// The corners of the box around the selected object, as brackets: enough to find it, not so much as to hide
-/// it.
+/// Marks the selected object by the corners of its box, which hide little of it.
 void draw_brackets(const Ui& ui, const Area& shown) {
   if (ui.selection.kind != Kind::instance || !ui.scene || !ui.snapshot) return;
   const scene::Instance& instance = ui.scene->instances[ui.selection.index];
   if (instance.mesh >= ui.scene->meshes.size()) return;
-  // Bounds in the object's space, kept while the selection lasts.
+  // Bounds in the object's space, cached for the selection.
   static std::pair<std::pair<uint64_t, uint32_t>, Box> known{{0, 0}, {}};
   const scene::Mesh& mesh = ui.scene->meshes[instance.mesh];
   if (const std::pair key{ui.view_scene, ui.selection.index}; known.first != key) {
@@ -125,7 +124,7 @@ void draw_brackets(const Ui& ui, const Area& shown) {
   list->PopClipRect();
 }
 
-/// The point of the scene under the pointer, where there is one.
+/// The point of the scene under the pointer, if any.
 std::optional<vec3> under_pointer(Ui& ui, const Area& shown) {
   const session::Probe* rays = ui.probe();
   const ImVec2 at = ImGui::GetIO().MousePos;
@@ -138,7 +137,7 @@ std::optional<vec3> under_pointer(Ui& ui, const Area& shown) {
   return hit->position;
 }
 
-/// The sun that a drag turns where there is no image: the first that is on.
+/// The sun that a drag rotates if there is no environment image: the first one that is on.
 std::optional<uint32_t> first_sun(const Ui& ui) {
   for (uint32_t i = 0; ui.scene && i < ui.scene->lights.size(); ++i)
     if (ui.scene->lights[i].kind == scene::LightKind::directional && ui.light(i).enabled) return i;
@@ -148,12 +147,12 @@ bool has_environment_image(const Ui& ui) {
   return ui.scene && (ui.scene->environment.image != scene::k_none || !ui.environment_file().empty());
 }
 
-/// Turns the sky with the pointer: what is infinitely far stays under it.
+/// Rotates the sky with the pointer: points at infinity stay under it.
 void turn_sky(Ui& ui, float pixels, float width) {
   const scene::Camera& camera = ui.view->camera;
   const float across = camera.orthographic ? k_pi : 2 * std::atan(std::tan(0.5f * camera.yfov) * ui.aspect);
   const float degrees = pixels * across / std::max(1.0f, width) * 180 / k_pi;
-  // To the right is clockwise seen from above: with a compass, against the image's rotation.
+  // To the right is clockwise seen from above: along the compass, against the image's rotation.
   if (has_environment_image(ui))
     ui.act("environment.set", named("rotation", std::remainder(ui.drag.azimuth - degrees, 360.0f)));
   else if (const auto sun = first_sun(ui))
@@ -162,7 +161,7 @@ void turn_sky(Ui& ui, float pixels, float width) {
     ui.notice("There is no environment image and no sun to turn.", 3);
 }
 
-/// What a drag begins on.
+/// Stores the start of a drag.
 void begin_drag(Ui& ui, const Area& shown) {
   ui.drag.point = under_pointer(ui, shown);
   ui.drag.lamp.reset();
@@ -174,13 +173,13 @@ void begin_drag(Ui& ui, const Area& shown) {
     ui.drag.azimuth = commands::bearing_of(ui.light(*sun).direction).azimuth;
 }
 
-/// Goes where the view is to go unless something stands between.
+/// Moves to a view unless a surface is in the way.
 void go(Ui& ui, const Viewpoint& to, bool through, bool by_wheel) {
   Viewpoint view = to;
   const vec3 from = commands::eye_of(ui.view->camera), step = commands::eye_of(to.camera) - from;
   if (!through && !to.camera.orthographic && glm::length(step) > 0) {
     bool blocked = false;
-    // Closer than a walker: one wants to look at small things.
+    // Closer than a walker, for close-ups of small objects.
     const float clear = 0.25f * commands::clearance(to.extent);
     const vec3 end = commands::step_straight(ui.look(), from, step, clear, &blocked);
     if (blocked) {
@@ -229,7 +228,7 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
 
   // Flight: while the pointer is over the picture.
   vec3 wish(0);
-  // A key that was pressed with Ctrl is a command until it is released, also where Ctrl is up before it.
+  // A key pressed with Ctrl is a command until it is released, even if Ctrl is released before it.
   for (const auto& [key, mods] : ui.keys)
     if (mods & (GLFW_MOD_CONTROL | GLFW_MOD_SUPER))
       ui.chorded.insert(key);
@@ -248,7 +247,7 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
     advance_view(ui, metres, through);
     ui.moving = true;
   }
-  // A press that hardly moves is a click; it begins to drag after three pixels.
+  // A press that hardly moves is a click; it becomes a drag after three pixels.
   if (active && (drag.x != 0 || drag.y != 0) && (flying || dragging())) {
     // Half a turn across the height of the picture.
     const vec2 angles = -drag * (k_pi / height);
@@ -287,8 +286,8 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
   }
 }
 
-/// A click selects what is under it: a light where its mark is shown, or else an object. With the dropper it
-/// sets the exposure.
+/// A click selects the light whose mark is under it, otherwise the object. With the dropper it sets the
+/// exposure.
 void click(Ui& ui, const Area& shown) {
   const ImVec2 at = ImGui::GetIO().MousePos;
   if (!ui.dropper)
@@ -309,22 +308,23 @@ void click(Ui& ui, const Area& shown) {
 std::string help_of(Ui& ui, const LampHandle& handle) {
   switch (handle.part) {
     case LampHandle::Part::aim:
-      return "What the spot is aimed at: drag it over the surfaces.";
+      return "Aim of the spot: drag it over surfaces.";
     case LampHandle::Part::surface:
-      return fmt::format("{}. A surface that emits: a click selects its material, to be edited under Lights.",
-                         ui.material(handle.light).name);
+      return fmt::format(
+          "{}. Emissive surface: click to select its material, which can be edited under Lights.",
+          ui.material(handle.light).name);
     case LampHandle::Part::place:
       break;
   }
-  return fmt::format("{}. Drag to move it along the picture, with Shift up and down.",
+  return fmt::format("{}. Drag to move it parallel to the picture, with Shift vertically.",
                      ui.scene->lights[handle.light].name);
 }
 
 constexpr double k_rest = 0.15;  // seconds
 
-/// While a view of a solver that can be asked lies over the picture, a pointer at rest asks what is under it.
-/// At rest, because every question interrupts the work on the picture.
-void ask(Ui& ui, const Area& shown, bool active) {
+/// While a solver's view with inspection is shown, a pointer at rest inspects the point under it. Only at
+/// rest, because each inspection interrupts rendering.
+void inspect_at_rest(Ui& ui, const Area& shown, bool active) {
   static ImVec2 last;
   static double since = 0;
   const ImVec2 at = ImGui::GetIO().MousePos;
@@ -355,7 +355,7 @@ void keep_view(Ui& ui) {
   const commands::Workspace::Bookmarks before = ui.bookmarks_here();
   ui.act("camera.bookmark");
   for (const auto& [name, line] : ui.bookmarks_here())
-    if (!before.contains(name)) ui.notice(fmt::format("Kept as '{}', in the menu Camera.", name), 4);
+    if (!before.contains(name)) ui.notice(fmt::format("Saved as '{}' in the Camera menu.", name), 4);
 }
 
 void draw_toolbar(Ui& ui, const Area& area) {
@@ -365,7 +365,7 @@ void draw_toolbar(Ui& ui, const Area& area) {
   const float pad = px(8), y = area.lo.y + px(6);
   const float tone_width = px(88), ev_width = px(92), grey_width = px(46), tiles_width = px(46);
   float right = area.hi.x - pad;
-  // In a narrow picture the layers come first; what is left out is in the menus too.
+  // In a narrow picture the layers have priority; everything else is in the menus too.
   const bool narrow = area.width() < 2 * pad + tone_width + ev_width + grey_width + tiles_width + px(96);
   const OptionInfo* tone = plan::find_option("film.tone_curve");
   if (tone) {
@@ -385,7 +385,7 @@ void draw_toolbar(Ui& ui, const Area& area) {
     right -= ev_width;
     ImGui::SetCursorScreenPos({right, y});
     auto value = static_cast<float>(ui.setting_real("film.ev"));
-    // The hand wants the range in which pictures lie; typing reaches the rest.
+    // Dragging covers the usual range of exposures; typing reaches the rest.
     const Slider how{.lo = std::max(-10.0f, static_cast<float>(ev->lo)),
                      .hi = std::min(10.0f, static_cast<float>(ev->hi)),
                      .decimals = 2,
@@ -403,7 +403,7 @@ void draw_toolbar(Ui& ui, const Area& area) {
     right -= grey_width;
     ImGui::SetCursorScreenPos({right, y});
     if (button("##grey", "Grey", ui.dropper, grey_width)) ui.act("exposure.dropper", !ui.dropper);
-    tooltip("The next click in the picture sets the exposure so that what it hits is middle grey. B.");
+    tooltip("The next click in the picture sets the exposure so that the clicked point is middle grey. B.");
     right -= px(4) + tiles_width;
     ImGui::SetCursorScreenPos({right, y});
     if (button("##tiles", "Tiles", ui.setting_on("overlay.tiles"), tiles_width)) ui.toggle("overlay.tiles");
@@ -423,8 +423,8 @@ void draw_picture(Ui& ui, const Area& area) {
   Area frame = area;  // of the picture itself
   std::optional<LampHandle> hot;
   if (shown) {
-    // One picture pixel on one window pixel; while the sizes differ the picture stands in the middle, scaled
-    // down if it must be.
+    // One picture pixel per window pixel; while the sizes differ the picture is centred and scaled down if
+    // necessary.
     float w = static_cast<float>(ui.texture_width) * static_cast<float>(ui.picture_divisor);
     float h = static_cast<float>(ui.texture_height) * static_cast<float>(ui.picture_divisor);
     if (w > area.width() + static_cast<float>(ui.picture_divisor) ||
@@ -445,8 +445,8 @@ void draw_picture(Ui& ui, const Area& area) {
     if (ui.brackets) draw_brackets(ui, frame);
   }
   if (!shown) draw_empty_state(ui, area);
-  draw_legend(ui, frame);
-  draw_inspection(ui, frame);
+  const Area legend = draw_legend(ui, frame);
+  draw_inspection(ui, frame, legend);
   draw_cards(ui, area);
 
   bool active = false;
@@ -465,7 +465,7 @@ void draw_picture(Ui& ui, const Area& area) {
         ImGui::GetIO().MouseDragMaxDistanceSqr[0] < px(k_drag) * px(k_drag))
       click(ui, frame);
   }
-  ask(ui, frame, active);
+  inspect_at_rest(ui, frame, active);
   navigate(ui, frame, ui.picture_hovered, active);
   ImGui::End();
 }

@@ -23,7 +23,7 @@ std::string upper(const char* text) {
   return result;
 }
 
-/// Capitals want air: draws them with one pixel between the letters.
+/// Draws capitals with one pixel between the letters.
 void draw_caps(ImDrawList* list, ImVec2 at, const std::string& text, ImU32 colour) {
   ImFont* font = theme().fonts.caps;
   for (const char& c : text) {
@@ -32,7 +32,7 @@ void draw_caps(ImDrawList* list, ImVec2 at, const std::string& text, ImU32 colou
   }
 }
 
-/// Share of the control's width that stands for 0 where that has a meaning of its own beside a logarithm.
+/// Share of the control's width for 0, if 0 has a separate meaning on a logarithmic scale.
 constexpr float k_zero_share = 0.04f;
 
 bool log_with_zero(const Slider& how) { return how.log && !how.at_zero.empty(); }
@@ -86,13 +86,13 @@ void label(const std::string& text, ImU32 colour, ImFont* font, float max_width)
 void tooltip(const std::string& text) {
   if (text.empty() || !ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) return;
   if (ImGui::GetIO().MouseDown[0] || ImGui::GetIO().MouseDown[1] || ImGui::GetIO().MouseDown[2]) return;
-  // The pointer has to rest for a moment; IO time stands in for items without an id.
+  // The pointer has to rest for a moment; IO time replaces ids for items without one.
   static ImGuiID last = 0;
   static double since = 0;
   const ImRect& rect = GImGui->LastItemData.Rect;
   const ImGuiID key = ImHashData(&rect, sizeof(rect), GImGui->LastItemData.ID);
   const double now = ImGui::GetTime();
-  // Shown as long as it is in every frame, however far these lie apart.
+  // Shown as long as it is hovered in every frame, whatever the frame rate.
   static int seen = 0;
   const int frame = ImGui::GetFrameCount();
   if (key != last || frame > seen + 1) last = key, since = now;
@@ -294,7 +294,7 @@ bool slider(const char* id, const std::string& name, float& value, const Slider&
     float next = from_fraction(start_fraction + travelled, how);
     if (how.step > 0) next = std::round(next / how.step) * how.step;
     if (!io.KeyShift && !how.log && how.step == 0) {
-      // Values land on what is shown, so that two equal readings are equal.
+      // Values are rounded to the displayed digits, so equal readings are equal.
       const float grain = std::pow(10.0f, static_cast<float>(-how.decimals));
       next = std::round(next / grain) * grain;
     }
@@ -311,7 +311,7 @@ bool slider(const char* id, const std::string& name, float& value, const Slider&
                                 : colour::field,
                       px(3));
   if (how.bar) {
-    // From zero when the range spans it, from the left end otherwise.
+    // From zero if the range spans it, otherwise from the left end.
     const float zero = how.lo < 0 && how.hi > 0 && !how.log ? to_fraction(0, how) : 0;
     const float at = to_fraction(value, how);
     const float a = lo.x + w * std::min(zero, at), b = lo.x + w * std::max(zero, at);
@@ -343,7 +343,7 @@ int slider_row(const char* id, const std::string& name, vec3& value, const Slide
     if (slider(axes[i], "", value[i], how, width)) changed = i;
   }
   ImGui::PopID();
-  // What follows, and a tooltip, belong to the row.
+  // The next item and a tooltip belong to the row.
   ImGui::SetCursorScreenPos(at);
   ImGui::Dummy({all, row_height()});
   return changed;
@@ -384,7 +384,7 @@ bool colour_field(const char* id, const std::string& name, vec3& linear, const s
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(12), px(12)});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(6)});
   if (ImGui::BeginPopup("##picker", ImGuiWindowFlags_NoMove)) {
-    // The square keeps its hue where a colour has none: it is moved by ImGui's own copy.
+    // The square keeps its hue where a colour has none: ImGui's own copy stores it.
     static vec3 shown, sent;
     if (sent != linear) {
       shown = {encoded(linear.x), encoded(linear.y), encoded(linear.z)};
@@ -492,7 +492,8 @@ bool folded_strip(const char* title, const ImVec2& lo, const ImVec2& hi, bool op
   const float x = 0.5f * (lo.x + hi.x);
   draw_sign(list, {x, lo.y + px(16)}, px(8), opens_right ? Sign::chevron_right : Sign::chevron_left, true,
             ink);
-  // The title is drawn flat in the corner of the window, then its vertices are turned by a quarter and moved.
+  // The title is drawn in the corner of the window, then its vertices are rotated by a quarter turn and
+  // moved.
   list->PushClipRectFullScreen();
   const int first = list->VtxBuffer.Size;
   const ImVec2 at(std::floor(x + 0.5f * theme().fonts.caps->FontSize), std::floor(lo.y + px(36)));

@@ -24,17 +24,17 @@ struct Window::Events {
   bool any = false, rescaled = false;
   std::vector<std::string> dropped;
   std::vector<Key> keys;
-  std::vector<int> quick;  // pressed since the last frame, perhaps released already
+  std::vector<int> quick;  // pressed since the last frame, possibly released already
   std::string error;
-  bool scripted = false;  // the pointer is a script's
+  bool scripted = false;  // a script controls the pointer
   float x = 0, y = 0;
   bool down[3] = {};
   std::set<int> held;                            // by a script
-  std::vector<int> lifted;                       // of these, those that nobody else holds
+  std::vector<int> lifted;                       // of these, released ones that no real key holds
   std::optional<std::array<bool, 3>> modifiers;  // Ctrl, Shift, Alt without them
   float wheel = 0;
 
-  /// What GLFW's callback does with dropped files; a script's go the same way.
+  /// Stores dropped files, for GLFW's callback and for a script.
   void take(int count, const char** files) {
     for (int i = 0; i < count; ++i) dropped.push_back(files[i]);
     any = true;
@@ -70,7 +70,7 @@ Window::Window(int width, int height, bool hidden, float scale) : events_(new Ev
   glfwWindowHint(GLFW_VISIBLE, hidden ? GLFW_FALSE : GLFW_TRUE);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   window_ = glfwCreateWindow(width, height, "Lucerna", nullptr, nullptr);
-  if (!window_) give_up("no window with OpenGL 3.3 could be made");
+  if (!window_) give_up("no window with OpenGL 3.3 could be created");
   glfwSetWindowSizeLimits(window_, 640, 400, GLFW_DONT_CARE, GLFW_DONT_CARE);
   glfwMakeContextCurrent(window_);
   glfwSwapInterval(1);
@@ -78,12 +78,12 @@ Window::Window(int width, int height, bool hidden, float scale) : events_(new Ev
     if (const GLFWvidmode* mode = glfwGetVideoMode(monitor); mode && mode->refreshRate > 0)
       refresh_seconds_ = 1.0 / mode->refreshRate;
 
-  // A processor that draws by itself is shared with the renderer: half the rate leaves it more.
+  // A software display shares the CPU with the renderer: it gets half the frame rate.
   const char* renderer = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
   for (const char* software : {"llvmpipe", "softpipe", "swrast"})
     if (renderer && std::strstr(renderer, software)) refresh_seconds_ = std::max(refresh_seconds_, 1.0 / 30);
 
-  // Ours first; ImGui's backend chains them.
+  // Own callbacks first; ImGui's backend chains them.
   glfwSetWindowUserPointer(window_, events_);
   const auto mark = [](GLFWwindow* w) { static_cast<Events*>(glfwGetWindowUserPointer(w))->any = true; };
   static auto note = mark;
@@ -133,7 +133,7 @@ void Window::follow_scale() {
   float x = 1, y = 1;
   glfwGetWindowContentScale(window_, &x, &y);
   float scale = asked_scale_ > 0 ? asked_scale_ : x;
-  // Where window units are not pixels, ImGui works in window units and scales its drawing itself.
+  // If window units are not pixels, ImGui works in window units and scales its drawing.
   int units = 0, pixels = 0, ignored = 0;
   glfwGetWindowSize(window_, &units, &ignored);
   glfwGetFramebufferSize(window_, &pixels, &ignored);
@@ -151,7 +151,7 @@ void Window::follow_scale() {
 bool Window::closing() const { return glfwWindowShouldClose(window_); }
 
 bool Window::wait(double seconds) {
-  // A script's input since the last call counts as much as a hand's.
+  // A script's input since the last call counts like a user's.
   if (events_->any) seconds = 0;
   if (seconds > 0)
     glfwWaitEventsTimeout(seconds);
@@ -164,7 +164,7 @@ void Window::begin_frame() {
   if (std::exchange(events_->rescaled, false)) follow_scale();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  // A key that went down and up between two frames is down for this one, or its press would be lost.
+  // A key that was pressed and released between two frames is down for this frame, so its press is not lost.
   ImGuiIO& io = ImGui::GetIO();
   if (events_->scripted) {
     io.MousePos = {events_->x, events_->y};
@@ -181,7 +181,7 @@ void Window::begin_frame() {
   for (int key : std::exchange(events_->quick, {}))
     if (!io.KeysDown[key]) io.KeysDown[key] = true, revived.push_back(key);
   ImGui::NewFrame();
-  // What a script holds is held for the whole frame; its parts look at the keys while they are drawn.
+  // A script's held keys are down for the whole frame; its parts read the keys while they are drawn.
   std::erase_if(revived, [&](int key) {
     if (events_->held.contains(key)) return events_->lifted.push_back(key), true;
     io.KeysDown[key] = false;

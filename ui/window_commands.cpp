@@ -1,4 +1,4 @@
-// Commands that only a window can carry out: panels, dialogs, the log, what lies over the picture.
+// Commands that need a window: panels, dialogs, the log, marks over the picture.
 #include <GLFW/glfw3.h>
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace {
 
 const std::vector<std::string> k_levels{"debug", "info", "warning", "error"};
 
-/// What the right panel can show.
+/// The panels that the right side can show.
 std::vector<std::string> sides() {
   std::vector<std::string> names{k_scene_side};
   for (const solvers::SolverInfo* solver : solvers::registered())
@@ -37,8 +37,14 @@ std::vector<std::string> section_names(const Ui& ui) {
 float& size_of(Layout& layout, const std::string& panel) {
   return panel == "left" ? layout.left : panel == "right" ? layout.right : layout.bottom;
 }
+void keep_arranged(Layout& layout, const std::string& panel) {
+  (panel == "left"    ? layout.left_arranged
+   : panel == "right" ? layout.right_arranged
+                      : layout.bottom_arranged) = true;
+}
 void set_open(Layout& layout, const std::string& panel, bool open) {
   const Panel which = panel == "left" ? Panel::left : panel == "right" ? Panel::right : Panel::bottom;
+  keep_arranged(layout, panel);
   (which == Panel::left    ? layout.left_open
    : which == Panel::right ? layout.right_open
                            : layout.bottom_open) = open;
@@ -52,7 +58,7 @@ using commands::Arguments;
 using commands::Parameter;
 using commands::Type;
 
-/// Registers a command: name, help, parameters, what it does, whether scripts record it.
+/// Registers a command: name, help, parameters, action, whether scripts record it.
 struct Add {
   Ui& ui;
   void operator()(std::string name, std::string help, std::vector<Parameter> parameters,
@@ -72,7 +78,7 @@ struct Add {
 
 Parameter on() { return {.name = "on", .type = Type::boolean}; }
 
-/// What the panels show, and how large they are.
+/// Selection and sizes of the panels.
 void add_panel_commands(Ui& ui, const Add& add) {
   const Parameter panel{
       .name = "panel", .type = Type::choice, .choices = {"left", "right", "bottom"}, .which = true};
@@ -81,18 +87,21 @@ void add_panel_commands(Ui& ui, const Add& add) {
       [&ui](const Arguments& a) { ui.layout.panels = a.boolean("on"); });
   add("window.fold", "Folds a panel, or unfolds it.", {panel, {.name = "folded", .type = Type::boolean}},
       [&ui](const Arguments& a) { set_open(ui.layout, a.text("panel"), !a.boolean("folded")); });
-  add("window.side", "Says what the panel on the right shows, and unfolds it.",
+  add("window.side", "Selects the content of the right panel, and unfolds it.",
       {{.name = "what", .type = Type::choice, .choices = sides()}}, [&ui](const Arguments& a) {
         ui.side = a.text("what");
         set_open(ui.layout, "right", true);
       });
   add("window.split", "Sets the width of a side panel, or the height of the strip at the bottom.",
       {panel, {.name = "size", .type = Type::real, .lo = 0, .hi = 10000, .unit = "design pixels"}},
-      [&ui](const Arguments& a) { size_of(ui.layout, a.text("panel")) = a.number("size"); });
+      [&ui](const Arguments& a) {
+        size_of(ui.layout, a.text("panel")) = a.number("size");
+        keep_arranged(ui.layout, a.text("panel"));
+      });
   add("window.log_share", "Sets how much of the strip at the bottom is the log.",
       {{.name = "share", .type = Type::real, .lo = 0, .hi = 1}},
       [&ui](const Arguments& a) { ui.layout.log_share = a.number("share"); });
-  add("window.passes_share", "Sets how much of the strip at the bottom is the panel of passes.",
+  add("window.passes_share", "Sets the Passes panel's share of the strip at the bottom.",
       {{.name = "share", .type = Type::real, .lo = 0, .hi = 1}},
       [&ui](const Arguments& a) { ui.layout.passes_share = a.number("share"); });
   add("window.section", "Opens or closes a section of a panel.",
@@ -105,15 +114,15 @@ void add_panel_commands(Ui& ui, const Add& add) {
 
 void add_accuracy_commands(Ui& ui, const Add& add) {
   add("accuracy.what_if",
-      "In uniform sampling: asks what this error as seen of the picture would cost. In adaptive sampling "
-      "sampling.target_error is the question; it begins with the error that was asked about last.",
+      "In uniform sampling: shows the cost of this error as seen. In adaptive sampling sampling.target_error "
+      "is used instead; it starts with the last value given here.",
       {{.name = "error", .type = Type::real, .lo = 0.0001, .hi = 10}},
       [&ui](const Arguments& a) { ui.what_if = a.real("error"), ui.what_if_asked = true; });
-  add("accuracy.clear_runs", "Takes the lines of earlier renders out of the plot of accuracy.", {},
+  add("accuracy.clear_runs", "Removes the lines of earlier renders from the Accuracy plot.", {},
       [&ui](const Arguments&) { ui.runs.clear(); });
 }
 
-/// The window as a whole, and the cards that explain it.
+/// The window as a whole, and its cards of explanation.
 void add_frame_commands(Ui& ui, const Add& add) {
   add("window.size", "Resizes the window.",
       {{.name = "width", .type = Type::integer, .lo = 640, .hi = 16384, .unit = "pixels"},
@@ -121,31 +130,32 @@ void add_frame_commands(Ui& ui, const Add& add) {
       [&ui](const Arguments& a) {
         ui.size = {static_cast<int>(a.integer("width")), static_cast<int>(a.integer("height"))};
       });
-  add("window.scale", "Sets the size of text and controls; 0: what the desktop asks for.",
+  add("window.scale", "Sets the scale of text and controls; 0: the desktop's.",
       {{.name = "scale", .type = Type::real, .lo = 0, .hi = 4}},
       [&ui](const Arguments& a) { ui.scale = a.number("scale"); });
   add(
-      "window.keys", "Shows what keys and mouse do.", {}, [&ui](const Arguments&) { ui.help = true; }, false);
+      "window.keys", "Shows the page of keys and mouse.", {}, [&ui](const Arguments&) { ui.help = true; },
+      false);
 
   add(
       "window.welcome", "Shows the first steps.", {}, [&ui](const Arguments&) { ui.welcome = true; }, false);
 }
 
-/// The picture's size, and what is marked or picked in it.
+/// The picture's size, and its marks.
 void add_picture_commands(Ui& ui, const Add& add) {
   add(
-      "exposure.dropper", "Whether the next click in the picture sets the exposure by what it hits.", {on()},
+      "exposure.dropper", "Makes the next click in the picture set the exposure from the clicked point.",
+      {on()},
       [&ui](const Arguments& a) {
         ui.dropper = a.boolean("on");
-        if (ui.dropper)
-          ui.notice("Click on something grey: it is then shown as middle grey. Esc gives it up.");
+        if (ui.dropper) ui.notice("Click a grey point to show it as middle grey. Esc cancels.");
       },
       false);
-  add("view.divisor", "Pixels of the window for each pixel of the picture, along a side.",
+  add("view.divisor", "Sets the pixels of the window per pixel of the picture, along a side.",
       {{.name = "divisor", .type = Type::choice, .choices = {"1", "2", "4"}}},
       [&ui](const Arguments& a) { ui.picture_divisor = static_cast<int>(a.integer("divisor")); });
   add("view.size",
-      "Gives the picture a size of its own, such as that of a reference; 0 0: as large as there is room.",
+      "Sets a fixed picture size, such as that of a reference; 0 0: as large as the window allows.",
       {{.name = "width", .type = Type::integer, .lo = 0, .hi = 16384, .unit = "pixels"},
        {.name = "height", .type = Type::integer, .lo = 0, .hi = 16384, .unit = "pixels"}},
       [&ui](const Arguments& a) {
@@ -157,34 +167,36 @@ void add_picture_commands(Ui& ui, const Add& add) {
       });
   add("view.selection", "Marks the selected object in the picture.", {on()},
       [&ui](const Arguments& a) { ui.brackets = a.boolean("on"); });
-  add("view.lamps", "Marks lamps and surfaces that emit in the picture.", {on()},
+  add("view.lamps", "Marks lamps and emissive surfaces in the picture.", {on()},
       [&ui](const Arguments& a) { ui.light_marks = a.boolean("on"); });
 }
 
 void add_dialog_commands(Ui& ui, const Add& add) {
   add(
-      "dialog.open", "Asks for a scene to open.", {},
+      "dialog.open", "Opens the dialog to open a scene.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::open); }, false);
   add(
-      "dialog.save", "Asks where to save the picture.", {},
+      "dialog.save", "Opens the dialog to save the picture.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::save); }, false);
   add(
-      "dialog.reference", "Asks for a picture to hold this one against.", {},
+      "dialog.reference", "Opens the dialog to load a reference.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::reference); }, false);
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     if (!solver->file) continue;
     add(
-        "dialog." + solver->name + "_load", fmt::format("Asks for {} to load.", solver->file->content), {},
+        "dialog." + solver->name + "_load",
+        fmt::format("Opens the dialog to load {}.", solver->file->content), {},
         [&ui, solver](const Arguments&) { ui.start_dialog(Dialog::Purpose::solver_load, solver); }, false);
     add(
-        "dialog." + solver->name + "_save", fmt::format("Asks where to save {}.", solver->file->content), {},
+        "dialog." + solver->name + "_save",
+        fmt::format("Opens the dialog to save {}.", solver->file->content), {},
         [&ui, solver](const Arguments&) { ui.start_dialog(Dialog::Purpose::solver_save, solver); }, false);
   }
   add(
-      "dialog.script", "Asks where to save the session as a script.", {},
+      "dialog.script", "Opens the dialog to save the session as a script.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::script); }, false);
   add(
-      "dismiss", "Takes away the dialog, or else the newest message over the picture.", {},
+      "dismiss", "Closes the dialog, or otherwise the newest message over the picture.", {},
       [&ui](const Arguments&) {
         if (ui.dialog.purpose != Dialog::Purpose::none)
           ui.dialog = {};
@@ -196,7 +208,7 @@ void add_dialog_commands(Ui& ui, const Add& add) {
 
 void add_log_commands(Ui& ui, const Add& add) {
   add(
-      "log.copy", "Copies the lines shown to the clipboard.", {},
+      "log.copy", "Copies the displayed lines to the clipboard.", {},
       [&ui](const Arguments&) {
         std::string all;
         for (const LogLine& line : ui.log) {
@@ -208,7 +220,7 @@ void add_log_commands(Ui& ui, const Add& add) {
       },
       false);
   add(
-      "log.type", "Puts the keyboard into the line under the log.", {},
+      "log.type", "Moves the keyboard focus to the console.", {},
       [&ui](const Arguments&) {
         ui.layout.panels = true;
         set_open(ui.layout, "bottom", true);
@@ -216,7 +228,7 @@ void add_log_commands(Ui& ui, const Add& add) {
       },
       false);
   add(
-      "log.clear", "Empties the log.", {}, [&ui](const Arguments&) { ui.log.clear(); }, false);
+      "log.clear", "Clears the log.", {}, [&ui](const Arguments&) { ui.log.clear(); }, false);
   add("log.show", "Shows or hides the lines of a level.",
       {{.name = "level", .type = Type::choice, .choices = k_levels, .which = true}, on()},
       [&ui](const Arguments& a) {

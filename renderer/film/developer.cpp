@@ -41,7 +41,7 @@ void Developer::develop(gpu::Stream& stream, const Film& film, const View& view,
 void Developer::tone_map(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse) {
   if (coarse) develop(stream, *coarse, view, nullptr);
   develop(stream, film, view, coarse);
-  draw_tiles(stream, film, view);
+  draw_tiles(stream, film, view, film.picture(), 1);
 }
 
 gpu::Kernel& Developer::mix_kernel(const Film& film, const View& view) {
@@ -69,12 +69,14 @@ void Developer::mix(gpu::Stream& stream, const Film& film, const View& view) {
   stream.take_times();
 }
 
-void Developer::draw_tiles(gpu::Stream& stream, const Film& film, const View& view) {
+void Developer::draw_tiles(gpu::Stream& stream, const Film& film, const View& view,
+                           const gpu::Buffer& picture, uint32_t scale) {
   if (view.tiles > 0) {
     film.bind(resources_);
-    const TilesPush push{film.width(), film.height(), view.tiles,
-                         (film.width() + view.tiles - 1) / view.tiles, 1};
-    stream.dispatch(tiles_, resources_, push, groups(film));
+    resources_.set("Picture", picture);
+    const uint32_t width = scale * film.width(), height = scale * film.height();
+    const TilesPush push{width, height, scale * view.tiles, (film.width() + view.tiles - 1) / view.tiles, 1};
+    stream.dispatch(tiles_, resources_, push, gpu::groups_for(uint64_t{width} * height, 64));
   }
   stream.run();
   stream.take_times();

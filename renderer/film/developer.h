@@ -20,8 +20,10 @@ class Developer {
   /// Compiles the kernel of mix(), so that the first mix does not wait. Does nothing if already done or if
   /// the film is not Film::quick(). Runs the stream. Throws Error, located.
   void prepare_mix(gpu::Stream& stream, const Film& film, const View& view);
-  /// Draws the state of the tiles over the film's picture, if the view shows it. Runs the stream.
-  void draw_tiles(gpu::Stream& stream, const Film& film, const View& view);
+  /// Draws over a picture the state of the film's tiles, where the view has any. `scale`: pixels of that
+  /// picture per pixel of the film, along a side; lines are one pixel of it wide. Runs the stream.
+  void draw_tiles(gpu::Stream& stream, const Film& film, const View& view, const gpu::Buffer& picture,
+                  uint32_t scale);
 
  private:
   void develop(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse);

@@ -3,9 +3,9 @@
 //
 // A preview expects an error of each tile (PreviewTile::error), which has about the right pattern but not
 // always the right size. Samples taken after a picture was shown measure its squared error without bias, but
-// with much noise (shaders/film/preview_judge.comp). The ratio of the two is estimated for the whole picture,
-// for neighbourhoods of 9x9 and 3x3 tiles and for the tile itself: at each level by its measurements and,
-// weighed by their variances, by the level above it.
+// with much noise (shaders/film/preview_judge.comp). What is expected is corrected by the ratio of the two
+// over the whole picture, over neighbourhoods of 9x9 and 3x3 tiles and in the tile itself, at each level
+// weighed by the variance of the measurements.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,28 +22,24 @@ struct ShownError {
 
 class ShownJudge {
  public:
-  /// Another picture begins: measurements of tiles are dropped, the picture's ratio counts less.
+  /// Another picture begins: measurements are dropped; half of what they said of the size of expected errors,
+  /// as a power, is kept.
   void restart();
-  /// The tiles of what is shown now, in raster order; `across` in a row. `measured`: their expected, square
-  /// and noise are of the picture before. No tiles: no error.
+  /// The tiles of what is shown now, in raster order; `across` in a row. `measured`: their square and noise
+  /// are of the picture before. No tiles: no error.
   ShownError judge(std::span<const shared::PreviewTile> tiles, uint32_t across, bool measured);
-  /// True squared errors over the expected ones, over the picture.
-  double ratio() const;
+  /// True squared errors over the expected ones, over the picture judged last.
+  double ratio() const { return ratio_; }
 
  private:
-  /// Sums over tiles and measurements of the square measured and expected, and the variance of the former,
-  /// each by a weight that makes bright and dark tiles alike.
-  struct Sums {
-    double square = 0, expected = 0, variance = 0;
-    void add(const Sums& other, double weight = 1);
-    /// The ratio square/expected, given `prior` and its variance.
-    double ratio(double prior, double prior_variance) const;
+  /// The square of a tile's error as measured so far, times `weight`, and the variance of that sum.
+  struct Measured {
+    double square = 0, weight = 0, variance = 0;
   };
   void measure(std::span<const shared::PreviewTile> tiles, uint32_t across);
-  std::vector<double> tile_ratios(uint32_t across) const;
 
-  std::vector<Sums> tiles_;
-  Sums all_;
+  std::vector<Measured> tiles_;
+  double first_ratio_ = 1, ratio_ = 1;
 };
 
 }  // namespace lucerna::film

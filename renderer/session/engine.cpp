@@ -97,8 +97,10 @@ solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
 
 Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
                const World& world, const plan::Plan& plan, const plan::Settings& settings,
-               gpu::Defines defines, const Engine* before)
-    : automaton_(automaton), plan_(plan), scene_defines_(world.device->defines()) {
+               gpu::Defines defines, const Engine* before, std::span<const Predecessor> predecessors)
+    : automaton_(automaton),
+      plan_(plan),
+      made_for_{.scene_defines = world.device->defines(), .lights = upload::light_separation(world.flat)} {
   const Timer timer;
   route(settings, world.flat.effects);
   auto slots = uint32_t(settings.integer("path.batch")) / 64 * 64;
@@ -108,14 +110,16 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
   const std::vector<const solvers::SolverInfo*> at_work = plan.at_work();
   for (const solvers::SolverInfo* info : at_work)
     slots = std::max(slots, solvers::type_of(*info).least_slots);
+  made_for_.slots = slots;
   std::vector<transport::VertexHook> hooks;
   const upload::Effects& effects = world.flat.effects;
   for (const solvers::SolverInfo* info : at_work) {
     const solvers::SolverType& type = solvers::type_of(*info);
     if (!type.make) continue;
     solvers::Task task = task_of(automaton_, plan_, *info, settings, effects);
-    task.scene_defines = &scene_defines_;
-    solvers_.push_back(type.make(device, compiler, slots, task));
+    task.scene_defines = &made_for_.scene_defines;
+    const Predecessor* same = working_on(*info, task, predecessors);
+    solvers_.push_back(same ? same->solver : type.make(device, compiler, slots, task));
     const solvers::Solver& solver = *solvers_.back();
     for (const auto& [name, value] : solver.defines()) defines[name] = value;
     if (!solver.hook().empty()) hooks.push_back({info->name, solver.hook()});
@@ -143,6 +147,7 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
   estimator_ = before && before->solvers_.empty() == solvers_.empty()
                    ? before->estimator_
                    : std::make_shared<film::ErrorEstimator>(device, compiler, !solvers_.empty());
+  take_up(predecessors);
   compile_seconds_ = timer.seconds();
 }
 
@@ -153,7 +158,7 @@ bool Engine::serves(const plan::Plan& plan, const plan::Settings& settings, cons
       if (!find(info->name)) return false;
       ++wanted;
     }
-  if (wanted != solvers_.size() || world.device->defines() != scene_defines_ ||
+  if (wanted != solvers_.size() || world.device->defines() != made_for_.scene_defines ||
       wanted_learned_defines(settings, world.flat) != learned_defines_)
     return false;
   return std::all_of(solvers_.begin(), solvers_.end(), [&](const auto& solver) {
@@ -161,19 +166,41 @@ bool Engine::serves(const plan::Plan& plan, const plan::Settings& settings, cons
   });
 }
 
-void Engine::adopt(const Engine& before, const scene::Changes& changes) {
-  for (const auto& solver : solvers_)
-    if (const solvers::Solver* old = before.find(solver->info().name);
-        old && !solvers::invalidated_by(solver->info(), changes).places)
-      solver->adopt(*wavefront_, *old);
+const Predecessor* Engine::working_on(const solvers::SolverInfo& info, const solvers::Task& task,
+                                      std::span<const Predecessor> predecessors) const {
+  const auto restarts = [&](const std::string& key) {
+    return solvers::owner_of(key) == &info && plan::find_option(key)->restarts;
+  };
+  for (const Predecessor& p : predecessors)
+    if (&p.solver->info() == &info && p.made_for == made_for_ &&
+        !solvers::invalidated_by(info, p.since).places &&
+        std::none_of(p.since.settings.begin(), p.since.settings.end(), restarts) && p.solver->serves(task))
+      return &p;
+  return nullptr;
 }
 
-void Engine::adopt(const solvers::Solver& before, const scene::Changes& since) {
-  solvers::Solver* own = find(before.info().name);
-  if (!own || solvers::invalidated_by(own->info(), since).places) return;
-  own->adopt(*wavefront_, before);
-  missed_[own] = since;
+void Engine::take_up(std::span<const Predecessor> predecessors) {
+  const auto note = [&](const solvers::Solver& own, const Predecessor& p) {
+    taken_up_.insert(p.solver.get());
+    if (p.kept) missed_[&own] = p.since;
+  };
+  for (const auto& own : solvers_) {
+    const auto same = std::find_if(predecessors.begin(), predecessors.end(),
+                                   [&](const Predecessor& p) { return p.solver == own; });
+    if (same != predecessors.end()) {
+      note(*own, *same);
+      continue;
+    }
+    for (const Predecessor& p : predecessors) {
+      if (&p.solver->info() != &own->info() || solvers::invalidated_by(own->info(), p.since).places) continue;
+      own->adopt(*wavefront_, *p.solver);
+      note(*own, p);
+      break;
+    }
+  }
 }
+
+bool Engine::took_up(const solvers::Solver& predecessor) const { return taken_up_.contains(&predecessor); }
 
 void Engine::begin(const PictureView& picture, const scene::Changes& changes,
                    const std::optional<std::vector<vec3>>& light_factors) {
@@ -181,14 +208,18 @@ void Engine::begin(const PictureView& picture, const scene::Changes& changes,
   route(picture.settings, picture.world.flat.effects);
   for (const auto& solver : solvers_)
     with(*solver, picture, [&](solvers::Picture own) {
-      solvers::Invalidation invalidated = solvers::invalidated_by(solver->info(), changes);
-      if (const auto missed = missed_.find(solver.get()); missed != missed_.end())
-        invalidated |= solvers::invalidated_by(solver->info(), missed->second);
-      else
+      scene::Changes since = changes;
+      if (const auto missed = missed_.find(solver.get()); missed != missed_.end()) {
+        since.settings = missed->second.settings;
+        since.edits.insert(missed->second.edits.begin(), missed->second.edits.end());
+      } else {
         own.light_factors = light_factors;
-      solver->begin(own, invalidated);
+      }
+      solver->begin(own, solvers::invalidated_by(solver->info(), since));
     });
   missed_.clear();
+  made_for_.lights = upload::light_separation(picture.world.flat);
+  begun_settings_ = picture.settings.all();
   // A new engine has learned nothing of its world.
   const bool learned = wavefront_->learning() && std::exchange(begun_, true);
   learned_elsewhere_ = learned && same_lights(changes);

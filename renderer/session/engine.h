@@ -3,7 +3,8 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <utility>
+#include <set>
+#include <span>
 #include <vector>
 
 #include "film/developer.h"
@@ -29,26 +30,43 @@ solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
                       const solvers::SolverInfo& solver, const plan::Settings& settings,
                       const upload::Effects& effects);
 
+/// What a solver is made for besides its task and its own settings.
+struct MadeFor {
+  gpu::Defines scene_defines;
+  uint32_t slots = 0;              ///< of the wavefront
+  upload::LightSeparation lights;  ///< as the picture begun last has them
+  bool operator==(const MadeFor&) const = default;
+};
+
+/// A solver of an earlier engine, with its work.
+struct Predecessor {
+  std::shared_ptr<solvers::Solver> solver;
+  MadeFor made_for;
+  scene::Changes since;  ///< its last picture
+  bool kept = false;     ///< it has been out of use meanwhile: `since` are all changes
+};
+
 class Engine {
  public:
   /// `before`: an engine whose film kernels are reused, which depend on neither scene nor plan; null: they
-  /// are compiled. Throws Error: kernels that do not compile (located), memory, a component that two solvers
-  /// would compute.
+  /// are compiled. `predecessors`: the first of each kind that serves the task is used with its work
+  /// (working_on); if none does, a new solver adopts the work of the first one that is valid in part. No
+  /// predecessor changes before begin(). Throws Error: kernels that do not compile (located), memory, a
+  /// component that two solvers would compute.
   Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
          const World& world, const plan::Plan& plan, const plan::Settings& settings, gpu::Defines defines,
-         const Engine* before);
+         const Engine* before, std::span<const Predecessor> predecessors);
 
   /// True if kernels and solvers can be reused for another plan and these settings of the same world.
   bool serves(const plan::Plan& plan, const plan::Settings& settings, const World& world) const;
   /// Switches to a plan that it serves.
   void set_plan(const plan::Plan& plan) { plan_ = plan; }
   const plan::Plan& plan() const { return plan_; }
-  /// Takes over solver data from another engine where `changes` do not invalidate all of it.
-  void adopt(const Engine& before, const scene::Changes& changes);
-  /// The same for one solver, which has made no picture since these changes.
-  void adopt(const solvers::Solver& before, const scene::Changes& since);
-  /// Releases the solvers with their data, for an engine that is no longer used.
-  std::vector<std::unique_ptr<solvers::Solver>> release_solvers() { return std::exchange(solvers_, {}); }
+  /// True if a solver of this engine took over the predecessor's work when the engine was made.
+  bool took_up(const solvers::Solver& predecessor) const;
+  const MadeFor& made_for() const { return made_for_; }
+  /// Settings of the picture begun last.
+  const std::map<std::string, std::string>& begun_settings() const { return begun_settings_; }
   /// Starts a new picture: sets the wavefront's frame and informs the solvers. `light_factors`:
   /// solvers::Picture::light_factors.
   void begin(const PictureView& picture, const scene::Changes& changes,
@@ -58,7 +76,7 @@ class Engine {
   film::ErrorEstimator& estimator() { return *estimator_; }
   transport::Wavefront& wavefront() { return *wavefront_; }
   const transport::Wavefront& wavefront() const { return *wavefront_; }
-  const std::vector<std::unique_ptr<solvers::Solver>>& solvers() const { return solvers_; }
+  const std::vector<std::shared_ptr<solvers::Solver>>& solvers() const { return solvers_; }
   /// Null if it is not active.
   solvers::Solver* find(std::string_view name) const;
   /// The next solver that is not ready; null: all are.
@@ -105,9 +123,14 @@ class Engine {
   bool looked_up_besides(size_t component) const;
   double compile_seconds() const { return compile_seconds_; }
   /// #defines of the wavefront's kernels, for other kernels that work on its paths.
-  const gpu::Defines& defines() const { return scene_defines_; }
+  const gpu::Defines& defines() const { return made_for_.scene_defines; }
 
  private:
+  /// The first predecessor that can continue as it is: made for the same scene, lights and own settings, and
+  /// serving the task. Null: none.
+  const Predecessor* working_on(const solvers::SolverInfo& info, const solvers::Task& task,
+                                std::span<const Predecessor> predecessors) const;
+  void take_up(std::span<const Predecessor> predecessors);
   /// Merged routing of all solvers. Throws Error, located at the component, if two compute the same light.
   solvers::Routing routing(const plan::Plan& plan, const plan::Settings& settings,
                            const upload::Effects& effects) const;
@@ -128,13 +151,15 @@ class Engine {
 
   const paths::Automaton& automaton_;
   plan::Plan plan_;
-  gpu::Defines scene_defines_;  ///< of the kernels
   gpu::Defines learned_defines_;
   bool begun_ = false;
   bool learned_elsewhere_ = false;  ///< from another view
   Routes routes_;                   ///< of the current picture
-  std::vector<std::unique_ptr<solvers::Solver>> solvers_;
-  /// Changes that separately adopted solvers have missed before the next picture.
+  std::vector<std::shared_ptr<solvers::Solver>> solvers_;
+  MadeFor made_for_;
+  std::map<std::string, std::string> begun_settings_;
+  std::set<const solvers::Solver*> taken_up_;  ///< of the predecessors
+  /// Changes that solvers with kept work have missed since their last picture.
   std::map<const solvers::Solver*, scene::Changes> missed_;
   std::unique_ptr<transport::Wavefront> wavefront_;
   std::shared_ptr<film::Developer> developer_;

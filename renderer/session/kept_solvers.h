@@ -1,8 +1,11 @@
 #pragma once
-// Solvers that the plan has no task for any more, with the work that they have done. When one of their kind
-// is called for again, by undo or by hand, it takes up that work instead of starting from nothing.
-#include <cstdint>
+// Solvers that are out of use, with their work: the plan has no task for them any more, or settings have
+// changed so that none of it holds. When one of their kind is called for again, by undo or by hand, it takes
+// up that work instead of starting from nothing.
+#include <map>
 #include <memory>
+#include <set>
+#include <string>
 #include <vector>
 
 #include "scene/change.h"
@@ -12,20 +15,24 @@ namespace lucerna::session {
 
 class KeptSolvers {
  public:
-  /// Keeps the solvers of `before` that `after` has not and whose work can outlive them (SolverInfo::file),
-  /// at most one of a kind; forgets those that `after` has. `changes`: from one to the other.
-  void replace(Engine& before, const Engine& after, const scene::Changes& changes);
-  /// The scene or settings have changed: forgets the work of which nothing holds any more.
-  void note(const scene::Changes& changes);
-  /// Has the solvers of an engine take up the work of those kept. `changes`: besides those noted.
-  void hand_to(Engine& engine, const scene::Changes& changes) const;
+  /// Keeps the solvers of `before` whose work `after` has not taken up, at most one of a kind, and forgets
+  /// those whose work it has. `edits`: of the scene, from one to the other.
+  void replace(const Engine& before, const Engine& after, const std::set<scene::Change>& edits);
+  /// The scene is edited: forgets the work of which nothing holds any more.
+  void note(const std::set<scene::Change>& edits);
+  /// For an engine with these settings. `edits`: besides those noted.
+  std::vector<Predecessor> predecessors(const plan::Settings& settings,
+                                        const std::set<scene::Change>& edits) const;
   bool empty() const { return kept_.empty(); }
   void clear() { kept_.clear(); }
 
  private:
   struct Kept {
-    std::unique_ptr<solvers::Solver> solver;
-    scene::Changes since;  ///< its last picture
+    std::shared_ptr<solvers::Solver> solver;
+    MadeFor made_for;
+    // Of its last picture: settings by value, for what is set back is as it was; and edits since.
+    std::map<std::string, std::string> settings;
+    std::set<scene::Change> edits;
   };
   std::vector<Kept> kept_;
 };

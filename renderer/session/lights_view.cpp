@@ -18,13 +18,17 @@ Legend arrows_legend() {
   Legend legend{.title = "Lights of the point, by its samples"};
   for (const auto& [share, text] : {std::pair(0.01f, "1 %"), {0.1f, "10 %"}, {1.f, "all"}})
     legend.marks.push_back({.ink = overlay::share_ink(share), .text = text});
+  legend.note =
+      "Arrow: from the point under the pointer to a light, or a group of lights. Colour: share of the light "
+      "samples there.";
   return legend;
 }
 
 Legend arrival_legend() {
   return {.title = "Shadow rays that arrive at a light",
           .ramp = shared::k_ramp_viridis,
-          .ticks = {{0, "none"}, {0.5f, "half"}, {1, "all"}}};
+          .ticks = {{0, "none"}, {0.5f, "half"}, {1, "all"}},
+          .note = "Colour: share of the shadow rays that nothing blocks. Grey: not known."};
 }
 
 Card card_of(const overlay::ServedPoint& served, const transport::LightLearning& learning,
@@ -81,7 +85,8 @@ void LightsView::draw(const overlay::Canvas& canvas, const transport::LightLearn
                       const plan::Settings& settings, std::optional<vec2> looked_at) {
   Report report{.solver = "lights", .looked_at = looked_at};
   if (!learning) {
-    report.legends.push_back({.title = "No lights are learned here"});
+    report.legends.push_back({.title = "No lights are learned here",
+                              .note = "Shadow rays are counted with the setting lights.sampling = learned."});
     report_ = std::move(report);
     return;
   }

@@ -21,7 +21,8 @@ Renderer::Renderer(const RendererOptions& options)
                   : std::make_shared<gpu::Device>(gpu::DeviceOptions{options.device, options.validation})),
       compiler_(std::make_unique<gpu::ShaderCompiler>(
           options.shaders.empty() ? gpu::ShaderCompiler::default_root() : options.shaders)),
-      automaton_(paths::compile_components()) {}
+      automaton_(paths::compile_components()),
+      waits_for_overlay_(!options.interactive) {}
 
 Renderer::~Renderer() = default;
 
@@ -140,15 +141,18 @@ std::unique_ptr<Engine> Renderer::make_engine(const World& world, const plan::Pl
                                               const plan::Settings& settings,
                                               const scene::Changes& changes) const {
   const bool same_shaders = !changes.edits.contains(scene::Change::shaders);
-  auto engine = std::make_unique<Engine>(*device_, *compiler_, automaton_, world, plan, settings,
-                                         options_.defines, same_shaders ? engine_.get() : nullptr);
-  kept_.hand_to(*engine, changes);
-  if (engine_) engine->adopt(*engine_, changes);
-  return engine;
+  std::vector<Predecessor> predecessors;
+  if (engine_)
+    for (const auto& solver : engine_->solvers())
+      predecessors.push_back({.solver = solver, .made_for = engine_->made_for(), .since = changes});
+  for (Predecessor& kept : kept_.predecessors(settings, changes.edits))
+    predecessors.push_back(std::move(kept));
+  return std::make_unique<Engine>(*device_, *compiler_, automaton_, world, plan, settings, options_.defines,
+                                  same_shaders ? engine_.get() : nullptr, predecessors);
 }
 
 void Renderer::use(std::unique_ptr<Engine> engine, const scene::Changes& changes) {
-  if (engine_) kept_.replace(*engine_, *engine, changes);
+  if (engine_) kept_.replace(*engine_, *engine, changes.edits);
   engine_ = std::move(engine);
   // Kept data is optional: most of the memory is left to the picture.
   if (device_->allocated_bytes() > device_->info().memory_bytes / 2) kept_.clear();
@@ -197,7 +201,7 @@ Renderer::Films Renderer::make_films(uint32_t width, uint32_t height, const uplo
 
 void Renderer::restart(const scene::Changes& changes, const std::optional<std::vector<vec3>>& factors) {
   if (!engine_ || !film_) return;
-  kept_.note(changes);
+  kept_.note(changes.edits);
   engine_->begin(picture_view(), changes, factors);
   transport::Wavefront& wavefront = engine_->wavefront();
   const std::optional<vec3> factor = factors ? scene::common_factor(*factors) : std::nullopt;
@@ -223,6 +227,9 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
   mix_pending_ = false;
   start_schedule();
   if (display_) display_->restart(changes, factor.value_or(vec3(1)), known);
+  if (sheet_ &&
+      (changes.edits.contains(scene::Change::shape) || changes.edits.contains(scene::Change::shaders)))
+    sheet_->forget();
   draft_preparing_ = false;
   if (!known) path_pace_.reset();
   ++restarts_;
@@ -370,7 +377,7 @@ void Renderer::apply_settings() {
     throw;
   }
   notify_settings_changed();
-  kept_.note(changes);
+  kept_.note(changes.edits);
   if (changed("samples") && !again) sampling_.uniform().set_samples(uint32_t(settings_.integer("samples")));
   if (changed("sampling.mode") && !again)
     change_schedule();
@@ -439,7 +446,7 @@ void Renderer::set_size(uint32_t width, uint32_t height) {
     take(std::move(relight));
     use(std::move(films));
   }
-  filter_fails_ = false;
+  filter_fails_ = overlay_fails_ = false;
   width_ = width, height_ = height;
   restart(scene::Change::size);
 }

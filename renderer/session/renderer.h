@@ -1,6 +1,7 @@
 #pragma once
 // The renderer on one thread: device, scene, settings, film. step() does one bounded work item. Batch verbs
 // use it directly; Session runs one on a separate thread.
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <filesystem>
@@ -17,6 +18,7 @@
 #include "film/io/image_file.h"
 #include "film/io/reference.h"
 #include "gpu/kernel.h"
+#include "overlay/sheet.h"
 #include "paths/automaton.h"
 #include "plan/plan.h"
 #include "plan/settings.h"
@@ -168,6 +170,15 @@ class Renderer {
   bool shows_the_same() const;
   /// True if shown_picture() can show the former picture before there is new light.
   bool remembers() const;
+  /// Pixels of the window per pixel of the picture, along a side: where overlays are on, shown_picture() and
+  /// picture() are larger by shown_scale(), at most this.
+  void set_window_scale(uint32_t scale) { window_scale_ = std::max(1u, scale); }
+  uint32_t shown_scale() { return sheet().scale(); }
+  /// Overlays follow the picture's samples until the surfaces of the window's pixels have been traced. Where
+  /// RendererOptions::interactive, that waits for trace_overlay(), so that a moving camera does not; the next
+  /// picture then shows it.
+  bool overlay_waits();
+  void trace_overlay(const std::function<bool()>& cancel);
   /// Of the latest shown_picture().
   film::PreviewShares preview_shares() const;
   film::View view() const;
@@ -291,7 +302,12 @@ class Renderer {
     return {automaton_, settings_, world_, camera_, width_, height_, relight_.weights};
   }
   /// The film's picture with the overlays of solvers.
-  std::vector<uint8_t> finished_picture(const std::function<bool()>& cancel);
+  std::vector<uint8_t> finished_picture(const film::View& view, const std::function<bool()>& cancel);
+  /// True if a view of a solver, or of the lights, is on.
+  bool draws_over() const;
+  overlay::Sheet& sheet();
+  /// To the picture, at most at that scale.
+  void fit_sheet(uint32_t scale);
   std::vector<uint8_t> picture_of(const Filtered& filtered, const film::View& view,
                                   const std::function<bool()>& cancel);
   FilterJob filter_job() const;
@@ -358,9 +374,13 @@ class Renderer {
   uint64_t judged_paths_ = 0;  ///< at the latest error estimate of shown_filtered_
   double filter_s_ = 0,
          filter_piece_s_ = 0;                ///< filtering time: of the latest result, and of the current one
-  double filtered_at_s_ = 0;                 ///< render_s_ at that time
+  double filtered_at_s_ = 0;                 ///< render_s_ then
   std::unique_ptr<Display> display_;         ///< null in batch
   std::unique_ptr<LightsView> lights_view_;  ///< null until it is shown
+  std::unique_ptr<overlay::Sheet> sheet_;    ///< null until something is drawn
+  uint32_t window_scale_ = 1;
+  bool waits_for_overlay_ = false;  ///< pictures wait for the surfaces of overlays
+  bool overlay_fails_ = false;      ///< no memory for these
   struct {
     uint64_t version = ~uint64_t{0}, paths = 0;
     bool filtered = false;

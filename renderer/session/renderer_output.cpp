@@ -15,6 +15,14 @@
 
 namespace lucerna::session {
 
+namespace {
+/// They are drawn over the sheet.
+film::View without_tiles(film::View v) {
+  v.tiles = 0;
+  return v;
+}
+}  // namespace
+
 film::View Renderer::view() const {
   film::View v;
   v.layer = uint32_t(settings_.choice("film.layer"));
@@ -50,12 +58,64 @@ void Renderer::mark_tiles(const film::View& v) {
   film_->mark_tiles(marks);
 }
 
-std::vector<uint8_t> Renderer::finished_picture(const std::function<bool()>& cancel) {
+bool Renderer::draws_over() const {
+  if (!engine_ || !film_) return false;
+  const auto on = [&](const OptionInfo& option) {
+    const solvers::SolverInfo* owner = solvers::owner_of(option.key);
+    return option.key.starts_with("overlay.") && owner && engine_->find(owner->name) &&
+           settings_.text(option.key) != option.fallback;
+  };
+  return looked_at_ || LightsView::shown(settings_) ||
+         std::any_of(plan::options().begin(), plan::options().end(), on);
+}
+
+overlay::Sheet& Renderer::sheet() {
+  if (!sheet_) {
+    sheet_ = std::make_unique<overlay::Sheet>(*device_, *compiler_);
+    fit_sheet(1);
+  }
+  return *sheet_;
+}
+
+void Renderer::fit_sheet(uint32_t scale) {
+  const uint64_t pixels = uint64_t{width_} * height_;
+  while (scale > 1 && pixels * scale * scale > overlay::Sight::k_most_points) --scale;
+  sheet().fit(*film_, scale, engine_->frame(picture_view(), scale * width_, scale * height_));
+}
+
+bool Renderer::overlay_waits() {
+  return !overlay_fails_ && draws_over() && !sheet().surfaces_known() && sheet().can_trace();
+}
+
+void Renderer::trace_overlay(const std::function<bool()>& cancel) {
+  if (!overlay_waits()) return;
+  transport::Wavefront& wavefront = engine_->wavefront();
+  fit_sheet(sheet().scale());
+  try {
+    sheet().trace(wavefront, *film_, engine_->plan().enabled(), engine_->defines(), cancel);
+  } catch (const Error& e) {
+    wavefront.stream().discard();
+    sheet().forget();
+    overlay_fails_ = true;
+    log::warning("{}; overlays follow the samples of the picture", e.what());
+  }
+  wavefront.set_frame(engine_->frame(picture_view(), width_, height_), engine_->plan().enabled());
+}
+
+std::vector<uint8_t> Renderer::finished_picture(const film::View& v, const std::function<bool()>& cancel) {
+  fit_sheet(draws_over() || v.tiles > 0 ? window_scale_ : 1);
+  if (waits_for_overlay_) trace_overlay(cancel);
+  gpu::Stream& stream = engine_->wavefront().stream();
+  sheet().enlarge(stream, *film_);
+  engine_->developer().draw_tiles(stream, *film_, v, sheet().picture(*film_), sheet().scale());
   visit_solvers([](solvers::Solver& solver, const overlay::Canvas& canvas,
                    const solvers::Picture& picture) { solver.draw(canvas, picture); },
                 cancel);
   draw_lights(cancel);
-  return film_->read_picture();
+  if (sheet().scale() == 1) return film_->read_picture();
+  std::vector<uint8_t> pixels(uint64_t{width_} * height_ * sheet().scale() * sheet().scale() * 4);
+  sheet().picture(*film_).read(pixels.data(), pixels.size());
+  return pixels;
 }
 
 void Renderer::draw_lights(const std::function<bool()>& cancel) {
@@ -64,9 +124,9 @@ void Renderer::draw_lights(const std::function<bool()>& cancel) {
     return;
   }
   if (!lights_view_) lights_view_ = std::make_unique<LightsView>(*device_, *compiler_);
-  lights_view_->draw({engine_->wavefront(), *film_, *coarse_, cancel}, engine_->wavefront().learning(),
-                     world_.flat, engine_->frame(picture_view(), film_->width(), film_->height()),
-                     *world_.scene, settings_, looked_at_);
+  lights_view_->draw(
+      {engine_->wavefront(), *film_, *coarse_, sheet(), cancel}, engine_->wavefront().learning(), world_.flat,
+      engine_->frame(picture_view(), film_->width(), film_->height()), *world_.scene, settings_, looked_at_);
 }
 
 bool Renderer::previewed(const film::View& v) const {
@@ -98,7 +158,7 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::functi
   // longer if it would show noise in place of a filtered picture.
   if (quick && (mix_dragged_ || !previewed(v) || display_->shares().filtered < k_little_filtered)) {
     engine_->developer().mix(engine_->wavefront().stream(), *film_, v);
-    return finished_picture(cancel);
+    return finished_picture(v, cancel);
   }
   settle_mix();
   if (const Filtered* f = shown_filtered(v)) {
@@ -121,8 +181,7 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::functi
     settings_.set("preview.filter", "off");
     return picture(with_coarse, cancel);
   }
-  engine_->developer().draw_tiles(engine_->wavefront().stream(), *film_, v);
-  return finished_picture(cancel);
+  return finished_picture(v, cancel);
 }
 
 std::vector<uint8_t> Renderer::picture(bool with_coarse, const std::function<bool()>& cancel) {
@@ -130,20 +189,19 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse, const std::function<boo
   const film::View v = view();
   if (const Filtered* f = filtered(); f && v.layer < shared::k_layer_albedo) return picture_of(*f, v, cancel);
   mark_tiles(v);
-  engine_->developer().tone_map(engine_->wavefront().stream(), *film_, v,
+  engine_->developer().tone_map(engine_->wavefront().stream(), *film_, without_tiles(v),
                                 with_coarse ? coarse_.get() : nullptr);
-  return finished_picture(cancel);
+  return finished_picture(v, cancel);
 }
 
 std::vector<uint8_t> Renderer::picture_of(const Filtered& filtered, const film::View& v,
                                           const std::function<bool()>& cancel) {
   mark_tiles(v);
   gpu::Stream& stream = engine_->wavefront().stream();
-  engine_->developer().tone_map(stream, *filtered.film, v);
+  engine_->developer().tone_map(stream, *filtered.film, without_tiles(v));
   stream.copy(filtered.film->picture(), film_->picture(), filtered.film->picture().bytes());
   stream.run();
-  if (v.tiles > 0) engine_->developer().draw_tiles(stream, *film_, v);
-  return finished_picture(cancel);
+  return finished_picture(v, cancel);
 }
 
 film::Brightness Renderer::measure(std::optional<vec2> at) const {
@@ -250,10 +308,13 @@ void Renderer::save(const std::filesystem::path& file, bool as_shown) {
   else if (extension == ".png") {
     // The inspected place is not saved.
     const std::optional<vec2> at = looked_at_;
+    const uint32_t scale = std::exchange(window_scale_, 1);
+    const bool waits = std::exchange(waits_for_overlay_, true);
     inspect(std::nullopt);
     settle_mix();
     const std::vector<uint8_t> shown = as_shown ? shown_picture(false) : picture(false);
     inspect(at);
+    window_scale_ = scale, waits_for_overlay_ = waits;
     std::map<std::string, std::string> metadata;
     if (const Filtered* f = as_shown ? shown_filtered(view()) : filtered())
       metadata["filter"] = filter_text(f->error);

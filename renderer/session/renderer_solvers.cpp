@@ -41,7 +41,8 @@ bool Renderer::refining_pays(uint64_t paths) {
 
 void Renderer::visit_solvers(const Visit& f, const std::function<bool()>& cancel) {
   if (!engine_ || !film_) return;
-  const overlay::Canvas canvas{engine_->wavefront(), *film_, *coarse_, cancel};
+  fit_sheet(sheet().scale());
+  const overlay::Canvas canvas{engine_->wavefront(), *film_, *coarse_, sheet(), cancel};
   const PictureView view = picture_view();
   for (const auto& solver : engine_->solvers())
     engine_->with(*solver, view, [&](const solvers::Picture& picture) { f(*solver, canvas, picture); });

@@ -78,6 +78,14 @@ void Session::set_size(uint32_t width, uint32_t height) {
   impl_->post({.run = run, .subject = "the size"});
 }
 
+void Session::set_window_scale(uint32_t scale) {
+  const auto run = [s = impl_.get(), scale](Renderer& r) {
+    r.set_window_scale(scale);
+    s->dirty = true;
+  };
+  impl_->post({.run = run, .subject = "the scale of the window"});
+}
+
 void Session::set_light(uint32_t index, const scene::Light& light, SceneId scene) {
   const auto run = [s = impl_.get(), index, light](Renderer& r) {
     r.set_light(index, light);

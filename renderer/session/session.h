@@ -44,12 +44,14 @@ struct StageStatus {
   bool host = false;
 };  ///< since the image started
 
-/// Scale of a heat map.
+/// The scale of a layer that does not show light.
 struct Legend {
-  uint32_t layer = 0;  ///< shared::k_layer_samples, _error (relative) or _cost (ms a pixel); 0: no heat map
-  uint32_t ramp = 0;   ///< shared::k_ramp_*
+  /// shared::k_layer_albedo, _normal, _depth, or a heat map: _samples, _error (relative), _cost (ms per
+  /// pixel); 0: light.
+  uint32_t layer = 0;
+  uint32_t ramp = 0;  ///< of a heat map: shared::k_ramp_*
   bool logarithmic = false;
-  float lo = 0, hi = 1;  ///< values at its ends
+  float lo = 0, hi = 1;  ///< values at its ends; of depth [m]
 };
 
 /// Everything the window draws: replaced as a whole, never changed after publication.
@@ -61,9 +63,10 @@ struct Snapshot {
   /// loaded first, or the load was cancelled); null: none. They have changed nothing.
   std::shared_ptr<const std::vector<uint64_t>> refused;
   uint32_t width = 0, height = 0;  ///< of the picture
-  std::vector<uint8_t> rgba;       ///< width * height * 4, sRGB, top row first; tone-mapped
-  Legend legend;                   ///< of the picture, if it is a heat map
-  bool tiles = false;              ///< tiles are drawn over the picture
+  uint32_t scale = 1;              ///< of rgba: its pixels per pixel of the picture, along a side
+  std::vector<uint8_t> rgba;       ///< width * height * scale^2 * 4, sRGB, top row first; tone-mapped
+  Legend legend;                   ///< of the picture's layer
+  bool tiles = false;              ///< the picture has its tiles drawn over it
   uint32_t samples = 0;            ///< complete samples a pixel
   double mean_samples = 0;         ///< mean samples a pixel
   uint32_t max_samples = 0;        ///< samples at which it stops
@@ -134,6 +137,8 @@ class Session {
   /// Of several consecutive ones still in the queue only the last is used; they share one number.
   void set_camera(const scene::Camera& camera, SceneId scene = k_any_scene);
   void set_size(uint32_t width, uint32_t height);
+  /// Renderer::set_window_scale.
+  void set_window_scale(uint32_t scale);
   void set_light(uint32_t index, const scene::Light& light, SceneId scene = k_any_scene);
   void set_environment(float scale, float rotation_degrees, SceneId scene = k_any_scene);
   /// Renderer::set_environment_file

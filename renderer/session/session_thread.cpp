@@ -98,6 +98,10 @@ void Session::Impl::advance(Renderer& renderer, bool work) {
   if (changed || since_publish.seconds() > publish_seconds || over)
     publish_picture(renderer, renderer.samples() > 0 && !renderer.mix_pending() &&
                                   (since_numbers.seconds() > numbers_seconds || renderer.done() || paused));
+  if (!dirty && renderer.overlay_waits()) {
+    renderer.trace_overlay([&] { return pending.load() || quit; });
+    dirty = true;
+  }
 }
 
 /// `numbers`: including values read back from the film.

@@ -202,12 +202,14 @@ struct Session::Impl {
     if (dirty || next.rgba.empty() || !r.shows_the_same()) {
       const Timer shown;
       next.rgba = r.shown_picture(!filled, [&] { return pending.load() || quit; });
+      next.scale = r.shown_scale();
       publish_seconds = std::max(k_publish_seconds, 4 * shown.seconds());
     }
     const film::PreviewShares shares = r.preview_shares();
     next.stale = shares.stale, next.filtered = shares.filtered, next.shown_error = shares.error;
     const film::View view = r.view();
     next.legend = {};
+    if (view.layer >= shared::k_layer_albedo) next.legend = {.layer = view.layer, .hi = view.scale};
     if (view.layer >= shared::k_layer_samples)
       next.legend = {view.layer, view.heat.ramp, view.heat.logarithmic, view.heat.lo, view.heat.hi};
     next.tiles = view.tiles > 0;

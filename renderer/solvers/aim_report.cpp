@@ -43,14 +43,20 @@ void add_aim_rows(std::vector<PanelItem>& items, const AimedAt& at, double unaim
 }
 
 Legend aim_legend() {
-  Legend legend{.title = "share of the light paths aimed there",
+  Legend legend{.title = "Share of the light paths aimed there",
                 .ramp = std::nullopt,
                 .ticks = {},
                 .range = {},
                 .marks = {}};
   for (const double share : {0.001, 0.01, 0.1, 1.0})
     legend.marks.push_back({overlay::aim_ink(share), share_text(share, 1)});
+  legend.note = "Box: what light paths are aimed at. Line: from lights to their box.";
   return legend;
+}
+
+Legend light_paths_legend() {
+  return {.title = "Light paths",
+          .note = "Line: a path from a light, in the colour of its light; faint up to the first surface."};
 }
 
 }  // namespace lucerna::solvers

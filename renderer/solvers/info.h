@@ -37,7 +37,8 @@ inline constexpr Invalidation k_invalidates_all{.coverage = true, .light = true,
 
 /// One row of a solver's change table.
 struct ChangeRow {
-  /// An edit, or a prefix of setting keys ("cache.rays", "film."). The longest matching prefix applies.
+  /// An edit, or a prefix of setting keys ("cache.rays", "film."). The longest matching prefix applies; a
+  /// solver's own row precedes a default.
   std::variant<scene::Change, std::string_view> change;
   Invalidation invalidates;
   std::string_view why;
@@ -104,7 +105,7 @@ struct SolverInfo {
   /// True if it separates light groups in films with compact groups (film::GroupStorage::compact).
   bool by_groups = false;
   std::vector<OptionInfo> options{};
-  std::vector<ChangeRow> changes{};
+  std::vector<ChangeRow> changes{};  ///< its own rows; default_changes() has those that most solvers share
   std::vector<ViewInfo> views{};
   std::vector<CommandInfo> commands{};
   std::optional<FileInfo> file{};
@@ -120,10 +121,13 @@ struct SolverInfo {
 
 /// The command of that name; null if there is none.
 const CommandInfo* find_command(const SolverInfo& solver, std::string_view name);
-/// What an edit invalidates, by the solver's change table; k_invalidates_all without a matching row.
+/// Rows that most solvers share: edits of lights and shapes, and settings that no solver owns.
+std::span<const ChangeRow> default_changes();
+/// All rows of a solver: its own, then the defaults that it does not override.
+std::vector<ChangeRow> changes_of(const SolverInfo& solver);
+/// What an edit invalidates by these rows; k_invalidates_all without a matching row.
 Invalidation invalidated_by(const SolverInfo& solver, scene::Change edit);
-/// What a setting invalidates. For settings of this solver or of no solver; k_invalidates_all without a
-/// matching row.
+/// What a setting invalidates, of this solver or of no solver; k_invalidates_all without a matching row.
 /// Settings of other solvers invalidate nothing: see invalidated_by_setting() (registry.h).
 Invalidation invalidated_by(const SolverInfo& solver, std::string_view key);
 

@@ -125,7 +125,9 @@ struct Legend {
   std::vector<Tick> ticks;
   std::optional<Range> range;  ///< replaces `ticks`
   std::vector<Mark> marks;
-  bool marks_in_line = true;  ///< side by side if room allows; else one below the other
+  bool marks_in_line = true;  ///< side by side, as many as there is room for; else one below the other
+  /// What is drawn and what its colours mean, in one to three sentences.
+  std::string note = {};
 };
 
 /// Card for the inspected place, from top to bottom.

@@ -89,7 +89,9 @@ class Solver {
   virtual std::string hook() const { return ""; }
   /// Binds what the hook reads; called again after Wavefront::rebind_lookup().
   virtual void bind(gpu::Resources& resources) const { (void)resources; }
-  /// True if kernels and solver can be reused for this task; else both are made again.
+  /// True if the solver, made for another task, and kernels that call its hook can be used for this one. It
+  /// then continues with its work, also in another engine of the same scene; else a new solver is made. Its
+  /// own settings that restart the picture are unchanged (they are read when it is made).
   virtual bool serves(const Task& task) const = 0;
 
   // Preparation.

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <queue>
 
+#include "shaders/shared/facet.h"
 #include "shaders/shared/learned_lights.h"
 #include "upload/alias_table.h"
 
@@ -201,12 +202,9 @@ vec4 facet_of(const FlatScene& flat, uint32_t light) {
   const auto sides = std::bit_cast<uint32_t>(t[3].w);
   const double twice_area = glm::length(n);
   if ((sides & shared::k_light_flipped) != 0) n = -n;
-  n /= std::max(std::abs(n.x) + std::abs(n.y) + std::abs(n.z), 1e-300);
-  glm::dvec2 map(n.x, n.y);
-  if (n.z < 0)
-    map = glm::dvec2((1 - std::abs(n.y)) * (n.x < 0 ? -1 : 1), (1 - std::abs(n.x)) * (n.y < 0 ? -1 : 1));
-  const auto twelve = [](double v) {
-    return uint32_t(std::clamp(std::round((0.5 + 0.5 * v) * 4095), 0.0, 4095.0));
+  const vec2 map = twice_area > 0 ? shared::facet_flatten(vec3(n / twice_area)) : vec2(0);
+  const auto twelve = [](float v) {
+    return uint32_t(std::clamp(std::round((0.5 + 0.5 * double(v)) * 4095), 0.0, 4095.0));
   };
   const double exponent = std::log2(std::max(0.5 * twice_area, 1e-300)) + 64;
   const uint32_t bits = twelve(map.x) | twelve(map.y) << 12 |

@@ -75,7 +75,7 @@ def building(s):
         s.place(name)
     s.place("boards", (0, -0.02, 0))
     s.place("lobby boards", ((a + b) / 2, -0.02, (far - d - t) / 2), 90)
-    # the lamp: a black shaft with a round mouth, the shining face at its top looks down
+    # the lamp: a black shaft with a round mouth; the emissive face at its top looks down
     up, e = high + RISE, 0.05
     shaft = [box((-h - e, high + 0.0010, -h - e), (-h + 0.004, up + e, h + e)),
              box((h - 0.004, high + 0.0015, -h - e + 0.001), (h + e, up + e + 0.001, h + e + 0.001)),

@@ -152,7 +152,7 @@ def walls(s):
     for k in range(4):
         s.mesh(f"lit window {k}", [(pane, f"lit room {k}"), (back, "fascia")])
     s.mesh("dark window", [(pane, "night glass"), (back, "fascia")])
-    # behind it all, so that no light finds a seam between bays
+    # behind everything, so that no light passes the seams between bays
     outer, length = HALF + WALL / 2 + shops.DEEP + 0.7, LENGTH + 1.0
     s.mesh("casing", [(join([box((HALF + WALL - 0.04, LEVEL - 0.1, -length / 2), (HALF + WALL + 0.3, TOP + 0.4, length / 2)),
                              box((HALF + 0.10, TOP - 0.08, -length / 2), (HALF + WALL + 0.3, TOP + 0.3, length / 2)),

@@ -1,4 +1,4 @@
-"""Shops of the arcade: fronts, what stands in the windows, lettering of glass tubes. Parts are about the middle of a bay's
+"""Shops of the arcade: fronts, goods in the windows, lettering of glass tubes. Parts are about the middle of a bay's
 wall, x along the wall, +z towards the street; lists of (Mesh, material) that `Scene.mesh` takes."""
 import numpy as np
 
@@ -10,7 +10,7 @@ WIDE, DEEP, HIGH = 1.52, 2.1, 3.72       # half width, depth behind the wall's m
 SILL, TRANSOM = 0.46, 2.52               # platform of a window, lower edge of the sign
 RADIUS = 1.30                            # of the arch, which springs at TRANSOM + 0.03
 
-# Letters as strokes in a box 1 high; curves are corners that the tube rounds.
+# Letters as strokes in a box 1 high; the tube rounds their corners.
 LETTERS = {
     "A": (0.66, [[(0, 0), (0.33, 1), (0.66, 0)], [(0.13, 0.36), (0.53, 0.36)]]),
     "B": (0.56, [[(0, 0), (0, 1), (0.46, 1), (0.5, 0.54), (0.04, 0.53)], [(0.04, 0.52), (0.56, 0.5), (0.54, 0), (0, 0)]]),
@@ -61,7 +61,7 @@ def ring(radius, thick, segments=28, sides=6):
 
 
 def shell(wall, floor_at=0.0):
-    """Walls, floor and ceiling of a shop, closed but towards the street; they reach into the street's wall."""
+    """Walls, floor and ceiling of a shop, closed except towards the street; they overlap the street's wall."""
     w, d, h, t = WIDE, DEEP, HIGH, 0.08
     return [(join([box((-w - t, -0.3, -d - t), (w + t, h + t, -d), "-z"),
                    box((-w - t, -0.3, -d - t), (-w, h + t, -0.10), "-x"),

@@ -357,7 +357,7 @@ def lantern_parts(radius, hang):
 
 
 def globe_lamp(radius=0.11):
-    """(brass, globe) of an opal globe on a short chain: the globe itself shines."""
+    """(brass, globe) of an opal globe on a short chain: the globe itself is emissive."""
     globe = sphere(radius, 16, 10)
     brass = lathe([(0.0, radius * 0.9), (radius * 0.45, radius * 0.91), (radius * 0.47, radius * 1.02),
                    (radius * 0.2, radius * 1.2), (0.012, radius * 1.3), (0.005, radius * 1.35), (0.005, 0.85)], 20)

@@ -81,7 +81,7 @@ def architecture(s):
     s.place("ceiling")
     for name in ("subfloor", "boards"):
         s.place(name, (0, -0.02, 0))
-    # lamps: a shining face 3 cm up in each hole, closed above, a frame below
+    # lamps: an emissive face 3 cm up in each hole, closed above, a frame below
     x, z = PANEL[0] / 2, PANEL[1] / 2
     face = quad((-x, 0, -z), (x, 0, -z), (x, 0, z), (-x, 0, z))
     case = box((-x - 0.05, 0.001, -z - 0.05), (x + 0.05, 0.10, z + 0.05), "-y")

@@ -149,14 +149,14 @@ def coffer(s):
 
 
 def light_ceiling():
-    """White fabric, lit from behind, stretched over the coffer's ceiling but for a border of oak; the lamp hangs through it."""
+    """White fabric, lit from behind, stretched over the coffer's ceiling except for a border of oak; the lamp hangs through it."""
     a, b, y = COFFER[0] - 0.10, COFFER[1] - 0.10, COFFER_TOP - 0.010
     return quad((-a, y, -b), (a, y, -b), (a, y, b), (-a, y, b))
 
 
 def lamps(s):
     """The twenty spots, each at the mouth of its cylinder: two for the picture, eight for the table, seven for the walls;
-    three, narrow and strong, come in low from the right and throw what shines through carafes and glasses across the table."""
+    three, narrow and strong, come in low from the right and cast the light through carafes and glasses across the table."""
     def lamp(kind, n, x, z, target, candela, inner, outer):
         at = np.array([x, MOUTH - 0.004, z])
         s.spot(f"{kind} lamp {n}", at, np.array(target) - at, WARM, candela, inner, outer)
@@ -365,7 +365,7 @@ def seats(s):
             s.place(name, (q[0], y, q[1]), yaw + spin)
         back, spin = 0.21 + rs.uniform(-0.03, 0.05), rs.uniform(-5, 5)
         if k == 13:
-            back, spin = 0.42, 38.0   # somebody has just got up
+            back, spin = 0.42, 38.0   # this chair is pushed back
         put("chair", -back, rs.uniform(-0.02, 0.02), 0.0, spin)
         put("pad", 0.22, -0.02, TOP - 0.0005, rs.uniform(-6, 6))
         put("pencil", 0.22 + rs.uniform(-0.01, 0.01), 0.115, TOP - 0.0004, 90 + rs.uniform(-12, 12))

@@ -35,7 +35,7 @@ def room(scene):
     scene.mesh("room", [(join([floor, back] + ceiling), "white")])
     scene.mesh("right wall", [(face((0, 0, 559.2), (0, 0, 0), (0, top, 0), (0, top, 559.2)), "green")])
     scene.mesh("left wall", [(face((552.8, 0, 0), (549.6, 0, 559.2), (556, top, 559.2), (556, top, 0)), "red")])
-    # set into the hole of the ceiling, shining down: nothing of its back is ever seen
+    # set into the hole of the ceiling, facing down; its back is never visible
     scene.mesh("lamp", [(face(*inner), "light")])
     for name in ("room", "right wall", "left wall", "lamp"):
         scene.place(name)

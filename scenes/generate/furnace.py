@@ -1,4 +1,4 @@
-"""Analytic scenes: what every pixel must show is known, so a test needs no reference picture.
+"""Analytic scenes: the value of every pixel is known, so a test needs no reference picture.
 
 `furnace-open` and `furnace-closed`: everything has albedo 1, everything sees radiance 1, so every pixel is 1.
 `furnace-disk` and `furnace-sphere`: a Lambertian floor under one light whose irradiance has a closed form.
@@ -61,7 +61,7 @@ def floor(scene):
     scene.material("floor", (0.5, 0.5, 0.5), lambert=True)
     scene.mesh("floor", [(quad((-20, 0, 20), (20, 0, 20), (20, 0, -20), (-20, 0, -20)), "floor")])
     scene.place("floor")
-    # looks straight down from below the light, which it does not shade; the picture's right is +x, its top -z
+    # looks vertically down from below the light, without shading it; the picture's right is +x, its top -z
     scene.camera("main", (0, 0.5, 0), (0, 0, 0), ortho=(4, 4), up=(0, 0, -1))
 
 

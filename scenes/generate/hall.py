@@ -147,7 +147,7 @@ def aisles(s):
                     (box((-BAY / 2, -0.002, 0.0), (BAY / 2, 0.16, 0.06), "-x +x -z"), "pale stone")])
     beam = [chamfer((-0.09, CEILING2 - 0.24, -1.5), (0.09, CEILING2 + 0.01, 1.5), 0.012)]
     s.mesh("beams", [(join([beam[0].moved(translate(x, 0, 0)) for x in (-BAY / 4, BAY / 4)]), "wood")])
-    # a niche a bay in the gallery's outer wall would be seen by nobody: a plain band carries the eye along
+    # a niche a bay in the gallery's outer wall would be invisible: a plain band instead
     s.mesh("band", [(box((-BAY / 2, 5.70, -0.01), (BAY / 2, 5.80, 0.03), "-x +x -z"), "dado")])
     for x, yaw in sides():
         for z in bays():

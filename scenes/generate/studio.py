@@ -230,7 +230,7 @@ def paper(half=0.95, front=1.5, back=-0.75, radius=0.85, top=2.3):
 
 
 def lamp(width, height, depth):
-    """(shining face, housing) of a soft box about the origin that shines along -z."""
+    """(emissive face, housing) of a soft box about the origin that emits along -z."""
     w, h = width / 2, height / 2
     face = grid(np.array([[(-w, -h, 0), (-w, h, 0)], [(w, -h, 0), (w, h, 0)]]))
     face = face if face.n[0, 2] < 0 else face.flipped()

@@ -84,7 +84,7 @@ def floor(n=1024):
     """Worn pavement, 3 m: 4 x 4 slabs of 75 cm with dark cabochons at their corners."""
     count, size = 4, n // 4
     y, x = np.mgrid[0:n, 0:n]
-    # edges wander by a millimetre or two: nothing laid by hand is straight
+    # edges deviate by a millimetre or two, as in hand-laid floors
     wx = x + 0.9 * noise((n, n), 11, 1.5, 2, 30)
     wy = y + 0.9 * noise((n, n), 12, 1.5, 2, 30)
     cx, cy = np.floor(wx / size).astype(int) % count, np.floor(wy / size).astype(int) % count
@@ -92,7 +92,7 @@ def floor(n=1024):
     rs = np.random.RandomState(7)
     tone, warm = rs.standard_normal((count, count)), rs.standard_normal((count, count))
     color, relief = stone_tone((n, n), 20, rgb(0.78, 0.72, 0.62), rgb(0.55, 0.485, 0.385))
-    # each slab is cut from another place of the bed: shift the pattern slab by slab
+    # each slab is cut from another part of the stone: shift the pattern per slab
     shift = rs.randint(0, n, (count, count, 2))
     sy, sx = (y + shift[cy, cx, 0]) % n, (x + shift[cy, cx, 1]) % n
     color, relief = color[sy, sx], relief[sy, sx]
@@ -237,5 +237,5 @@ def sky(width=256, sun=(0, 1, 0)):
     angle = np.arccos(np.clip(cosine, -1, 1))
     glow = 1.2 * np.exp(-angle / 0.18) + 0.6 * np.exp(-angle / 0.6)
     color = color * (0.86 + 0.14 * cosine ** 2)[..., None] + glow[..., None] * rgb(1.0, 0.94, 0.83)
-    # the scene's own ground hides what lies lower: nothing there, so that no light sample is spent on it
+    # the scene's ground hides lower directions: black there, so no light sample is wasted on them
     return color * (1 - smooth(-up, 0.08, 0.16))[..., None]

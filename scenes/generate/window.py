@@ -1,4 +1,4 @@
-"""A bedroom that has nothing but the sky in one small window (`window`).
+"""A bedroom lit only by the sky in one small window (`window`).
 
 x to the right, y up, the bed's head at z = -2.4, the window in the left wall. No sun, no lamp: a path finds light only
 where it leaves through less than a square metre, so path tracing has its hardest case here, and shadows have no edges.

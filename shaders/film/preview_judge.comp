@@ -62,13 +62,11 @@ void main() {
   uint across = (push.width + k_preview_tile - 1u) / k_preview_tile, down = (push.height + k_preview_tile - 1u) / k_preview_tile;
   bool inside = tile < across * down;
   uvec2 first = k_preview_tile * uvec2(tile % across, tile / across);
-  vec4 expected = vec4(0.0);  // now; its square before; pixels
+  vec4 expected = vec4(0.0);  // sum, pixels
   for (uint k = lane; k < k_pixels; k += 64u) {
     uvec2 xy = first + uvec2(k % k_preview_tile, k / k_preview_tile);
     if (!inside || xy.x >= push.width || xy.y >= push.height) continue;
-    uint pixel = xy.y * push.width + xy.x;
-    float before = push.step != 0u ? unpackHalf2x16(shown_before[pixel]).y : 0.0;
-    expected += vec4(unpackHalf2x16(shown_now[pixel]).y, before * before, 1.0, 0.0);
+    expected.xy += vec2(unpackHalf2x16(shown_now[xy.y * push.width + xy.x]).y, 1.0);
   }
   expected = group_sum(expected);
   uint step = max(push.step, 1u), side = k_preview_tile / step;
@@ -90,8 +88,7 @@ void main() {
   sums = group_sum(sums);
   if (lane == 0u && inside) {
     PreviewTile t;
-    t.error = expected.x / max(expected.z, 1.0);
-    t.expected = expected.y / max(expected.z, 1.0);
+    t.error = expected.x / max(expected.y, 1.0);
     t.square = n >= 2.0 ? (sums.x * sums.x - sums.y) / (n * (n - 1.0)) : 0.0;
     t.noise = n >= 2.0 ? max(sums.y - sums.x * sums.x / n, 0.0) / (n * (n - 1.0)) : -1.0;
     tiles[tile] = t;

@@ -22,7 +22,7 @@ void main() {
     vec4 place = texelFetch(record_texels, int(push.ring * k_record_texels));
     vec4 facing = texelFetch(record_texels, int(push.ring * k_record_texels + 1u));
     vec4 shape = texelFetch(record_texels, int(push.ring * k_record_texels + 3u));
-    float away = abs(distance(seen.position, place.xyz) - seen_reach(seen, place, shape) + 0.5 * seen.size) / seen.size;
+    float away = abs(pixels_beyond(seen, pixel_steps(seen, push.width, push.height), place, shape) + 0.5);
     if (seen.solid && seen_on_plane(seen, place, facing, shape)) {
       color = mix(color, vec3(0.0), 0.6 * clamp(2.5 - away, 0.0, 1.0));
       color = mix(color, vec3(1.0), clamp(1.5 - away, 0.0, 1.0));

@@ -1,5 +1,5 @@
-// Draws records on the visible surfaces: each record's disc of validity with a mark at its centre, and the number of records
-// that serve a pixel as a heat map. Discs use the film's depth, so that hidden ones stay hidden.
+// Draws the records over the picture, on the surfaces that the camera sees: each as a ring around where it is valid, one pixel
+// of the sheet wide, with a dot at its centre and a faint fill; and how many serve a pixel as a heat map.
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "irradiance_cache/lookup.glsl"
@@ -10,6 +10,10 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { OverlayPush push; };
 layout(scalar) buffer Picture { uint picture[]; };
 
+const float k_half_line = 0.55, k_dot = 1.5;               // pixels
+const float k_least_ring = 1.5, k_full_ring = 10.0;        // pixels from the middle to the rim as it is seen
+const float k_faintest = 0.15, k_ink = 0.9, k_fill = 0.06; // shares
+
 void main() {
   uint pixel = global_index();
   if (pixel >= push.width * push.height) return;
@@ -19,6 +23,11 @@ void main() {
   uint overlap = 0u;
   Nearest nearest = nothing_near();
   vec4 over = vec4(0.0);  // premultiplied
+  vec2 here = vec2(pixel % push.width, pixel / push.width) + 0.5;
+  mat2x3 steps = pixel_steps(seen, push.width, push.height);
+  vec3 away = frame.orthographic != 0u ? frame.camera_forward : normalize(seen.position - frame.camera_origin);
+  float pixel_width = pixel_size(seen.depth, push.height);
+  float facing_share = abs(dot(seen.normal, away));
   OctreeRange range = cache_range(a.diffuse ? a.position : seen.position, a.diffuse || seen.solid);
   for (uint i = range.first; i < range.last; ++i) {
     uint record = octree_sphere(i);
@@ -29,14 +38,19 @@ void main() {
     bool crowds = record_crowded(record);
     nearest = nearer(nearest, weight, a.position - place.xyz, crowds);
     overlap += weight > 0.0 && !crowds ? 1u : 0u;
-    float from = distance(seen.position, place.xyz), reach = seen_reach(seen, place, shape);
     vec3 ink = crowds ? k_gathered_ink : record_ink(record, push.color, push.lo, push.hi);
-    // Discs of a few pixels fade: many distant ones would look like fog.
-    float strength = clamp((shape.w / seen.size - 2.0) / 8.0, 0.2, 1.0);
-    float rim = clamp(1.25 - abs(reach - 0.5 * seen.size - from) / seen.size, 0.0, 1.0) * 0.8 * strength;
-    float dot_ = clamp(2.0 - from / seen.size, 0.0, 1.0) * max(strength, 0.5);
-    float inside = from < reach ? 0.06 : 0.0;
-    float alpha = push.discs != 0u && seen.solid && seen_on_plane(seen, place, facing, shape) ? max(max(rim, dot_), inside) : 0.0;
+    float beyond = pixels_beyond(seen, steps, place, shape);
+    // Rings of a few pixels fade, so that many of them far away do not become fog.
+    float strength = clamp((facing_share * shape.w / pixel_width - k_least_ring) / (k_full_ring - k_least_ring), k_faintest, 1.0);
+    float rim = clamp(k_half_line + 0.5 - abs(beyond + k_half_line), 0.0, 1.0) * strength;
+    float dot_ = 0.0;
+    if (distance(seen.position, place.xyz) * facing_share < 4.0 * pixel_width) {
+      vec3 centre = to_picture(place.xyz, push.width, push.height);
+      dot_ = clamp(k_dot + 0.5 - distance(centre.xy, here), 0.0, 1.0) * max(strength, 0.5);
+    }
+    float inside = k_fill * clamp(0.5 - beyond, 0.0, 1.0);
+    bool drawn = push.discs != 0u && seen.solid && seen_on_plane(seen, place, facing, shape);
+    float alpha = drawn ? max(k_ink * max(rim, dot_), inside) : 0.0;
     over += (1.0 - over.a) * vec4(ink * alpha, alpha);
   }
   vec3 color = picture_color(picture[pixel]);

@@ -4,11 +4,13 @@
 #include "overlay/seen.glsl"
 #include "irradiance_cache/ellipse.glsl"
 
-// Reach of a record in the direction of a point. `shape`: record_shape() of lookup.glsl.
-float seen_reach(Seen s, vec4 place, vec4 shape) {
+// Pixels from the border of a record to a place, negative inside, along the steepest way. `steps`: pixel_steps(); `shape`:
+// record_shape() of lookup.glsl.
+float pixels_beyond(Seen s, mat2x3 steps, vec4 place, vec4 shape) {
   vec3 away = s.position - place.xyz;
-  float of_reach = record_distance(away, shape);
-  return of_reach > 1e-6 ? length(away) / of_reach : shape.w;
+  float here = record_distance(away, shape);
+  vec2 slope = vec2(record_distance(away + steps[0], shape), record_distance(away + steps[1], shape)) - here;
+  return (here - 1.0) / max(length(slope), 1e-9);
 }
 
 // True if the surface is near the record's plane and parallel to it, at any distance. Tolerant: discs follow curved surfaces,

@@ -53,8 +53,6 @@ const uint k_bvh_done = 0xffffffffu;  // no link: no leaf has 7 triangles
 // Each has an error of up to 5 roundings (2^-24) of its size. The distance of a triangle hit is clamped to the part of the
 // ray inside a box within these (bvh_within_box()), up to 20 roundings of the distance. Faces are therefore moved outwards
 // by 34 roundings of both terms. The tolerance grows with the box and its distance from the ray, never with the scene.
-const float k_bvh_slack = 2e-6;
-
 // The four bytes of a word, the lowest first.
 vec4 bvh_bytes(uint w) { return vec4(ivec4(uvec4(w, w >> 8, w >> 16, w >> 24) & 0xffu)); }
 

@@ -82,12 +82,12 @@ vec3 emission_from_afar(vec3 direction, vec2 u, bool aims, Box box) {
 
 #if LUCERNA_LIGHTS
 // Direction of a spot in proportion to its intensity, in terms of 1 - cosine from the axis, which avoids cancellation.
-vec3 emission_spot(vec3 axis, float cos_inner, float cos_outer, vec2 u, float coin, out float solid_angle) {
+vec3 emission_spot(vec3 axis, float cos_inner, float cos_outer, vec2 u, uint coin, out float solid_angle) {
   float width = max(cos_inner - cos_outer, 1e-4), reach = 1.0 - cos_outer;
   float ramp = min(1.0, reach / width), within = max(0.0, reach - width), beyond = width * ramp * ramp * ramp / 3.0;
   solid_angle = 2.0 * k_pi * (within + beyond);
-  // In the ramp, the intensity is the square of (cos - cos_outer) / width.
-  float m = coin * (within + beyond) < within ? u.y * within : reach - width * ramp * pow(u.y, 1.0 / 3.0);
+  // In the ramp the intensity is the square of (cos - cos_outer) / width.
+  float m = coin_below(coin, within / (within + beyond)) ? u.y * within : reach - width * ramp * pow(u.y, 1.0 / 3.0);
   float s = sqrt(max(0.0, m * (2.0 - m))), phi = 2.0 * k_pi * u.x;
   vec3 t, b;
   make_basis(axis, t, b);
@@ -178,7 +178,7 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
     e.light = emission_choose_in(group, uvec2(choice.x, hash_mix(choice.x)));
     e.pmf = texelFetch(emission_alias, int(e.light)).z;
   }
-  float coin = float(choice.y >> 8) * (1.0 / 16777216.0);
+  uint coin = choice.y;
   bool sky = e.light == emission.sky;
   int at = int((sky ? 0u : e.light) * k_light_texels);
   vec4 a = texelFetch(scene_lights, at), b = texelFetch(scene_lights, at + 1), c = texelFetch(scene_lights, at + 2);
@@ -228,7 +228,7 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
     vec3 n = cross(p1 - p0, p2 - p0);
     n = normalize(n / max(max3(abs(n)), 1e-37));
     vec3 front = (sides & k_light_flipped) != 0u ? -n : n;
-    n = both && coin < 0.5 ? -front : front;
+    n = both && coin_below(coin, 0.5) ? -front : front;
     vec3 t, s;
     make_basis(n, t, s);
     vec3 local = sample_cosine(u_direction);

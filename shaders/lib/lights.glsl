@@ -239,6 +239,7 @@ uint draw_lamp_of(LightCluster cluster, uint light, vec3 position, vec3 normal, 
 #endif
 
 #if LUCERNA_LEARNED && LUCERNA_TRIANGLE_CANDIDATES
+#include "shaders/shared/facet.h"
 uniform samplerBuffer light_facets;
 
 // Unoccluded contribution of a small emissive triangle of power 1, up to a factor; 0 only if its emitting side is not
@@ -246,11 +247,7 @@ uniform samplerBuffer light_facets;
 float facet_sends(uint triangle, vec3 position, vec3 normal) {
   vec4 f = texelFetch(light_facets, int(triangle));
   uint bits = floatBitsToUint(f.w);
-  vec2 map = vec2(bits & 0xfffu, bits >> 12 & 0xfffu) * (2.0 / 4095.0) - 1.0;
-  vec3 n = vec3(map, 1.0 - abs(map.x) - abs(map.y));
-  float fold = max(-n.z, 0.0);
-  n.x -= n.x >= 0.0 ? fold : -fold;
-  n.y -= n.y >= 0.0 ? fold : -fold;
+  vec3 n = facet_raise(vec2(bits & 0xfffu, bits >> 12 & 0xfffu) * (2.0 / 4095.0) - 1.0);
   vec3 to = f.xyz - position;
   float d2 = max(dot(to, to), 1e-20), scale = inversesqrt(d2);
   float faces = -dot(n, to) * scale * inversesqrt(dot(n, n));

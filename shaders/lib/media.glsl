@@ -12,7 +12,6 @@
 #if LUCERNA_VOLUMES
 uniform samplerBuffer scene_media;
 
-const float k_media_slack = 2e-6;  // of distances, as k_bvh_slack
 const uint k_media_base = uint(LUCERNA_MEDIA) + 1u;
 
 uint media_enter(uint stack, uint medium) {
@@ -78,7 +77,7 @@ uint media_at(vec3 place, uint lot) {
     }
     vec3 lo = (a.xyz - place) * inverse, hi = (b.xyz - place) * inverse;
     vec3 in_at = min(lo, hi), out_at = max(lo, hi);
-    in_at -= k_media_slack * abs(in_at), out_at += k_media_slack * abs(out_at);
+    in_at -= k_bvh_slack * abs(in_at), out_at += k_bvh_slack * abs(out_at);
     bool meets = max(max(in_at.x, in_at.y), max(in_at.z, 0.0)) <= min(out_at.x, min(out_at.y, out_at.z));
     bool within = all(lessThanEqual(a.xyz, place)) && all(lessThanEqual(place, b.xyz));
     bool on = !last && ((next & k_media_around) != 0u ? within : meets);

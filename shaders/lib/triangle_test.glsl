@@ -8,6 +8,11 @@
 // and sheared so that it runs along the axis kz in which its direction is largest; the signs of three 2D edge functions
 // then decide. `precise` matters: a fused multiply-add would give two triangles different signs for the edge that they
 // share. renderer/bvh/embree/packed_triangles.h is the same test, operation by operation.
+
+// By how much of a distance faces of boxes are moved away from each other, so that a box holds what the test accepts of the
+// triangles in it (lib/bvh.glsl).
+const float k_bvh_slack = 2e-6;
+
 struct ShearedRay {
   vec3 origin;  // kx, ky, kz
   vec3 shear;

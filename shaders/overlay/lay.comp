@@ -27,8 +27,8 @@ float grey_of(uvec2 xy, uvec2 coarse_film) {
 
 // Smooth between the coarse film's pixels.
 float grey_at(uvec2 xy) {
-  uvec2 coarse_film = max(uvec2(push.width, push.height) / k_coarse_step, uvec2(1u));
-  vec2 at = (vec2(xy) + 0.5) / float(k_coarse_step) - 0.5, low = floor(at), part = at - low;
+  uvec2 coarse_film = max(uvec2(sheet.film_width, sheet.film_height) / k_coarse_step, uvec2(1u));
+  vec2 at = (vec2(xy) + 0.5) / float(sheet.scale * k_coarse_step) - 0.5, low = floor(at), part = at - low;
   float sum = 0.0;
   for (int i = 0; i < 4; ++i) {
     ivec2 corner = ivec2(i & 1, i >> 1);
@@ -38,6 +38,13 @@ float grey_at(uvec2 xy) {
   return sum;
 }
 
+// Of the surface traced for the sheet.
+float grey_of(Seen s) {
+  if (!s.solid) return k_background;
+  vec3 view = normalize(frame.orthographic != 0u ? frame.camera_forward : s.position - frame.camera_origin);
+  return 0.8 * mix(k_edge_on, k_facing, abs(dot(s.normal, view)));
+}
+
 void main() {
   uint pixel = global_index();
   if (pixel >= push.width * push.height) return;
@@ -45,8 +52,9 @@ void main() {
   if (mark == 0u && push.dimmed == 0u) return;
   vec3 color = picture_color(picture[pixel]);
   if (push.dimmed != 0u) {
-    if (film_count[pixel] == 0u)
-      color = vec3(grey_at(uvec2(pixel % push.width, pixel / push.width)));
+    if (film_count[film_pixel_below(pixel, push.width)] == 0u)
+      color = vec3(sheet.surfaces_known != 0u ? grey_of(seen_at(pixel, push.width, push.height))
+                                              : grey_at(uvec2(pixel % push.width, pixel / push.width)));
     else
       color = k_dim * mix(color, vec3(dot(color, vec3(0.2126, 0.7152, 0.0722))), k_grey);
   }

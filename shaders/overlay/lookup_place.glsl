@@ -18,7 +18,7 @@ struct LookupPlace {
 // `seen`: seen_at() of that pixel.
 LookupPlace lookup_place(uint pixel, uint width, SightGrid grid, Seen seen) {
   bool met = grid.across > 0u;
-  uvec2 point = uvec2(pixel % width, pixel / width) / max(grid.stride, 1u);
+  uvec2 point = uvec2(pixel % width, pixel / width) / (sheet.scale * max(grid.stride, 1u));
   int at = met ? int((point.y * grid.across + point.x) * k_surface_texels) : 0;
   vec4 place = texelFetch(surface_texels, at);
   vec3 normal = texelFetch(surface_texels, at + 1).xyz;

@@ -1,10 +1,13 @@
-// Position of a pixel's surface in the scene, from the film's features, and of a place of the scene in the picture. Pixels
-// without samples use the coarse film, so that overlays show before there is a picture.
+// Where in the scene the surface of a pixel of the sheet lies, and where in the sheet a place of the scene. The surface is the
+// one traced through the middle of the pixel; before that is known, the plane of the film's samples, or of the coarse film's.
 #ifndef LUCERNA_OVERLAY_SEEN
 #define LUCERNA_OVERLAY_SEEN
 #include "lib/frame.glsl"
 #include "lib/film.glsl"
+#include "shaders/shared/sheet.h"
 
+layout(scalar) readonly buffer SheetBlock { SheetView sheet; };
+uniform samplerBuffer sheet_surfaces;  // normal, depth along the view axis [m]; 0: none
 uniform samplerBuffer coarse_albedo, coarse_normal;
 layout(scalar) readonly buffer CoarseCount { uint coarse_count[]; };
 
@@ -15,27 +18,73 @@ struct Seen {
   vec3 position, normal;
 };
 
+vec3 shift_at(vec2 at) {
+  vec2 ndc = at * 2.0 - 1.0;
+  return ndc.x * frame.camera_right - ndc.y * frame.camera_up;
+}
+
+// Of a place of the picture, 0..1 to the right and down, and a depth.
+void place_seen(inout Seen s, vec2 at, float depth) {
+  vec3 shift = shift_at(at);
+  s.depth = depth;
+  s.position = frame.orthographic != 0u ? frame.camera_origin + shift + depth * frame.camera_forward
+                                        : frame.camera_origin + depth * (frame.camera_forward + shift);
+}
+
+// Depth at a place of the picture of the plane that has this depth at another place, and this normal.
+float depth_on_plane(vec3 normal, vec2 from, float depth, vec2 to) {
+  vec3 a = shift_at(from), b = shift_at(to);
+  if (frame.orthographic != 0u) return depth + dot(normal, a - b) / dot(normal, frame.camera_forward);
+  return depth * dot(normal, frame.camera_forward + a) / dot(normal, frame.camera_forward + b);
+}
+
+// Number of the film's pixel below a pixel of the sheet.
+uint film_pixel_below(uint pixel, uint width) {
+  uvec2 xy = uvec2(pixel % width, pixel / width) / sheet.scale;
+  return xy.y * sheet.film_width + xy.x;
+}
+
+// `width`, `height`: of the sheet.
 Seen seen_at(uint pixel, uint width, uint height) {
-  uvec2 xy = uvec2(pixel % width, pixel / width), film = uvec2(width, height);
-  uint count = film_count[pixel];
+  uvec2 sheet_xy = uvec2(pixel % width, pixel / width);
+  Seen s;
+  if (sheet.surfaces_known != 0u) {
+    vec4 surface = texelFetch(sheet_surfaces, int(pixel));
+    s.solid = surface.w > 0.0;
+    place_seen(s, (vec2(sheet_xy) + 0.5) / vec2(width, height), surface.w);
+    s.size = 2.0 * length(frame.camera_up) / float(height) * (frame.orthographic != 0u ? 1.0 : s.depth);
+    s.normal = s.solid ? surface.xyz : -frame.camera_forward;
+    return s;
+  }
+  uvec2 film = uvec2(sheet.film_width, sheet.film_height), xy = sheet_xy / sheet.scale;
+  uint below = xy.y * film.x + xy.x, count = film_count[below];
   bool sampled = count > 0u;
   uvec2 coarse_film = max(film / k_coarse_step, uvec2(1u)), coarse_xy = min(xy / k_coarse_step, coarse_film - 1u);
   uint coarse = coarse_xy.y * coarse_film.x + coarse_xy.x;
-  vec4 albedo = sampled ? texelFetch(film_albedo, int(pixel)) : texelFetch(coarse_albedo, int(coarse));
-  vec4 sums = sampled ? texelFetch(film_normal, int(pixel)) : texelFetch(coarse_normal, int(coarse));
+  vec4 albedo = sampled ? texelFetch(film_albedo, int(below)) : texelFetch(coarse_albedo, int(coarse));
+  vec4 sums = sampled ? texelFetch(film_normal, int(below)) : texelFetch(coarse_normal, int(coarse));
   count = sampled ? count : coarse_count[coarse];
-  vec2 ndc = (sampled ? (vec2(xy) + 0.5) / vec2(film) : (vec2(coarse_xy) + 0.5) / vec2(coarse_film)) * 2.0 - 1.0;
   float hits = albedo.w;
-  Seen s;
   s.solid = hits > 0.5 * float(count) && hits > 0.0;
-  s.depth = sums.w / max(hits, 1.0);
-  vec3 shift = ndc.x * frame.camera_right - ndc.y * frame.camera_up;
-  s.position = frame.orthographic != 0u ? frame.camera_origin + shift + s.depth * frame.camera_forward
-                                        : frame.camera_origin + s.depth * (frame.camera_forward + shift);
+  s.normal = dot(sums.xyz, sums.xyz) > 0.0 ? normalize(sums.xyz) : -frame.camera_forward;
+  vec2 at = (vec2(sheet_xy) + 0.5) / vec2(width, height);
+  vec2 known = sampled ? (vec2(xy) + 0.5) / vec2(film) : (vec2(coarse_xy) + 0.5) / vec2(coarse_film);
+  float depth = sums.w / max(hits, 1.0), moved = depth_on_plane(s.normal, known, depth, at);
+  place_seen(s, at, moved > 0.8 * depth && moved < 1.25 * depth ? moved : depth);
   s.size = 2.0 * length(frame.camera_up) / float(sampled ? film.y : coarse_film.y) *
            (frame.orthographic != 0u ? 1.0 : s.depth);
-  s.normal = dot(sums.xyz, sums.xyz) > 0.0 ? normalize(sums.xyz) : -frame.camera_forward;
   return s;
+}
+
+// On the plane of a surface, from the place in the middle of a pixel to those of its neighbours on the right and below [m].
+mat2x3 pixel_steps(Seen s, uint width, uint height) {
+  bool parallel = frame.orthographic != 0u;
+  vec3 along = parallel ? frame.camera_forward : (s.position - frame.camera_origin) / max(s.depth, 1e-20);
+  float facing = dot(s.normal, along), least = 0.02 * length(along);
+  facing = facing < 0.0 ? min(facing, -least) : max(facing, least);  // bounded on surfaces seen edge-on
+  float scale = parallel ? 1.0 : s.depth;
+  vec3 right = 2.0 / float(width) * frame.camera_right, down = -2.0 / float(height) * frame.camera_up;
+  return mat2x3(scale * (right - dot(s.normal, right) / facing * along), scale * (down - dot(s.normal, down) / facing * along));
 }
 
 // Depth at a share t of the way between two places of the picture, on the line between them in the scene.

@@ -11,7 +11,8 @@ layout(scalar) buffer Picture { uint picture[]; };
 void main() {
   uint pixel = global_index();
   if (pixel >= push.width * push.height) return;
-  float value = densities[pixel];
+  uvec2 below = uvec2(pixel % push.width, pixel / push.width) / push.scale;
+  float value = densities[below.y * (push.width / push.scale) + below.x];
   vec3 color = picture_color(picture[pixel]);
   vec3 dim = 0.35 * vec3(dot(color, vec3(0.2126, 0.7152, 0.0722)));
   vec3 ink = mix(dim, ramp_color(k_ramp_magma, mix(0.08, 1.0, ramp_position(value, push.lo, push.hi, 1u))), value > push.lo ? 0.85 : 0.0);

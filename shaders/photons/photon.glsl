@@ -10,16 +10,11 @@ layout(scalar) readonly buffer PhotonBlock { PhotonFrame photons; };
 
 // Octahedral map, 16 bits an axis (Cigolle et al. 2014).
 uint photon_pack_direction(vec3 d) {
-  vec2 p = d.xy / (abs(d.x) + abs(d.y) + abs(d.z));
-  if (d.z < 0.0) p = facet_fold(p);
-  uvec2 q = uvec2(clamp((p * 0.5 + 0.5) * 65535.0 + 0.5, vec2(0.0), vec2(65535.0)));
+  uvec2 q = uvec2(clamp((facet_flatten(d) * 0.5 + 0.5) * 65535.0 + 0.5, vec2(0.0), vec2(65535.0)));
   return q.x | q.y << 16;
 }
 vec3 photon_direction(uint bits) {
-  vec2 p = vec2(bits & 0xffffu, bits >> 16) * (2.0 / 65535.0) - 1.0;
-  float z = 1.0 - abs(p.x) - abs(p.y);
-  if (z < 0.0) p = facet_fold(p);
-  return normalize(vec3(p, z));
+  return normalize(facet_raise(vec2(bits & 0xffffu, bits >> 16) * (2.0 / 65535.0) - 1.0));
 }
 
 // Barycentric coordinates of a hit, 16 bits each.

@@ -12,9 +12,19 @@ LUCERNA_TONE_FUNCTION vec2 facet_fold(vec2 p) {
   return vec2((1.0f - abs(p.y)) * (p.x >= 0.0f ? 1.0f : -1.0f), (1.0f - abs(p.x)) * (p.y >= 0.0f ? 1.0f : -1.0f));
 }
 
-LUCERNA_TONE_FUNCTION uint facet_pack(vec3 n) {
+// The map's point of a vector, in -1..1, and the vector of a point, not of length 1.
+LUCERNA_TONE_FUNCTION vec2 facet_flatten(vec3 n) {
   vec2 p = vec2(n.x, n.y) / (abs(n.x) + abs(n.y) + abs(n.z));
-  if (n.z < 0.0f) p = facet_fold(p);
+  return n.z < 0.0f ? facet_fold(p) : p;
+}
+LUCERNA_TONE_FUNCTION vec3 facet_raise(vec2 p) {
+  float z = 1.0f - abs(p.x) - abs(p.y);
+  if (z < 0.0f) p = facet_fold(p);
+  return vec3(p.x, p.y, z);
+}
+
+LUCERNA_TONE_FUNCTION uint facet_pack(vec3 n) {
+  vec2 p = facet_flatten(n);
   float most = float(k_facet_steps);
   vec2 q = clamp((p * 0.5f + 0.5f) * most + 0.5f, vec2(0.0f), vec2(most));
   return uint(q.x) | uint(q.y) << 11;
@@ -22,9 +32,7 @@ LUCERNA_TONE_FUNCTION uint facet_pack(vec3 n) {
 
 LUCERNA_TONE_FUNCTION vec3 facet_unpack(uint bits) {
   vec2 p = vec2(float(bits & k_facet_steps), float(bits >> 11 & k_facet_steps)) / float(k_facet_steps) * 2.0f - 1.0f;
-  float z = 1.0f - abs(p.x) - abs(p.y);
-  if (z < 0.0f) p = facet_fold(p);
-  return normalize(vec3(p.x, p.y, z));
+  return normalize(facet_raise(p));
 }
 
 LUCERNA_SHARED_END

@@ -107,10 +107,9 @@ struct PreviewJudgePush {
 };
 /// A tile of the shown picture. Errors are relative: of means over a few pixels, over their luminance or k_preview_dark.
 struct PreviewTile {
-  float error;     ///< expected error now: mean over its pixels
-  float expected;  ///< previous picture: mean square of the expected errors
-  float square;    ///< ... and squared mean error of the tile, measured by samples taken since; may be below 0 by chance
-  float noise;     ///< relative variance of the tile's mean of these samples; below 0: there are none
+  float error;   ///< expected error now: mean over its pixels
+  float square;  ///< previous picture: squared mean error of the tile, measured by samples taken since; may be below 0 by chance
+  float noise;   ///< relative variance of the tile's mean of these samples; below 0: there are none
 };
 
 /// Minimum luminance, of white, by which errors are divided.

@@ -41,7 +41,7 @@ void main() {
 #if LUCERNA_DELEGATED_REGIONS
   // Separate random number: both ways of computing are unbiased whatever else is drawn.
   uint coin = hash_combine(hash_combine(pixel, sample_index), frame.seed ^ 0x2c1b3c6du);
-  if (float(coin >> 8) * (1.0 / 16777216.0) < delegated_share(place)) p.bits = k_delegated_states;
+  if (coin_below(coin, delegated_share(place))) p.bits = k_delegated_states;
 #endif
   p.media = 0u;
 #if LUCERNA_VOLUMES

@@ -1,5 +1,5 @@
 // links: base
-// The benches of single building blocks: what `lucerna bench sort` and `bench lookup` print and write.
+// The benches of single building blocks: the output of `lucerna bench sort` and `bench lookup`.
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -36,7 +36,7 @@ void check_parts(const std::string& text, std::initializer_list<const char*> par
 
 }  // namespace
 
-TEST_CASE("the bench of sorts tells rates and factors, and writes them") {
+TEST_CASE("the bench of sorts prints rates and factors, and writes them") {
   const File file;
   const Run r = run("bench sort --sizes 1000 3 --repeats 5 --json " + file.path);
   CHECK(r.status == 0);
@@ -48,17 +48,17 @@ TEST_CASE("the bench of sorts tells rates and factors, and writes them") {
   CHECK(run("bench sort --sizes 10 --json /no/such/folder/x.json").status == 1);
 }
 
-TEST_CASE("the bench of lookups finds the same spheres every way, and writes what it took") {
+TEST_CASE("the bench of lookups finds the same spheres with every method, and writes the times") {
   const File file;
   const Run r = run("bench lookup --sizes 300 --queries 2000 --repeats 1 --json " + file.path);
   INFO(r.out);
   CHECK(r.status == 0);
-  check_parts(r.out, {"300 photons", "300 records", "octree", "27 cells", "references a sphere"});
+  check_parts(r.out, {"300 photons", "300 records", "octree", "27 cells", "references per sphere"});
   check_parts(file.text(), {"\"queries_per_s\"", "\"references_per_sphere\"", "\"found_per_query\""});
   CHECK(run("bench lookup --sizes 0").status == 1);
 }
 
-TEST_CASE("the bench of interpolation tells how overlap is held down in a scene, and what it costs") {
+TEST_CASE("the bench of interpolation reports the methods of limiting overlap in a scene, and their cost") {
   const File file;
   const std::string scene = std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf";
   const Run r = run("bench interpolation " + scene +
@@ -70,7 +70,7 @@ TEST_CASE("the bench of interpolation tells how overlap is held down in a scene,
   check_parts(r.out, {"as they were placed", "thinned", "M lookups/s"});
   const auto json = nlohmann::json::parse(file.text());
   REQUIRE(json["ways"].size() == 2);
-  // Thinning leaves fewer records, and lets fewer serve a pixel.
+  // Thinning leaves fewer records, and fewer records per pixel.
   const auto serving = [&](size_t way) { return json["ways"][way]["served_by_mean"].get<double>(); };
   CHECK(json["ways"][1]["records"] < json["ways"][0]["records"]);
   CHECK(serving(1) < serving(0));

@@ -1,6 +1,6 @@
 // links: film_io
-// lucerna bench interiors as a person meets it: a room in few pixels and samples, another lucerna beside,
-// interrupted and gone on with; what it refuses.
+// lucerna bench interiors in use: a room with few pixels and samples, a second lucerna, interruption and
+// continuation; refusals.
 #include <signal.h>
 
 #include <catch2/catch.hpp>
@@ -39,7 +39,8 @@ std::string small(const fs::path& place, const std::string& report = "r") {
 
 }  // namespace
 
-TEST_CASE("bench interiors measures rooms as seen, beside another lucerna, and keeps what is there") {
+TEST_CASE(
+    "bench interiors measures rooms by error as seen, beside a second lucerna, and keeps existing results") {
   const lucerna::test::Folder place;
   const std::string command = small(place.path) + " --settings path,cache --against " + LUCERNA_BINARY;
   const Run first = run(command);
@@ -57,7 +58,7 @@ TEST_CASE("bench interiors measures rooms as seen, beside another lucerna, and k
     CHECK(r["rays"] > 0);
     CHECK(r["samples"] == (r["budget"] == "4 samples" ? 4 : 16));
     CHECK(r["seen"] > 0);
-    // Products of differences from two references: what is left out may by chance be below 0.
+    // Products of differences from two references: the trimmed part can be negative by chance.
     CHECK(r["seen_all"].get<double>() == Approx(r["seen"].get<double>()).epsilon(0.5));
     CHECK(r["true"]["sum"] > 0);
     CHECK(r["estimated"]["sum"] > 0);
@@ -74,10 +75,10 @@ TEST_CASE("bench interiors measures rooms as seen, beside another lucerna, and k
   for (const auto& entry : fs::directory_iterator(place / "r"))
     CHECK_FALSE(entry.path().filename().string().starts_with("outside"));
 
-  // All is there, and the page can be made again.
+  // All results exist, and the page can be written again.
   const Run again = run(command);
   CHECK(again.status == 0);
-  CHECK_THAT(again.out, Contains("all 8 renders were there"));
+  CHECK_THAT(again.out, Contains("all 8 renders exist already"));
   CHECK(read_json(place / "r/report.json") == report);
   CHECK(run("bench --page " + (place / "r").string()).status == 0);
   CHECK(read_text(place / "r/report.html") == html);
@@ -92,7 +93,7 @@ TEST_CASE("bench interiors measures rooms as seen, beside another lucerna, and k
   CHECK_THAT(other.out, Contains("another matrix (it differs at settings"));
 }
 
-TEST_CASE("bench interiors stops at Ctrl-C with what is finished") {
+TEST_CASE("bench interiors keeps finished results at Ctrl-C") {
   const lucerna::test::Folder place;
   const std::string command = "bench --interiors --scenes " + k_room +
                               "/cornell.gltf --size 16x16 --seconds 0.05,60 --reference-samples 16 --repeats "
@@ -110,7 +111,7 @@ TEST_CASE("bench interiors stops at Ctrl-C with what is finished") {
   CHECK_FALSE(fs::exists(place / "r/outside.exr"));
 }
 
-TEST_CASE("bench interiors waits for a picture that is not there in time") {
+TEST_CASE("bench interiors waits for a picture that is late") {
   const lucerna::test::Folder place;
   const Run r =
       run("bench interiors --scenes " + k_room +
@@ -123,7 +124,7 @@ TEST_CASE("bench interiors waits for a picture that is not there in time") {
   CHECK(cell["samples"] > 0);
 }
 
-TEST_CASE("bench interiors refuses what it cannot measure") {
+TEST_CASE("bench interiors refuses impossible measurements") {
   const lucerna::test::Folder place;
   const auto refused = [&](const std::string& arguments, const std::string& expected) {
     const Run r = run("bench interiors --report " + (place / "r").string() + " " + arguments);

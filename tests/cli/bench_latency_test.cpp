@@ -1,5 +1,5 @@
 // links: film_io
-// lucerna bench latency as a person meets it.
+// lucerna bench latency in use.
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -16,7 +16,7 @@ using Catch::Contains;
 using test::run;
 using test::Run;
 
-TEST_CASE("latency of every edit of a small picture is measured, told and written; references are kept") {
+TEST_CASE("latency of every edit of a small picture is measured, printed and written; references are kept") {
   const fs::path folder = fs::temp_directory_path() / ("lucerna-cli-latency-" + std::to_string(getpid()));
   fs::remove_all(folder);
   fs::create_directories(folder);
@@ -37,9 +37,9 @@ TEST_CASE("latency of every edit of a small picture is measured, told and writte
     ++measured;
     CHECK(row["solver"] == "cache");
     CHECK(row["error"]["1"].is_number());
-    CHECK(row["error"]["3"].is_null());  // it was not watched for so long
+    CHECK(row["error"]["3"].is_null());  // it was not watched for that long
   }
-  CHECK(measured >= 4);  // the scene may have no lamp that could be weaker
+  CHECK(measured >= 4);  // the scene may have no lamp that can be dimmed
   CHECK(fs::exists(folder / "pictures" / "cornell-cache-camera-01.0s.png"));
 
   const Run second = run("bench latency " + arguments);
@@ -49,7 +49,7 @@ TEST_CASE("latency of every edit of a small picture is measured, told and writte
   fs::remove_all(folder);
 }
 
-TEST_CASE("what bench latency cannot do it says") {
+TEST_CASE("bench latency reports unsupported arguments") {
   const auto refused = [](const std::string& arguments, const std::string& expected) {
     const Run r = run("bench latency " + arguments);
     INFO(arguments << "\n" << r.out);

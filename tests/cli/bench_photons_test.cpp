@@ -1,5 +1,5 @@
 // links: base
-// lucerna bench --photons as a person meets it, at tiny sizes: measured, gone on with, and what it refuses.
+// lucerna bench --photons in use, at tiny sizes: measurement, continuation, and refusals.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -22,7 +22,7 @@ nlohmann::json read_json(const fs::path& file) {
 
 }  // namespace
 
-TEST_CASE("bench --photons measures slopes, rounds, lamps and what photons cost for nothing") {
+TEST_CASE("bench --photons measures slopes, passes, lamps and the cost of unneeded photons") {
   const lucerna::test::Folder place;
   const std::string folder = (place / "r").string(),
                     small =
@@ -43,7 +43,7 @@ TEST_CASE("bench --photons measures slopes, rounds, lamps and what photons cost 
     CHECK(s["pixels"] > 16);
     REQUIRE(s["points"].size() >= 4);
     for (const auto& p : s["points"]) CHECK(p["noise"] > 0);
-    // Discs as wide as these pictures' pixels ask for are held to the same size.
+    // Discs as wide as these pictures' pixels require are limited to the same size.
     if (s["over"] == "rounds") CHECK(s["points"].back()["noise"] < s["points"][0]["noise"]);
   }
   REQUIRE(report["rounds"].size() == 2);
@@ -64,7 +64,7 @@ TEST_CASE("bench --photons measures slopes, rounds, lamps and what photons cost 
   CHECK(fs::exists(fs::path(folder) / "report.html"));
   CHECK(fs::exists(fs::path(folder) / "report.txt"));
 
-  // All is there but for one unit: that is measured, and what does not depend on the clock is the same.
+  // One unit is missing: it is measured, and figures independent of the clock stay the same.
   fs::remove(fs::path(folder) / "units" / "truth-glass-caustic-2.exr");
   const Run again = run(small);
   INFO(again.out);
@@ -85,7 +85,7 @@ TEST_CASE("bench --photons measures slopes, rounds, lamps and what photons cost 
   refused("bench --photons --paths 0", "--paths");
 }
 
-TEST_CASE("bench --photons interrupted keeps what is finished and goes on from there") {
+TEST_CASE("bench --photons keeps finished parts when interrupted, and continues from there") {
   const lucerna::test::Folder place;
   const std::string folder = (place / "r").string(),
                     small = "bench --photons --parts lamps,free --lamps 1 --pairs 40 --repeats 1 --report " +
@@ -96,7 +96,7 @@ TEST_CASE("bench --photons interrupted keeps what is finished and goes on from t
   const Run r = bench.finish();
   INFO(r.out);
   CHECK(r.status == 128 + SIGINT);
-  CHECK_THAT(r.out, Contains("interrupted; what is finished is kept"));
+  CHECK_THAT(r.out, Contains("interrupted; finished parts are kept"));
   CHECK(fs::exists(fs::path(folder) / "units" / "lamps-1.json"));
   CHECK_FALSE(fs::exists(fs::path(folder) / "units" / "free.json"));
 }

@@ -1,5 +1,5 @@
 // links: film_io
-// lucerna bench as a person meets it: a tiny matrix measured, interrupted and gone on with; bad input.
+// lucerna bench in use: a tiny matrix measured, interrupted and continued; invalid input.
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -19,7 +19,7 @@ using test::Run;
 
 namespace {
 
-/// A folder with matrix files, removed in the end.
+/// A folder with matrix files, removed at the end.
 struct Place {
   fs::path path = fs::temp_directory_path() / ("lucerna-cli-bench-" + std::to_string(getpid()));
   Place() { fs::remove_all(path), fs::create_directories(path); }
@@ -48,7 +48,7 @@ size_t count_files(const std::string& folder) {
   return size_t(std::distance(fs::directory_iterator(folder), {}));
 }
 
-/// Runs the program until it has said something, then sends what Ctrl-C sends.
+/// Runs the program until it has printed a line, then sends the signal of Ctrl-C.
 Run interrupt_at(const std::string& line, const std::string& arguments, const std::string& log) {
   return test::run_command(std::string("rm -f ") + log + "; " + LUCERNA_BINARY + " " + arguments + " >" +
                            log + " 2>&1 & for i in $(seq 600); do grep -qs '" + line + "' " + log +
@@ -81,7 +81,8 @@ TEST_CASE("bench waits for a picture that is still being prepared when its time 
   CHECK(cell.at("wall_s") > 0.01);
 }
 
-TEST_CASE("bench measures a matrix, keeps what is there, mends half files and remakes its page") {
+TEST_CASE(
+    "bench measures a matrix, keeps existing results, replaces partial files and writes its page again") {
   const Place place;
   const std::string matrix = place.matrix("m.json", 16, 1024), folder = place / "r";
   const Run first = run("bench " + matrix + " --report " + folder);
@@ -98,12 +99,13 @@ TEST_CASE("bench measures a matrix, keeps what is there, mends half files and re
   for (const auto& r : report["results"]) {
     CHECK(r["wall_s"] > 0);
     CHECK(r["rays"] > 0);
-    // How many samples the timed one makes is the machine's; it may reach the reference's own noise.
+    // The number of samples of a timed render depends on the machine; its error may be below the reference's
+    // noise.
     if (r["setting"] == "timed")
       CHECK(r["true"]["sum"] >= 0);
     else
       CHECK(r["true"]["sum"] > 0);
-    // Noise shows from the second sample on, which a busy machine's timed one may not reach.
+    // Noise is known from the second sample on, which a timed render on a busy machine may not reach.
     if (r["samples"] >= 2)
       CHECK(r["estimated"]["sum"] > 0);
     else
@@ -121,13 +123,13 @@ TEST_CASE("bench measures a matrix, keeps what is there, mends half files and re
   CHECK_THAT(html, Contains("What accuracy costs in time") && Contains("data:image/png;base64,") &&
                        Contains("<svg") && Contains("bench " + matrix));
 
-  // All is there: nothing is measured, the report stays that of its day.
+  // All results exist: nothing is measured, and the report keeps its date.
   const Run again = run("bench " + matrix + " --report " + folder + " --quiet");
   CHECK(again.status == 0);
-  CHECK_THAT(again.out, Contains("all 9 renders were there"));
+  CHECK_THAT(again.out, Contains("all 9 renders exist already"));
   CHECK(read_json(folder + "/report.json") == report);
 
-  // Half a cell, half a reference.
+  // Half a result, half a reference.
   const std::string cell = folder + "/cells/cornell.plain.0.1.json";
   fs::resize_file(cell, fs::file_size(cell) / 2);
   const std::string reference = folder + "/references/cornell-16x16.exr";
@@ -150,7 +152,7 @@ TEST_CASE("bench measures a matrix, keeps what is there, mends half files and re
   CHECK(compared.status == 0);
   CHECK_THAT(compared.out, Contains("cornell") && Contains("adaptive") && Contains("1.00x="));
 
-  // Another matrix does not get into this folder.
+  // Another matrix cannot use this folder.
   refused(place.matrix("other.json", 32, 1024) + " --report " + folder,
           "another matrix (it differs at scenes/0");
   CHECK(count_files(folder + "/cells") == 9);
@@ -184,10 +186,10 @@ TEST_CASE("bench counts the records of the irradiance cache and plots the error 
   CHECK_THAT(html, Contains("cornell: true error of the whole picture against records"));
 }
 
-TEST_CASE("bench stops at Ctrl-C with what is finished, and goes on from there") {
+TEST_CASE("bench keeps finished results at Ctrl-C, and continues from there") {
   const Place place;
   const std::string folder = place / "r";
-  // Cells so long that the signal always comes in the midst of one.
+  // Results that take so long that the signal always arrives during one.
   const std::string matrix = place.matrix("m.json", 1 << 20, 16);
   const Run stopped = interrupt_at("2 of 10", "bench " + matrix + " --report " + folder, place / "log");
   INFO(stopped.out);
@@ -205,7 +207,7 @@ TEST_CASE("bench stops at Ctrl-C with what is finished, and goes on from there")
   CHECK_THAT(further.out, Contains("1 of 9") && !Contains("reference of"));
 }
 
-TEST_CASE("bench refuses bad input before any work") {
+TEST_CASE("bench refuses invalid input before any work") {
   const Place place;
   const std::string good = place.matrix("m.json", 16, 64);
   refused("", "name one matrix");

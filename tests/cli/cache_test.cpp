@@ -1,6 +1,6 @@
 // links: film_io
-// Caches as files on the command line: rendering with a saved one gives the same picture without gathering
-// anything; what cannot serve ends with one located line and status 1.
+// Cache files on the command line: a render with a saved cache gives the same picture without gathering; an
+// unsuitable file gives one located error line and status 1.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -26,7 +26,7 @@ const std::string k_cached =
 
 }  // namespace
 
-TEST_CASE("a picture rendered with a saved cache is the same, and nothing is gathered for it") {
+TEST_CASE("a picture rendered with a saved cache is the same, and gathers nothing") {
   const Folder f;
   const test::Run made = test::run("render " + k_scene + k_cached + "-o " + (f / "a.exr") + " --stats " +
                                    (f / "a.json") + " --cache-save " + (f / "a.cache"));
@@ -48,7 +48,7 @@ TEST_CASE("a picture rendered with a saved cache is the same, and nothing is gat
   CHECK(second["ledger"].back()["prepared_s"] == 0);
   CHECK(second["rays"] < first["rays"]);
 
-  // Records alone: no picture is asked for, and none is rendered.
+  // Records only: no picture is requested, and none is rendered.
   const test::Run only = test::run("render " + k_scene +
                                    " --size 48x48 --samples 1000000 --quiet --set components.secondary=cache "
                                    "--set components.tertiary=cache --cache-save " +
@@ -57,7 +57,7 @@ TEST_CASE("a picture rendered with a saved cache is the same, and nothing is gat
   CHECK(only.status == 0);
   CHECK(read_file(f / "c.cache") == read_file(f / "a.cache"));
 
-  // What does not fit; the file that is to be written is then untouched.
+  // An unsuitable file; the output file is not touched.
   const std::string kept = read_file(f / "b.cache");
   const auto refused = [&](const std::string& arguments, const std::string& expected) {
     const test::Run r =

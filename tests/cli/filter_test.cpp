@@ -1,5 +1,5 @@
 // links: film_io
-// lucerna render --filter: the filtered picture beside the samples, which it does not touch.
+// lucerna render --filter: the filtered picture beside the samples, which stay unchanged.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -47,7 +47,7 @@ TEST_CASE("--filter: layers beside the samples, a picture without noise, and its
   }
   const film::FilmImage plain = film::read_exr(f / "plain.exr"), a = film::read_exr(f / "a.exr"),
                         b = film::read_exr(f / "b.exr"), truth = film::read_exr(f / "truth.exr");
-  // What was there before is there, to the bit; what is new is the same each time.
+  // Existing layers are unchanged bit for bit; new ones are reproducible.
   for (const auto& [name, values] : plain.channels) {
     INFO(name);
     CHECK(*a.find(name) == values);
@@ -62,7 +62,7 @@ TEST_CASE("--filter: layers beside the samples, a picture without noise, and its
       for (size_t i = 0; i < sum.size(); ++i)
         of_components[i] += channel("filtered." + std::string(c) + ".")[i];
     CHECK(sum == of_components);
-    // By component: in the sum the edges of the lamp, which is what it is, are most of the difference.
+    // By component: in the sum the edges of the directly visible lamp are most of the difference.
     for (const char* c : {"secondary.", "tertiary."}) {
       const std::vector<float> converged = *truth.find(c + std::string(1, k));
       const double before = mean_square(channel(c), converged);
@@ -82,11 +82,11 @@ TEST_CASE("--filter: layers beside the samples, a picture without noise, and its
   CHECK(reported < 0.7 * before);
 }
 
-TEST_CASE("--filter: one sample a pixel says nothing of its noise") {
+TEST_CASE("--filter: one sample per pixel has no noise estimate") {
   const test::Folder f;
   const Run r = render(f, "a", "--filter", 1);
   CHECK(r.status == 0);
-  CHECK_THAT(r.out, Contains("--filter: pixels with less than two samples stay as they are"));
+  CHECK_THAT(r.out, Contains("--filter: pixels with fewer than two samples stay unfiltered"));
   const film::FilmImage a = film::read_exr(f / "a.exr");
   for (const char* k : {"R", "G", "B"}) CHECK(*a.find("filtered." + std::string(k)) == *a.find(k));
 }

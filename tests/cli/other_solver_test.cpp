@@ -1,5 +1,5 @@
 // links: base
-// The program with a solver of the tests' own (programs/ambient_main.cpp): the command line knows it.
+// The program with a solver of the tests (programs/ambient_main.cpp): the command line supports it.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 
@@ -9,7 +9,7 @@
 
 using namespace lucerna;
 
-TEST_CASE("a registered solver stands in --help, computes its component and is in the figures") {
+TEST_CASE("a registered solver is in --help, computes its component and is in the figures") {
   const test::Folder folder;
   const std::string program = std::string(LUCERNA_BINARY) + "-ambient";
   const auto help = test::run_command(program + " render --help");
@@ -27,6 +27,6 @@ TEST_CASE("a registered solver stands in --help, computes its component and is i
   const auto json = nlohmann::json::parse(read_file(stats));
   CHECK(json.at("components").at("tertiary").at("solver") == "ambient");
   CHECK(json.at("ambient").at("radiance") == 2.0);
-  // The program itself knows nothing of it.
+  // The normal program does not know it.
   CHECK(test::run("render x.gltf --set components.tertiary=ambient -o x.png").status != 0);
 }

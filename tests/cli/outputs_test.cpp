@@ -1,5 +1,5 @@
 // links: film_io
-// What a batch render writes: all of it, whatever fails beside it, under any name, into links and pipes.
+// Outputs of a batch render: all are written even if one fails, under any name, into links and pipes.
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
@@ -34,7 +34,7 @@ std::string read_text(const fs::path& file) {
 
 }  // namespace
 
-TEST_CASE("an output that fails does not keep the others from being written") {
+TEST_CASE("a failing output does not prevent the others from being written") {
   const test::Folder f;
   const std::string at = f.path.string() + "/";
   for (const char* name : {"full.exr", "full.csv", "full.cache"}) fs::create_symlink("/dev/full", f / name);
@@ -53,7 +53,7 @@ TEST_CASE("an output that fails does not keep the others from being written") {
   CHECK(nlohmann::json::parse(read_text(f / "a.json")).contains("settings"));
 }
 
-TEST_CASE("two outputs of one name are refused, by whatever way they are named") {
+TEST_CASE("two outputs with the same target are refused, however they are named") {
   const test::Folder f;
   const std::string at = f.path.string() + "/";
   fs::create_symlink("a.exr", f / "b.exr");
@@ -68,7 +68,7 @@ TEST_CASE("two outputs of one name are refused, by whatever way they are named")
   CHECK(render("--stats /dev/null --ledger /dev/null").status == 0);
 }
 
-TEST_CASE("names that are no UTF-8 are written with what is not replaced") {
+TEST_CASE("file names that are not UTF-8 are written with replacement characters") {
   const test::Folder f;
   const std::string scene = (f / "f\xFCr.gltf").string();
   fs::copy_file(k_cornell + "cornell.gltf", scene);
@@ -86,7 +86,7 @@ TEST_CASE("names that are no UTF-8 are written with what is not replaced") {
   CHECK(nlohmann::json::accept(info.out));
 }
 
-TEST_CASE("outputs go into pipes, through links and to standard output, which stay") {
+TEST_CASE("outputs are written into pipes, through links and to standard output, which stay") {
   const test::Folder f;
   const std::string at = f.path.string() + "/";
   REQUIRE(mkfifo((f / "pipe.exr").c_str(), 0600) == 0);

@@ -1,5 +1,5 @@
 // links: base
-// The ray benches: what `lucerna bench rays` prints and writes, and the stand-alone bench that reads it.
+// The ray benches: the output of `lucerna bench rays`, and the separate bench that reads it.
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -23,7 +23,7 @@ const std::string k_small = " --rays 4096 --repeats 1 --samples 2 --width 32 --h
 }  // namespace
 
 TEST_CASE(
-    "the bench measures every tracer on the same rays, and its flattened scene is enough for the stand-alone "
+    "the bench measures every tracer with the same rays, and its flattened scene is enough for the separate "
     "one") {
   const fs::path folder = fs::temp_directory_path() / ("lucerna-raybench-" + std::to_string(getpid()));
   fs::create_directories(folder);
@@ -42,7 +42,7 @@ TEST_CASE(
        {"\"compute-bvh\"", "\"primary\"", "\"diffuse\"", "\"shadow\"", "\"seconds\"", "\"stages_ms\""})
     CHECK(alone.out.find(part) != std::string::npos);
 
-  // A file that ends early, anywhere, is refused in one line.
+  // A file truncated anywhere is refused in one line.
   const auto size = fs::file_size(flat);
   for (const double part : {0.0, 0.0001, 0.3, 0.7, 0.9999}) {
     const std::string cut = (folder / "cut.flat").string();
@@ -62,7 +62,7 @@ TEST_CASE(
   fs::remove_all(folder);
 }
 
-TEST_CASE("the stand-alone bench needs neither image IO, nor Embree, nor a window") {
+TEST_CASE("the separate bench needs neither image IO, nor Embree, nor a window") {
   const Run r = run_command("ldd " + k_alone);
   REQUIRE(r.status == 0);
   for (const char* library : {"OpenImageIO", "embree", "glfw", "libGL", "libX11", "tinygltf"}) {

@@ -1,6 +1,5 @@
 // links: film_io
-// The command line as a person meets it: what it writes, and that every wrong input ends with one located
-// line and status 1.
+// The command line in use: its outputs, and one located error line with status 1 for every invalid input.
 #include <unistd.h>
 
 #include <algorithm>
@@ -86,8 +85,8 @@ TEST_CASE("render writes layers, PNG and figures") {
   fs::remove_all(f);
 }
 
-TEST_CASE("the exposure is found in a batch render only where that is asked for, and none is named") {
-  // The box of the tests with its lamp turned down by 6 stops or so, and without its settings.
+TEST_CASE("a batch render measures the exposure only if requested, and if none is set") {
+  // The box of the tests with its lamp dimmed by about 6 stops, and without its settings.
   const fs::path f = folder() / "dim";
   fs::create_directories(f);
   fs::copy(fs::path(scene("cornell")).parent_path(), f,
@@ -115,7 +114,7 @@ TEST_CASE("the exposure is found in a batch render only where that is asked for,
   CHECK(brightness("--set film.exposure_at_load=always --set film.ev=-4") == own);
 }
 
-TEST_CASE("wrong arguments are refused with their place") {
+TEST_CASE("invalid arguments are refused with their location") {
   const std::string good = "render " + scene("cornell") + " --quiet -o /tmp/lucerna-never.exr ";
   refused("render no/such.gltf -o /tmp/lucerna-never.exr", "no/such.gltf");
   refused(good + "--set components.primary=magic", "components.primary");
@@ -156,17 +155,17 @@ TEST_CASE("wrong arguments are refused with their place") {
   CHECK_FALSE(fs::exists("/tmp/lucerna-never.exr"));
 }
 
-TEST_CASE("--time that is up before there is a picture is told, and leaves no black one") {
+TEST_CASE("a --time that is too short for a picture is reported, and leaves no black one") {
   const fs::path f = folder() / "early.png";
   refused("render " + scene("hall") +
               " --size 256x256 --quiet --time 0.01 --set components.secondary=cache --set "
               "components.tertiary=cache -o " +
               f.string(),
-          "no pixel has a sample after so many seconds: the irradiance cache was still at work");
+          "no pixel has a sample after this many seconds: the irradiance cache was still at work");
   CHECK_FALSE(fs::exists(f));
 }
 
-TEST_CASE("a render ends at the first limit that is given, and at no other") {
+TEST_CASE("a render ends at the first given limit, and at no other") {
   const fs::path f = folder();
   const auto stats = [&](const std::string& more) {
     const Run r = run("render " + scene("cornell") + " --size 8x8 --quiet --stats " +
@@ -194,7 +193,7 @@ TEST_CASE("a render ends at the first limit that is given, and at no other") {
   fs::remove_all(f);
 }
 
-TEST_CASE("--error: samples go where the noise is, and what was not reached is told") {
+TEST_CASE("--error: samples go where the noise is, and unreached targets are reported") {
   const fs::path f = folder();
   const auto stats = [&](const std::string& arguments) {
     const Run r = run("render " + scene("cornell") + " --size 64x64 --quiet -o " + (f / "e.exr").string() +
@@ -218,14 +217,14 @@ TEST_CASE("--error: samples go where the noise is, and what was not reached is t
   CHECK(capped["tiles"]["capped"] == capped["tiles"]["unreached"].size());
   CHECK(capped["tiles"]["unreached"].size() > 8);
   CHECK(warning.find("over the error of 0.01") != std::string::npos);
-  // Figures alone need no picture; nothing at all is a mistake.
+  // Figures alone need no picture; no output at all is an error.
   const std::string small = "render " + scene("cornell") + " --size 16x16 --samples 4 --quiet";
   CHECK(run(small + " --stats " + (f / "alone.json").string()).status == 0);
   CHECK(std::filesystem::exists(f / "alone.json"));
   const Run nowhere = run(small);
   CHECK(nowhere.status == 1);
   CHECK(nowhere.out.find("name at least one output") != std::string::npos);
-  // The story of the render, in JSON and as a table with as many lines.
+  // The ledger of the render, in JSON and as a table with as many lines.
   const auto [result, nothing] = stats("--samples 32 --ledger " + (f / "e.csv").string());
   std::ifstream table(f / "e.csv");
   size_t lines = 0;
@@ -244,13 +243,13 @@ TEST_CASE("--error: samples go where the noise is, and what was not reached is t
   refused("render " + scene("cornell") + " --quiet -o " + (f / "e.exr").string() +
               " --ledger /no/such/folder/e.csv",
           "/no/such/folder");
-  // An exposure that shows nothing leaves nothing to sample, which is reported.
+  // An exposure that shows no light leaves nothing to sample, which is reported.
   const auto [unseen, dark] = stats("--error 0.08 --set sampling.min_samples=4 --set film.ev=-12");
   CHECK(unseen["error"]["dark"].get<double>() > 0.9);
   CHECK(unseen["tiles"]["most_samples"] == 4);
-  CHECK(dark.find("% as black: no error is seen there") != std::string::npos);
-  CHECK(warning.find("no error is seen") == std::string::npos);
-  // In uniform sampling the noise is told too, and falls as it should.
+  CHECK(dark.find("% black: no error is visible there") != std::string::npos);
+  CHECK(warning.find("no error is visible") == std::string::npos);
+  // In uniform sampling noise is reported too, and falls as expected.
   const auto few = stats("--samples 64").first["error"], many = stats("--samples 256").first["error"];
   for (const char* error : {"seen", "of_mean"}) {
     CHECK(many[error].get<double>() < 0.6 * few[error].get<double>());
@@ -258,7 +257,7 @@ TEST_CASE("--error: samples go where the noise is, and what was not reached is t
   }
 }
 
-TEST_CASE("--stats and --ledger tell noise and bias of light that is looked up apart") {
+TEST_CASE("--stats and --ledger report noise and bias of lookups separately") {
   const fs::path f = folder();
   const auto stats = [&](const std::string& arguments) {
     const Run r = run("render " + scene("glass") + " --size 40x30 --quiet --stats " +
@@ -289,13 +288,13 @@ TEST_CASE("--stats and --ledger tell noise and bias of light that is looked up a
   std::getline(table, head);
   CHECK(head.find(",seen_records,seen_bias,seen_total,of_mean_records,of_mean_bias,of_mean_total,") !=
         std::string::npos);
-  // With one sample there are no two halves, and nothing is known; paths have no bias to be told of.
+  // One sample has no halves, so the bias is unknown; paths have no bias.
   CHECK(stats("--set components.caustic=photons --set photons.efficiency=false --samples 1")["error"]["bias"]
             .is_null());
   CHECK_FALSE(stats("--samples 6 --set components.caustic=path")["error"].contains("bias"));
 }
 
-TEST_CASE("--reference: the ledger tells the true error, and it is the estimated one") {
+TEST_CASE("--reference: the ledger has the true error, which equals the estimated one") {
   const fs::path f = folder();
   const std::string reference = (f / "reference.exr").string(), out = (f / "r.exr").string();
   const std::string cornell = "render " + scene("cornell") + " --size 48x48 --quiet ";
@@ -311,7 +310,7 @@ TEST_CASE("--reference: the ledger tells the true error, and it is the estimated
     const double truth = j["truth"][layer]["of_mean"], estimate = j["ledger"].back()["of_mean"][layer];
     CHECK(j["ledger"].back()["truth"][layer] == truth);
     CHECK(j["truth"][layer]["reference_noise"] <= estimate);
-    // 2304 pixels; caustics come in few large amounts and stay outside.
+    // 2304 pixels; caustics come in few large amounts and are excluded.
     if (std::string(layer) != "caustic") CHECK(truth == Approx(estimate).epsilon(0.25));
   }
   CHECK(j["ledger"][0].contains("truth"));
@@ -325,7 +324,7 @@ TEST_CASE("--reference: the ledger tells the true error, and it is the estimated
   fs::remove_all(f);
 }
 
-TEST_CASE("Ctrl-C, SIGTERM and SIGHUP write what there is and say so") {
+TEST_CASE("Ctrl-C, SIGTERM and SIGHUP write the present picture and report it") {
   const fs::path f = folder();
   const std::string file = (f / "interrupted.exr").string();
   const std::string endless = "-v render " + scene("cornell") + " --samples 1000000 --size 64x64 -o " + file;
@@ -333,23 +332,23 @@ TEST_CASE("Ctrl-C, SIGTERM and SIGHUP write what there is and say so") {
     INFO(signal);
     fs::remove(file);
     test::Running running(endless);
-    // The signal comes while it renders, however slow the machine is.
-    REQUIRE(running.says("a sample of every pixel"));
+    // The signal comes during the render, however slow the machine is.
+    REQUIRE(running.says("every pixel has a sample"));
     running.send(signal);
     const Run r = running.finish();
     INFO(r.out);
     CHECK(r.out.find("interrupted after") != std::string::npos);
-    CHECK(r.out.find("writing what there is") != std::string::npos);
+    CHECK(r.out.find("writing the present picture") != std::string::npos);
     CHECK(r.status == 128 + signal);
     const film::FilmImage image = film::read_exr(file);
     CHECK(image.width == 64);
     const std::vector<float>& samples = *image.find("samples");
     CHECK(*std::min_element(samples.begin(), samples.end()) >= 1);
   }
-  // Where the one who read its words has gone too, as in a pipe on the same terminal.
+  // Also if the reader of the output has ended, as in a pipe on the same terminal.
   fs::remove(file);
   test::Running running(endless);
-  REQUIRE(running.says("a sample of every pixel"));
+  REQUIRE(running.says("every pixel has a sample"));
   running.stop_reading();
   running.send(SIGINT);
   CHECK(running.finish().status == 130);
@@ -357,7 +356,7 @@ TEST_CASE("Ctrl-C, SIGTERM and SIGHUP write what there is and say so") {
   fs::remove_all(f);
 }
 
-TEST_CASE("a scene's files outside its folder, and its memory, are allowed by name") {
+TEST_CASE("a scene's files outside its folder, and its memory, are allowed by options") {
   const fs::path f = folder();
   fs::create_directories(f / "scene");
   fs::copy_file(scene("cornell"), f / "scene" / "a.gltf");
@@ -375,13 +374,13 @@ TEST_CASE("a scene's files outside its folder, and its memory, are allowed by na
   fs::remove_all(f);
 }
 
-TEST_CASE("devices and info speak") {
+TEST_CASE("devices and info print their lists") {
   CHECK(run("devices").out.find("Vulkan") != std::string::npos);
   CHECK(run("info " + scene("glass")).out.find("triangles") != std::string::npos);
   CHECK(run("--help").status == 0);
   CHECK(run("--help").out.find("components.primary") != std::string::npos);
   CHECK(run("render --help").out.find("components.primary") != std::string::npos);
-  // What takes no settings does not list them.
+  // A verb without settings does not list them.
   CHECK(run("info --help").out.find("components.primary") == std::string::npos);
   CHECK(run("bench latency --help").out.find("matrix file") == std::string::npos);
 }

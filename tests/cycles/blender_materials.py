@@ -1,4 +1,4 @@
-"""Runs inside Blender: node trees that mean what the glTF material means in Lucerna (shaders/lib/bsdf.glsl).
+"""Runs inside Blender: node trees equivalent to the glTF material in Lucerna (shaders/lib/bsdf.glsl).
 
 Exact: Lambert, sharp and rough solid glass, smooth thin glass, smooth metals and coats, emission, alpha, textures.
 Within about 1 % of the lobe, and exact in what a direction of view sees of uniform light:

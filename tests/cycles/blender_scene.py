@@ -88,7 +88,7 @@ def image_files(doc, blob, temporary):
 
 
 def geometry_only(doc, blob, temporary):
-    """A copy whose materials are bare names m0, m1, ...: the importer then cannot trip over them."""
+    """A copy whose materials are bare names m0, m1, ...: so the importer cannot fail on them."""
     bare = json.loads(json.dumps(doc))
     bare["materials"] = [{"name": f"m{i}", "doubleSided": True} for i in range(len(doc.get("materials", [])))]
     for key in ("images", "textures", "samplers", "animations"):

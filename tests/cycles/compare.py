@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Holds Lucerna against Blender's Cycles: renders scenes with both, compares pictures or speed, prints a table.
+"""Compares Lucerna with Blender's Cycles: renders scenes with both, compares pictures or speed, prints a table.
 
   tests/cycles/compare.py scenes/cornell/cornell.gltf --size 128x128 --samples 1024
   tests/cycles/compare.py scenes/cornell/cornell.gltf scenes/atrium/atrium.gltf --speed --size 480x270 --samples 32
@@ -42,7 +42,7 @@ from reduce import reduced  # noqa: E402
 
 
 def common_arguments(p):
-    """What every script that renders with both takes."""
+    """Arguments of every script that renders with both."""
     p.add_argument("--camera", default="")
     p.add_argument("--depth", type=int, default=64)
     p.add_argument("--threads", type=int, default=2)
@@ -69,7 +69,7 @@ def arguments():
 
 
 def camera_aspect(path, name):
-    """Width over height of the scene's camera, 16/9 where it does not say."""
+    """Width over height of the scene's camera, default 16/9."""
     data = open(path, "rb").read()
     if data[:4] == b"glTF":
         data = data[20:20 + int.from_bytes(data[12:16], "little")]
@@ -126,7 +126,7 @@ class Job:
                 "stages_ms": stages}
 
     def cycles(self, seeds, samples):
-        """Renders one picture a seed in one session of Blender; samples/s of the first."""
+        """Renders one picture per seed in one session of Blender; samples/s of the first."""
         command = ["blender", "-b", "--factory-startup", "-P", os.path.join(HERE, "blender_scene.py"), "--", self.scene,
                    self.path("cycles", samples, "SEED"), "--size", self.size, "--samples", str(samples), "--depth",
                    str(self.a.depth), "--seeds", ",".join(str(s) for s in seeds), "--threads", str(self.a.threads)]

@@ -20,7 +20,7 @@ class Estimate:
 
 
 def in_blocks(x, keep, size=BLOCK):
-    """Sums over blocks (rows, columns, channels) of the kept pixels; what does not fill a block is dropped."""
+    """Sums over blocks (rows, columns, channels) of the kept pixels; incomplete blocks are dropped."""
     h, w = keep.shape[0] // size, keep.shape[1] // size
     x = np.where(keep[:, :, None], x, 0)[:h * size, :w * size]
     return x.reshape(h, size, w, size, -1).sum(axis=(1, 3))
@@ -58,7 +58,7 @@ def block_figures(ours, theirs, keep, tolerance=0.01):
 
 
 def around(x):
-    """The mean of a pixel's eight neighbours, as far as they are in the picture, by channel."""
+    """The mean of a pixel's eight neighbours, inside the picture, by channel."""
     h, w = x.shape[:2]
     p, one = np.pad(x, ((1, 1), (1, 1), (0, 0))), np.pad(np.ones((h, w, 1)), ((1, 1), (1, 1), (0, 0)))
     places = [(i, j) for i in range(3) for j in range(3) if (i, j) != (1, 1)]
@@ -67,7 +67,7 @@ def around(x):
 
 def relative_mse(picture, first, second, eps=0.01, trimmed=0.001):
     """The mean over pixels and channels of (t - r1)(t - r2) / (r^2 + eps), without the `trimmed` of the pixels whose
-    eight neighbours are worst: as film/io/relative_mse.h has it, and why.
+    eight neighbours are worst: as in film/io/relative_mse.h, which has the reasons.
 
     `first` and `second`, r1 and r2, are independent, so that their own noise adds nothing to the mean. r is their mean
     over the pixel's neighbours: were it of the pixel itself, noise would divide by what it has made small or large.
@@ -84,7 +84,7 @@ def figures(ours, theirs, keep, eps=0.01):
     mean_o, mean_t = o.mean(axis=0), t.mean(axis=0)
     deviation = np.sqrt(ours.variance[keep].sum(axis=0) + theirs.variance[keep].sum(axis=0)) / len(o)
     error = ((o - t) ** 2 / (t ** 2 + eps)).mean(axis=1)
-    # What is left when both renderers' own noise is taken away.
+    # The difference without both renderers' own noise.
     noise = ((ours.variance[keep] + theirs.variance[keep]) / (t ** 2 + eps)).mean(axis=1)
     calm = np.argsort(error + noise)[:len(error) - max(1, len(error) // 1000)]
     return {"mean": {"lucerna": mean_o.round(6).tolist(), "cycles": mean_t.round(6).tolist()},

@@ -1,4 +1,4 @@
-"""Directional albedos of the GGX reflection lobe, integrated here anew: the tables that node trees look up.
+"""Directional albedos of the GGX reflection lobe, integrated here: the tables that node trees look up.
 
 Independent of the renderer's own tables (renderer/upload/bsdf_table.cpp) in code and resolution.
 """
@@ -28,7 +28,7 @@ def schlick(cosine):
 
 
 def closure_curve(cosine, ior=CLOSURE_IOR):
-    """How Blender's Principled closure goes from the colour at normal incidence (0) to white (1)."""
+    """Transition of Blender's Principled closure from the colour at normal incidence (0) to white (1)."""
     cosine = np.clip(cosine, 0, 1)
     t = np.sqrt(1 - (1 - cosine * cosine) / ior ** 2)
     p, q = (ior * cosine - t) / (ior * cosine + t), (cosine - ior * t) / (cosine + ior * t)
@@ -77,7 +77,7 @@ def average(values):
 
 
 def exit_term(cosine):
-    """How Principled's diffuse term at roughness 0 goes with either direction, relative to Lambert."""
+    """Dependence of Principled's diffuse term at roughness 0 on either direction, relative to Lambert."""
     return 1 - 0.5 * schlick(cosine)
 
 
@@ -95,7 +95,7 @@ def fit_positive(columns, wanted):
 
 
 def coat(f0, f90):
-    """What a coat lets through, 1 - E: (ROUGH, MU), for one channel; and weights (ROUGH, 2) of 1 and exit_term
+    """Transmittance of a coat, 1 - E: (ROUGH, MU), for one channel; and weights (ROUGH, 2) of 1 and exit_term
     that sum, as functions of the other direction's cosine, to (1 - E) / (1 - E_avg); and E over the albedo of Blender's
     plain GGX closure of the same colour (ROUGH, MU)."""
     t = lobes()
@@ -110,7 +110,7 @@ def coat(f0, f90):
     basis = np.stack([np.ones_like(x), exit_term(x * x)], 1)
     at = np.sqrt(cosines())
     fit = np.array([fit_positive(basis * weight[:, None], np.interp(x, at, row) * weight) for row in relative])
-    # Exact in the average, so that energy is right whatever the fit misses.
+    # Exact on average, so the energy is right despite the error of the fit.
     means = np.trapz(4 * x[:, None] ** 3 * basis, x, axis=0)
     closure = f90 * (t[:, :, 4] + f0 / f90 * (t[:, :, 3] - t[:, :, 4]))
     return through, fit / (fit @ means)[:, None], (1 - through) / closure

@@ -41,19 +41,19 @@ def arguments():
 
 
 class Racer:
-    """A renderer: its references, and pictures with as many samples as one asks for."""
+    """A renderer: its references, and pictures with a given number of samples."""
 
     def __init__(self, job, name):
         self.job, self.name, self.references = job, name, []
 
     def render(self, samples, seeds, settings=()):
-        """Renders a picture a seed; what making the first took [s]."""
+        """Renders a picture per seed; returns the render time of the first [s]."""
         if self.name == "cycles":
             return self.job.cycles(seeds, samples)["render_s"]
         return [self.job.lucerna(seed, samples, settings)["render_s"] for seed in seeds][0]
 
     def run(self, samples, seed):
-        """The error of a picture, and what making it took [s]."""
+        """The error of a picture, and its render time [s]."""
         seconds = self.render(samples, [seed], self.job.a.set)
         return relative_mse(exr.rgb(self.job.path(self.name, samples, seed)), *self.references), seconds
 
@@ -66,13 +66,13 @@ class Racer:
         self.references = [exr.rgb(path) for path in paths.values()]
 
     def samples_for(self, error):
-        """Samples that reach it, with the pilots as (samples, error, seconds)."""
+        """Samples that reach the error, with the pilots as (samples, error, seconds)."""
         samples, pilots = self.job.a.samples, []
         for _ in range(8):
             found, seconds = self.run(samples, 1)
             pilots.append((samples, found, seconds))
             print(f"  {self.name}: {samples} samples, error {found:.6f}, {seconds:.2f} s", file=sys.stderr, flush=True)
-            # By 1 / samples. What more samples do not mend (a cache's own error) would call for ever more.
+            # Scales with 1 / samples. An error that more samples do not reduce (a cache's) would need more and more.
             if 0.9 * error < found <= error or (found <= error and samples == 1):
                 break
             more = max(1, math.ceil(samples * found / error * 1.02))

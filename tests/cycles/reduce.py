@@ -1,4 +1,4 @@
-"""Copies of a scene with features taken out, to find which one two renderers disagree about.
+"""Copies of a scene without some features, to find the one on which two renderers disagree.
 
   normals    normal maps                      coats      the specular lobe of dielectrics (specularFactor 0)
   metals     metals become Lambertian         glass      transmission: left out, with its volume

@@ -1,6 +1,6 @@
 // links: session
-// Direct light of a disk and of a sphere on a Lambertian floor against the closed forms (furnace-disk and
-// furnace-sphere: orthographic, 8 m x 8 m about the axis, seen along the floor's normal).
+// Direct light of a disk and of a sphere on a Lambertian floor compared with the closed forms (furnace-disk
+// and furnace-sphere: orthographic, 8 m x 8 m around the axis, seen along the floor's normal).
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -14,12 +14,12 @@ template <class Expected>
 void check_floor(const std::string& scene, const Expected& radiance) {
   const uint32_t size = 64;
   const test::Result r = test::render({.scene = scene, .width = size, .height = size, .samples = 64});
-  // Rings of equal distance: their mean against the mean of the closed form over the same pixels.
+  // Rings of equal distance: their mean compared with the mean of the closed form over the same pixels.
   double seen[8] = {}, expected[8] = {}, squares[8] = {};
   for (uint32_t y = 0; y < size; ++y)
     for (uint32_t x = 0; x < size; ++x) {
       const size_t i = size_t(y) * size + x;
-      // The light itself is not part of the comparison: only pixels whose feature is the floor.
+      // The light itself is excluded: only pixels whose feature is the floor count.
       if (std::abs(r.image.albedo[i].x - 0.5f) > 1e-3f) continue;
       const double u = (x + 0.5) / size * 8 - 4, v = (y + 0.5) / size * 8 - 4, d = std::sqrt(u * u + v * v);
       const int ring = std::min(7, int(d / 0.5));

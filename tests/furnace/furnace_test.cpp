@@ -1,7 +1,7 @@
 // links: session
-// White furnaces through the whole program: surfaces of albedo 1 under (or inside) radiance 1 must disappear,
-// for every roughness and lobe. Blocks of 10x10 pixels; the bound is 1 % plus four standard errors of the
-// block, taken from the two independent halves of the film.
+// White furnaces through the whole renderer: surfaces of albedo 1 under (or inside) radiance 1 must
+// disappear, for every roughness and lobe. Blocks of 10x10 pixels; the bound is 1 % plus four standard errors
+// of the block, from the two independent halves of the film.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -13,7 +13,7 @@ namespace {
 
 void check_is_one(const std::string& scene, uint32_t samples) {
   const test::Result r = test::render({.scene = scene, .width = 200, .height = 160, .samples = samples});
-  // Few samples, so that the validation layers look on.
+  // Few samples with the validation layers.
   CHECK(test::render({.scene = scene, .width = 200, .height = 160, .samples = 1}).validation_messages == 0);
   CHECK(r.stats.dropped == 0);
   double total = 0;

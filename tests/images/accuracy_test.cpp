@@ -1,6 +1,6 @@
 // links: session
-// What a render tells of itself: whose time it counts, that nothing is said before there are samples, and
-// what a sample takes.
+// What a render reports about itself: which time it counts, that it reports no error before the first sample,
+// and the time per sample.
 #include <catch2/catch.hpp>
 #include <chrono>
 #include <thread>
@@ -38,14 +38,15 @@ struct Bed : test::CacheRenderer {
 
 }  // namespace
 
-TEST_CASE("while a cache is built nothing is told of accuracy, however often its progress is shown") {
+TEST_CASE("no accuracy is reported while a cache is built, however often progress is published") {
   Bed bed(true);
   session::AccuracyKeeper keeper;
   const double pixels = 24 * 24;
   int shown = 0;
   while (!test::cache(bed.r)->ready()) {
     REQUIRE(bed.r.step());
-    // Drafts, as a person sees them while records are made: each is a sixteenth of a sample, or a quarter.
+    // Preview samples, as the window draws them while records are built: each is a sixteenth or a quarter of
+    // a sample.
     shown += bed.r.draw_draft();
     keeper.follow(bed.r, 1);
     const auto reported = keeper.publish(bed.r, true);
@@ -55,7 +56,7 @@ TEST_CASE("while a cache is built nothing is told of accuracy, however often its
   }
   REQUIRE(shown > 4);
   CHECK(bed.r.stats().paths == 0);
-  // In the middle of the first pass over the picture there is no error either, and no crossing.
+  // During the first pass over the picture there is no error and no crossing either.
   bed.set({{"path.batch", "1024"}});
   while (bed.r.step()) {
     keeper.follow(bed.r, 1);
@@ -77,7 +78,7 @@ TEST_CASE("while a cache is built nothing is told of accuracy, however often its
   CHECK(double(bed.r.stats().paths) == 16 * pixels);
 }
 
-TEST_CASE("a sample's time leaves out what was prepared before the first") {
+TEST_CASE("the time per sample excludes preparation before the first sample") {
   Bed bed;
   while (!test::cache(bed.r)->ready()) bed.r.step();
   const double building = total_ms(bed.r.stats());
@@ -89,28 +90,28 @@ TEST_CASE("a sample's time leaves out what was prepared before the first") {
   double each = 0, passes = 0;
   for (const double ms : bed.r.component_ms_a_sample()) each += ms;
   CHECK(16 * each == Approx(total_ms(bed.r.stats()) - building).epsilon(1e-6));
-  // So do the passes that are drawn.
+  // The times of the passes exclude it too.
   for (const session::PassStatus& pass : keeper.publish(bed.r, true)->passes)
     for (const float ms : pass.stage_ms) passes += double{ms};
   CHECK(passes == Approx(16 * each).epsilon(1e-4));
 }
 
-TEST_CASE("the clock is the person's: what happens between steps counts, waiting does not") {
+TEST_CASE("the session clock counts the time between steps and stops while rendering is paused") {
   session::Renderer r(test::renderer_options(true));
   r.set_size(16, 16);
   r.set_scene(std::make_shared<scene::Scene>(test::block_room(true)));
   test::set(r, {{"samples", "8"}});
   sleep_ms(20);
-  CHECK(r.seconds() == 0);  // nobody has asked for a picture yet
+  CHECK(r.seconds() == 0);  // no picture has been requested yet
   int steps = 0;
   while (r.samples() < 4) {
     REQUIRE(r.step());
-    sleep_ms(20);  // somebody looks
+    sleep_ms(20);  // the user looks at the picture
     ++steps;
   }
   const double looked = 0.02 * steps;
   CHECK(r.seconds() >= r.render_seconds() + looked);
-  // The ledger's line was written before the last look.
+  // The ledger entry was written before the last read of the clock.
   const stats::Entry& line = r.ledger().entries().back();
   CHECK(line.wall_s >= line.render_s + looked - 0.02);
   CHECK(line.wall_s <= r.seconds());
@@ -121,7 +122,7 @@ TEST_CASE("the clock is the person's: what happens between steps counts, waiting
   while (r.step()) {
   }
   r.finish_ledger();
-  // Finished, it stands still.
+  // Once the picture is finished the clock stands still.
   const double all = r.seconds();
   CHECK(all > paused);
   sleep_ms(20);
@@ -133,12 +134,12 @@ TEST_CASE("the clock is the person's: what happens between steps counts, waiting
   CHECK(r.device().validation_messages() == 0);
 }
 
-TEST_CASE("a session tells one clock everywhere, and it stands still while rendering is paused") {
+TEST_CASE("every report of a session uses one clock, which stands still while rendering is paused") {
   session::Session s({.device = test::device_name(), .validation = false, .shaders = {}});
   const auto wait = [&](const auto& until) {
     for (int i = 0; i < 6000; ++i, sleep_ms(5))
       if (const auto at = s.snapshot(); at && until(*at)) return at;
-    FAIL("the session does not come to it");
+    FAIL("the session does not reach the expected state");
     return s.snapshot();
   };
   s.set_size(16, 16);
@@ -148,7 +149,7 @@ TEST_CASE("a session tells one clock everywhere, and it stands still while rende
   s.set_paused(true);
   const auto before = wait([&](const session::Snapshot& at) { return at.paused && at.commands >= 4; });
   sleep_ms(50);
-  s.set("overlay.tiles", "true");  // it is shown anew
+  s.set("overlay.tiles", "true");  // the picture is shown again
   const auto after = wait([&](const session::Snapshot& at) { return at.commands >= 5; });
   CHECK(after->seconds == before->seconds);
   CHECK(after->seconds > 0);

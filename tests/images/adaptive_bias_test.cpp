@@ -1,10 +1,10 @@
 // links: session
-// Stopping must not bias: whether a tile goes on depends on the samples that it already has, and those decide
-// its mean.
+// Adaptive stopping must not bias the mean: whether a tile continues depends on the samples it already has,
+// and these samples also determine its mean.
 //
-// E[adaptive - uniform] is measured over many seeds, where uniform is the first min_samples of the very same
-// samples, from which adaptive sampling then goes on, and so without bias: all that both have in common
-// cancels, and what is left is zero in every tile that stopped at once.
+// The test measures E[adaptive - uniform] over many seeds. The uniform picture is the first min_samples of
+// the same samples, which adaptive sampling then continues, so it is unbiased. Everything that both have in
+// common cancels; the difference is zero in every tile that stopped at the minimum.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -16,7 +16,7 @@ namespace {
 
 struct Bias {
   double value[5] = {}, deviation[5] = {};  // of the sum and the components, relative to the sum's mean
-  double stopped = 0;                       // share of tiles that got no more than the minimum
+  double stopped = 0;                       // share of tiles that stopped at the minimum
 };
 
 Bias measure(const std::string& scene, uint32_t width, uint32_t height, double target, uint32_t seeds) {
@@ -71,9 +71,9 @@ TEST_CASE("adaptive sampling does not shift the mean") {
   struct Case {
     const char* scene;
     uint32_t width, height;
-    double target;  // loose: about half of the tiles stop with the minimum
+    double target;  // loose: about half of the tiles stop at the minimum
     uint32_t seeds;
-    bool claimed;  // the bound of 0.2 % holds; else the figures are only printed
+    bool claimed;  // the bound of 0.2 % is checked; otherwise the figures are only printed
   };
   const char* more = std::getenv("LUCERNA_CALIBRATION");
   const uint32_t k = more ? uint32_t(std::atoi(more)) : 1;
@@ -91,6 +91,6 @@ TEST_CASE("adaptive sampling does not shift the mean") {
     CHECK(b.stopped < 0.85);
     if (!c.claimed) continue;
     CHECK(std::abs(b.value[0]) < 0.002);
-    CHECK(b.deviation[0] < 0.001);  // or the line above would say nothing
+    CHECK(b.deviation[0] < 0.001);  // otherwise the check above proves nothing
   }
 }

@@ -1,7 +1,7 @@
 // links: session
-// Where a record's light is not its neighbours': beside cracks that single rays of its hemisphere meet a
-// millimetre away, and under a panel that hangs below a ceiling. The picture is the path tracer's within a
-// stated error, which a cache that takes these places for any others exceeds.
+// Places where a record's light differs from its neighbours': beside cracks that single rays of its
+// hemisphere hit a millimetre away, and under a panel that hangs below a ceiling. The picture agrees with
+// path tracing within a stated error, which a cache that ignores these places exceeds.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -17,16 +17,16 @@ namespace {
 
 constexpr uint32_t k_size = 64;
 
-/// Records of little noise that serve `min_radius` pixels at least: wide enough that what they get wrong is
-/// seen. Everywhere: paths that gather along edges would get it right.
+/// Records of low noise that cover at least `min_radius` pixels: wide enough that interpolation errors show.
+/// Records are used everywhere, because gathering along edges would hide the error.
 Settings settings(const char* min_radius, const char* first_rays) {
   return {{"components.secondary", "cache"}, {"components.tertiary", "cache"}, {"cache.noise", "0.02"},
           {"cache.gather", "false"},         {"cache.min_radius", min_radius}, {"cache.rays", first_rays}};
 }
 
-/// What three quarters of the blocks of 4x4 pixels from `lo` up to `hi`, across and down, are off by at most:
-/// of their secondary and tertiary light together, over the mean of it. A few blocks do not decide: a record
-/// on the very edge of a crack has less light, rightly, and serves the pixels around it all the same.
+/// The upper quartile, over the blocks of 4x4 pixels from `lo` up to `hi` in both directions, of the error of
+/// secondary plus tertiary light, relative to their mean. A few blocks do not decide: a record exactly on the
+/// edge of a crack correctly has less light, and still covers the pixels around it.
 double upper_quartile(const Result& path, const Result& cached, uint32_t lo, uint32_t hi) {
   std::vector<double> off;
   double mean = 0;
@@ -48,13 +48,13 @@ double upper_quartile(const Result& path, const Result& cached, uint32_t lo, uin
 
 }  // namespace
 
-// Tolerances lie midway, by ratio, between what is measured with the records as they are and with each repair
-// taken out, of which each case tells the range over several seeds. The noise of a block's path-traced light,
-// 1 to 2 % of the mean, is in all these figures; a quartile of so many blocks spreads by a tenth of that.
+// Each tolerance lies halfway, by ratio, between the error of the records as they are and the error with one
+// repair removed; each case states both ranges over several seeds. All figures contain the noise of a block's
+// path-traced light, 1 to 2 % of the mean; the quartile of so many blocks spreads by a tenth of that.
 
-TEST_CASE("a ray that meets a crack does not tilt the light of all that its record serves") {
-  // A floor of slabs with black ridges of a millimetre and a half between them, every 20 cm both ways: from
-  // above nobody sees them, but of a record's rays one or two meet one, millimetres away.
+TEST_CASE("a ray that hits a crack does not tilt the gradient of its whole record") {
+  // A floor of slabs with black ridges of 1.5 mm between them, every 20 cm in both directions: invisible from
+  // above, but one or two of a record's rays hit one, millimetres away.
   test::PanelRoom room;
   room.s.materials.push_back(test::diffuse(vec3(0)));
   room.s.materials[2].double_sided = true;
@@ -71,8 +71,8 @@ TEST_CASE("a ray that meets a crack does not tilt the light of all that its reco
 }
 
 TEST_CASE("a panel three centimetres below a ceiling keeps its own light") {
-  // A bulb in a square shade that is open below. Its top, the panel, faces down as the ceiling above does,
-  // and has twenty times its light.
+  // A bulb in a square shade that is open below. The top of the shade, the panel, faces down like the ceiling
+  // above it and receives twenty times the light.
   scene::Scene s;
   s.name = s.file = "shade";
   s.materials = {test::diffuse(vec3(0.7f))};
@@ -83,7 +83,7 @@ TEST_CASE("a panel three centimetres below a ceiling keeps its own light") {
   test::add_quad(s, o, x, z);
   for (const auto& [a, u] : {std::pair{o, x}, {o + z, x}, {o, z}, {o + x, z}}) test::add_quad(s, a, u, down);
   s.lights.push_back({.name = "bulb", .intensity = vec3(1), .position = {0, 0.83f, 0}});
-  // From the floor's middle up; the panel fills the middle half of the picture.
+  // The camera looks up from the middle of the floor; the panel fills the middle half of the picture.
   scene::Camera camera;
   camera.yfov = 0.8f;
   camera.to_world = mat4(vec4(1, 0, 0, 0), vec4(0, 0, 1, 0), vec4(0, -1, 0, 0), vec4(0, 0.02f, 0, 1));
@@ -92,7 +92,7 @@ TEST_CASE("a panel three centimetres below a ceiling keeps its own light") {
                cached = test::render(s, settings("10", "256"), 16, k_size);
   const double off = upper_quartile(path, cached, 16, 48);
   INFO("off by " << off);
-  // 0.049 to 0.057; served by records of the ceiling and the other way round 0.12 to 0.19, by the ceiling's
-  // alone more.
+  // 0.049 to 0.057; 0.12 to 0.19 if ceiling and panel share records, more if the panel reads the ceiling's
+  // records only.
   CHECK(off < 0.085);
 }

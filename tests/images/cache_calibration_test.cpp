@@ -1,7 +1,7 @@
 // links: session
-// Is what is told of a cached picture's error its true error? Pictures of many seeds, each with records of
-// its own, are held against a path-traced one: a tile's interval of 90 %, of the paths' noise, the records'
-// and interpolation's part together, must hold the truth in 85 to 95 of 100 tiles.
+// Calibration of the error estimate of cached pictures: pictures of many seeds, each with its own records,
+// are compared with a path-traced reference. The 90 % interval of a tile, which combines path noise, record
+// noise and interpolation error, must contain the reference in 85 to 95 of 100 tiles.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
@@ -21,7 +21,7 @@ struct Case {
 };
 
 struct Figures {
-  size_t asked = 0, by_paths = 0, by_noise = 0, by_sum = 0;
+  size_t tested = 0, by_paths = 0, by_noise = 0, by_sum = 0;
   double estimated_paths = 0, estimated_records = 0, estimated_interpolation = 0, estimated = 0, truth = 0;
 };
 
@@ -33,7 +33,8 @@ Figures measure(const Case& c) {
   settings["sampling.tile"] = "8", settings["cache.max_records"] = test::k_room;
   settings = test::dense_records(std::move(settings));
   settings["components.secondary"] = settings["components.tertiary"] = "path";
-  // What is not cached would hide the records' part under its noise, which has a calibration of its own.
+  // Components without a cache would hide the records' error under their noise, which has its own calibration
+  // test.
   settings["components.primary"] = settings["components.caustic"] = "off";
   settings["seed"] = "4096";
   settings["samples"] = std::to_string(c.reference);
@@ -62,7 +63,7 @@ Figures measure(const Case& c) {
       if (a.heavy_tailed) continue;
       a = test::with_noise_of(a, r);
       const double off = std::abs(a.luminance - r.luminance);
-      ++f.asked;
+      ++f.tested;
       f.by_paths += off <= film::student_90(a.degrees) * a.standard_error;
       f.by_sum += off <= a.half_width_90();
       a.records.interpolation = 0;
@@ -74,8 +75,8 @@ Figures measure(const Case& c) {
 
 }  // namespace
 
-TEST_CASE("the error told of a cached picture is the true one") {
-  // All scenes, or one by its name: minutes. Without, the one that is soonest done.
+TEST_CASE("the estimated error of a cached picture is its true error") {
+  // LUCERNA_CALIBRATION selects all scenes or one by name, which takes minutes. Default: the fastest one.
   const char* const wanted = std::getenv("LUCERNA_CALIBRATION");
   const std::string only = wanted ? wanted : "cornell";
   for (const Case& c : {Case{"cornell", 48, 48, 32, 6, 1024}, Case{"teapot", 48, 40, 32, 6, 4096},
@@ -84,14 +85,15 @@ TEST_CASE("the error told of a cached picture is the true one") {
     if (only != "all" && only != c.scene) continue;
     const Figures f = measure(c);
     std::printf(
-        "%-9s covered: paths %.1f %%, with records %.1f %%, sum %.1f %% of %zu tiles; rms told %.4f (paths "
+        "%-9s covered: paths %.1f %%, with records %.1f %%, sum %.1f %% of %zu tiles; rms estimated %.4f "
+        "(paths "
         "%.4f, records %.4f, interpolation %.4f), true %.4f\n",
-        c.scene, 100. * f.by_paths / f.asked, 100. * f.by_noise / f.asked, 100. * f.by_sum / f.asked, f.asked,
-        f.estimated / c.shots, f.estimated_paths / c.shots, f.estimated_records / c.shots,
+        c.scene, 100. * f.by_paths / f.tested, 100. * f.by_noise / f.tested, 100. * f.by_sum / f.tested,
+        f.tested, f.estimated / c.shots, f.estimated_paths / c.shots, f.estimated_records / c.shots,
         f.estimated_interpolation / c.shots, f.truth / c.shots);
     INFO(c.scene);
-    // 85 to 95 %, and two standard errors of as many independent tiles.
-    const double tiles = double(f.asked), chance = 2 * std::sqrt(0.9 * 0.1 * tiles);
+    // 85 to 95 %, plus two standard errors for this number of independent tiles.
+    const double tiles = double(f.tested), chance = 2 * std::sqrt(0.9 * 0.1 * tiles);
     CHECK(std::abs(double(f.by_sum) - 0.9 * tiles) < 0.05 * tiles + chance);
     CHECK(f.estimated > 0.8 * f.truth);
     CHECK(f.estimated < 1.25 * f.truth);
@@ -101,7 +103,7 @@ TEST_CASE("the error told of a cached picture is the true one") {
 
 namespace {
 
-/// A small cached picture, without what is not cached.
+/// A small cached picture that shows cached components only.
 void make_small(session::Renderer& renderer, const test::Settings& more) {
   renderer.settings().set("path.batch", more.contains("path.batch") ? more.at("path.batch") : "131072");
   renderer.set_size(40, 32);
@@ -119,15 +121,15 @@ void make_small(session::Renderer& renderer, const test::Settings& more) {
 }  // namespace
 
 TEST_CASE(
-    "what is told of records is the same however the work is cut or interrupted, and leaves the picture "
-    "alone") {
+    "the records' error estimate does not depend on work items or interruptions, and does not change the "
+    "picture") {
   session::Renderer one(test::renderer_options()), other(test::renderer_options());
   make_small(one, {});
   make_small(other, {{"path.batch", "4096"}});
   const film::Image image = test::finish(one);
-  int asked = 0, refused = 0;
+  int calls = 0, refused = 0;
   while (!other.done())
-    if (!other.step([&] { return ++asked % 149 == 0; })) REQUIRE(++refused < 10000);
+    if (!other.step([&] { return ++calls % 149 == 0; })) REQUIRE(++refused < 10000);
   CHECK(refused > 0);
   CHECK(test::identical(image, other.image()));
   REQUIRE(one.film().record_errors_complete());
@@ -142,12 +144,12 @@ TEST_CASE(
   CHECK(ea.relative_sum() > ea.relative(0));
   CHECK(one.device().validation_messages() == 0);
   CHECK(other.device().validation_messages() == 0);
-  // Another view is told of anew.
+  // The estimate starts again for another view.
   other.set_size(32, 32);
   CHECK_FALSE(other.film().record_errors_complete());
   test::finish(other);
   CHECK(other.film().record_errors_complete());
-  // Where nothing is read nothing is told.
+  // Without cached components no record error is reported.
   test::set(one, {{"components.secondary", "path"}, {"components.tertiary", "path"}});
   test::finish(one);
   const film::ImageError plain = one.image_error();
@@ -155,7 +157,7 @@ TEST_CASE(
   CHECK(plain.relative_sum() == plain.relative(0));
 }
 
-TEST_CASE("a target that records keep tiles over is not said to be reached, and costs no further samples") {
+TEST_CASE("a target that record errors prevent is not reported as reached and costs no further samples") {
   session::Renderer r(test::renderer_options());
   constexpr double k_target = 0.01;
   make_small(r, {{"cache.gather", "false"},
@@ -177,7 +179,7 @@ TEST_CASE("a target that records keep tiles over is not said to be reached, and 
   }
   CHECK(limited > 0);
   CHECK(r.ledger().entries().back().floor() > 0);
-  // The records' part falls with their noise, as more rays take it away.
+  // The records' error falls with their noise as the number of rays grows.
   const double before = r.image_error().records_rms;
   test::set(r, {{"cache.rays", "1024"}, {"cache.noise", "0.01"}});
   test::finish(r);

@@ -1,5 +1,5 @@
 // links: session
-// How far records reach beside what is near, and how passes look for the gaps that they leave.
+// How far records reach near surfaces, and how passes find the gaps between records.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,7 +14,7 @@ using namespace lucerna;
 
 namespace {
 
-/// Whether a record would serve there, where the least radius is 0.
+/// True if the record would cover that place with a minimum radius of 0.
 bool serves(const irradiance_cache::Record& record, const irradiance_cache::Place& at) {
   const vec3 away = at.position - record.place.position;
   return test::far_of(record, at.position) < 1 &&
@@ -25,9 +25,10 @@ bool serves(const irradiance_cache::Record& record, const irradiance_cache::Plac
 
 }  // namespace
 
-// For every record, and every other that it would serve: what the rays of any level of that one have met is
-// no farther from it than the triangle inequality says.
-TEST_CASE("records reach no farther than a share of what is nearest to them or to one that they serve") {
+// For every record and every other record that it covers: by the triangle inequality, no ray of any level of
+// the other record has hit a surface farther than allowed.
+TEST_CASE(
+    "records reach no farther than a share of the nearest distance seen by them or by a record they cover") {
   const scene::Scene room = test::block_room();
   const auto records = [&](const char* nearest, const char* metric) {
     test::CacheRenderer shown(room, 24, false);
@@ -62,7 +63,7 @@ TEST_CASE("records reach no farther than a share of what is nearest to them or t
       INFO(metric << ", share " << share << ": of " << all.size() << " records " << bounded << " bounded, "
                   << beyond << " beyond");
       CHECK(beyond == 0);
-      // Ellipses are bounded by their own rays together with what they bend by.
+      // Ellipses are limited by their own rays and by the bend of the irradiance.
       CHECK((metric == std::string("hessian") || bounded > int(all.size()) / 4));
       CHECK(double(all.size()) > 1.5 * double(count));
       count = all.size();
@@ -70,7 +71,7 @@ TEST_CASE("records reach no farther than a share of what is nearest to them or t
   }
 }
 
-TEST_CASE("passes that find few gaps along one path a pixel look along more") {
+TEST_CASE("passes that find few gaps with one path per pixel trace more paths per pixel") {
   constexpr uint32_t k_side = 32;
   test::CacheRenderer shown(test::block_room(), k_side);
   shown.set(test::k_cached);
@@ -85,10 +86,10 @@ TEST_CASE("passes that find few gaps along one path a pixel look along more") {
   for (size_t k = 0; k < 8 && k < passes.size(); ++k) {
     const auto looks = double(passes[k].paths) / (k_side * k_side);
     const double most = k < 3 ? 1 : std::min(16.0, double(2 << (k - 3)));
-    INFO("pass " << k << ": " << passes[k].uncovered << " asked, along " << looks << " paths a pixel");
+    INFO("pass " << k << ": " << passes[k].uncovered << " gaps, with " << looks << " paths per pixel");
     CHECK(looks >= 1);
     CHECK(looks <= most);
-    // No more than are needed, and no fewer while they are allowed.
+    // No more paths than needed, and no fewer while more are allowed.
     CHECK((looks == most || double(passes[k].uncovered) >= 0.1 * k_side * k_side));
     CHECK((looks == 1 || double(passes[k].uncovered) < 0.25 * k_side * k_side));
   }

@@ -1,6 +1,6 @@
 // links: session
-// Pictures in which records hold the sky's light (cache.environment) against path-traced ones, each component
-// for itself: no light is lost or counted twice, whatever lobes and emitters meet.
+// Pictures in which records store environment light (cache.environment), compared with path-traced ones for
+// each component: no light is lost or counted twice, for all combinations of lobes and emitters.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -18,16 +18,16 @@ const Settings k_sky{
     {"cache.error", "0.15"},           {"cache.noise", "0.1"},           {"cache.max_rays", "1024"}};
 
 struct Room {
-  bool sun = false;     ///< a patch of 2x2 texels of the sky is a thousand times brighter
-  bool patch = false;   ///< the sky is dark but for a part that the window sees
+  bool sun = false;     ///< a patch of 2x2 texels of the environment is a thousand times brighter
+  bool patch = false;   ///< the environment is dark except for a part visible through the window
   bool glossy = false;  ///< the floor has a rough coat
   bool mirror = false;  ///< on the back wall
   bool pane = false;    ///< in the window
   bool lamp = false;    ///< a panel under the ceiling
 };
 
-/// A room of 3 x 2.5 x 3 m with a window of 1.4 x 1.2 m in its right wall; the camera looks at back wall,
-/// floor and window.
+/// A room of 3 x 2.5 x 3 m with a window of 1.4 x 1.2 m in its right wall; the camera sees the back wall, the
+/// floor and the window.
 scene::Scene make_room(const Room& room) {
   scene::Scene s;
   s.name = "room", s.file = "room.gltf";
@@ -84,10 +84,10 @@ Result render(const scene::Scene& scene, const Settings& settings, uint32_t samp
   return test::render(scene, settings, samples, size);
 }
 
-/// The means of every component agree: two-sided at 1e-4 a figure (3.9 standard errors, from the films'
-/// halves), beside 2 % of the component, which records may be off by; and the standard error is less than
-/// 1 % of the picture, so that a lost or doubled word shows. The primary component likewise in each of 16
-/// parts of the picture, within 5 %.
+/// The means of every component agree: two-sided at 1e-4 for each figure (3.9 standard errors, from the
+/// films' halves) plus 2 % of the component for record errors. The standard error is less than 1 % of the
+/// picture, so a component that is lost or counted twice fails. The primary component must also agree in each
+/// of 16 parts of the picture, within 5 %.
 void compare(const Result& path, const Result& cached) {
   double whole = 0;
   for (const auto& c : path.image.components) whole += mean(c);
@@ -108,7 +108,7 @@ void compare(const Result& path, const Result& cached) {
   }
 }
 
-/// Median over the picture of how far the sum is from another's, relative.
+/// Median over the picture of the relative difference of the sums.
 double median_difference(const Result& a, const Result& b) {
   std::vector<double> all;
   for (size_t i = 0; i < a.image.samples.size(); ++i) {
@@ -121,37 +121,37 @@ double median_difference(const Result& a, const Result& b) {
 
 }  // namespace
 
-TEST_CASE("a room under an even sky") {
+TEST_CASE("a room under an even environment") {
   const scene::Scene room = make_room({});
   const Result path = render(room, {}, 256), cached = render(room, k_sky, 16);
   compare(path, cached);
-  // It is quiet, and says that it may be off.
+  // The picture has little noise, and reports that it may be biased.
   CHECK(median_difference(cached, path) < 0.5 * median_difference(render(room, {}, 16), path));
   CHECK_FALSE(cached.bias_known[0]);
   CHECK_FALSE(cached.bias_known[1]);
   CHECK(cached.bias_known[3]);
-  // What no record serves takes the sky's light from its own samples.
+  // Points that no record covers sample the environment themselves.
   Settings few = k_sky;
   few["cache.max_records"] = "40";
   compare(path, render(room, few, 64));
 }
 
-TEST_CASE("a sun in the sky's image is sampled directly, by everything") {
+TEST_CASE("a sun in the environment image is always sampled directly") {
   const scene::Scene room = make_room({.sun = true});
   const Result path = render(room, {}, 256), cached = render(room, k_sky, 64);
   compare(path, cached);
 }
 
-TEST_CASE("a lamp beside the sky") {
+TEST_CASE("a lamp together with an environment") {
   const scene::Scene room = make_room({.lamp = true});
   compare(render(room, {}, 256), render(room, k_sky, 64));
 }
 
-TEST_CASE("glossy lobes beside the diffuse one see the sky themselves, also through a pane") {
+TEST_CASE("glossy lobes beside the diffuse one sample the environment themselves, also through a pane") {
   const scene::Scene room = make_room({.patch = true, .glossy = true, .pane = true});
   const Result path = render(room, {}, 512);
   compare(path, render(room, k_sky, 256));
-  // At the second diffuse vertex the sky's light is secondary.
+  // At the second diffuse vertex environment light is secondary.
   Settings second = k_sky;
   second["components.secondary"] = "path";
   const Result tertiary = render(room, second, 64);
@@ -160,12 +160,12 @@ TEST_CASE("glossy lobes beside the diffuse one see the sky themselves, also thro
   CHECK_FALSE(tertiary.bias_known[1]);
 }
 
-TEST_CASE("a mirror shows the sky and what it lights") {
+TEST_CASE("a mirror shows the environment and the surfaces it lights") {
   const scene::Scene room = make_room({.mirror = true});
   compare(render(room, {}, 256), render(room, k_sky, 32));
 }
 
-TEST_CASE("under a constant environment a cached picture is exact at one sample") {
+TEST_CASE("under a constant environment a cached picture is exact after one sample") {
   scene::Scene plane;
   plane.name = "plane", plane.file = "plane.gltf";
   plane.materials = {test::diffuse({0.5f, 0.25f, 0.125f})};
@@ -175,7 +175,7 @@ TEST_CASE("under a constant environment a cached picture is exact at one sample"
   camera.to_world = glm::inverse(glm::lookAt(vec3(0, 3, 0), vec3(0), vec3(0, 0, 1)));
   plane.cameras = {camera};
   Settings settings = k_sky;
-  // Nothing is near: the greatest radius it is.
+  // No surface is near, so records have the maximum radius.
   settings["cache.rays"] = "64";
   const Result cached = render(plane, settings, 1, 16);
   size_t off = 0;
@@ -189,7 +189,7 @@ TEST_CASE("under a constant environment a cached picture is exact at one sample"
   CHECK(glm::length(sampled.image.components[0][0] - vec3(1, 0.5f, 0.25f)) > 1e-3f);
 }
 
-TEST_CASE("without a sky, or without a cache, cache.environment changes nothing") {
+TEST_CASE("without an environment or without a cache, cache.environment changes nothing") {
   test::Render r{.scene = "cornell", .width = 16, .height = 16, .samples = 2, .settings = k_sky};
   r.settings["cache.passes"] = "1";
   const test::Result on = test::render(r);
@@ -197,12 +197,12 @@ TEST_CASE("without a sky, or without a cache, cache.environment changes nothing"
   const test::Result off = test::render(r);
   for (int c = 0; c < 4; ++c) CHECK(identical(on.image.components[c], off.image.components[c]));
   const scene::Scene room = make_room({.sun = true});
-  const Result plain = render(room, {}, 4), asked = render(room, {{"cache.environment", "true"}}, 4);
-  for (int c = 0; c < 4; ++c) CHECK(identical(plain.image.components[c], asked.image.components[c]));
-  CHECK(asked.bias_known[0]);
+  const Result plain = render(room, {}, 4), with_option = render(room, {{"cache.environment", "true"}}, 4);
+  for (int c = 0; c < 4; ++c) CHECK(identical(plain.image.components[c], with_option.image.components[c]));
+  CHECK(with_option.bias_known[0]);
 }
 
-TEST_CASE("the option can be switched while a scene is shown") {
+TEST_CASE("cache.environment can be switched while a scene is shown") {
   session::Renderer r(test::renderer_options(true));
   r.set_size(16, 16);
   r.set_scene(std::make_shared<scene::Scene>(make_room({.sun = true})));
@@ -213,7 +213,7 @@ TEST_CASE("the option can be switched while a scene is shown") {
   for (const auto& [key, value] : k_sky) r.settings().set(key, value);
   for (const char* key : {"cache.rays", "cache.max_rays"}) r.settings().set(key, "64");
   r.settings().set("cache.passes", "1");
-  r.settings().set("cache.metric", "split-sphere");  // records reach alike in any light
+  r.settings().set("cache.metric", "split-sphere");  // places and radii do not depend on the light
   const film::Image first = finish();
   r.settings().set("cache.environment_threshold", "1000");
   const film::Image no_sun = finish();
@@ -227,7 +227,7 @@ TEST_CASE("the option can be switched while a scene is shown") {
   r.set_environment(3, 0);
   const film::Image again = finish();
   for (int c = 0; c < 4; ++c) CHECK(identical(again.components[c], first.components[c]));
-  // No sky left, and back.
+  // The environment is switched off and on again.
   r.set_environment(0, 0);
   CHECK(mean(finish().components[0]) == 0);
   r.set_environment(3, 0);

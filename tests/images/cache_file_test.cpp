@@ -1,6 +1,6 @@
 // links: session
-// Caches as files, through the renderer: a loaded one shows the picture of the one that was saved, bit for
-// bit; what does not fit is refused, and nothing is lost by that.
+// Cache files through the renderer: a loaded cache gives bit for bit the picture of the saved one. A file
+// that does not fit is refused, and the refusal loses nothing.
 #include <catch2/catch.hpp>
 #include <filesystem>
 
@@ -37,7 +37,7 @@ struct Bed : test::CacheRenderer {
 
 }  // namespace
 
-TEST_CASE("a loaded cache shows the picture of the one that was saved, to the bit, and gathers nothing") {
+TEST_CASE("a loaded cache gives the picture of the saved one, bit for bit, without gathering") {
   const test::Folder folder;
   const fs::path file = folder.path / "a.cache", again = folder.path / "b.cache";
   Bed first;
@@ -59,11 +59,11 @@ TEST_CASE("a loaded cache shows the picture of the one that was saved, to the bi
   CHECK(second.status().rays == status.rays);
   CHECK(second.status().stop == status.stop);
   CHECK(second.r.ledger().entries().back().prepared_rays == 0);
-  // Saved again it is the same file.
+  // Saving it again gives the same file.
   second.r.solver_save("cache", again);
   CHECK(read_file(again) == read_file(file));
 
-  // Over another cache, in the middle of its building: as if that had not been.
+  // Loading replaces a cache that is being built.
   second.set({{"seed", "5"}});
   second.r.step();
   CHECK_FALSE(test::cache(second.r)->ready());
@@ -73,7 +73,7 @@ TEST_CASE("a loaded cache shows the picture of the one that was saved, to the bi
   CHECK(identical(picture, second.finish()));
 }
 
-TEST_CASE("a loaded cache goes on: what another view is missing is added, and all that was saved stays") {
+TEST_CASE("a loaded cache can be extended: another view adds records, and all saved records stay") {
   const test::Folder folder;
   const fs::path file = folder.path / "a.cache";
   Bed first;
@@ -88,7 +88,7 @@ TEST_CASE("a loaded cache goes on: what another view is missing is added, and al
   second.r.choose_camera("above");
   second.r.solver_load("cache", file);
   CHECK_FALSE(test::cache(second.r)->ready());
-  // The same as if the camera had been moved where it was made.
+  // The result equals moving the camera in the session that saved the file.
   CHECK(identical(moved, second.finish()));
   CHECK(test::keeps_places(test::lit(second.records()), test::lit(saved)));
   CHECK(begins_with(test::lit(second.records()).lights, test::lit(saved).lights));
@@ -97,7 +97,7 @@ TEST_CASE("a loaded cache goes on: what another view is missing is added, and al
   CHECK(second.status().rays > rays);
   CHECK(second.status().rays == first.status().rays);
 
-  // What is asked of the building has changed: it looks again. Another seed is no obstacle.
+  // The build settings have changed, so the cache searches for gaps again. Another seed is accepted.
   Bed third;
   for (const Settings& change : {Settings{{"cache.stop", "0"}}, Settings{{"seed", "3"}}}) {
     INFO(change.begin()->first);
@@ -107,7 +107,7 @@ TEST_CASE("a loaded cache goes on: what another view is missing is added, and al
     third.finish();
     CHECK(begins_with(third.records(), saved));
   }
-  // Parts that nothing looks up are left behind.
+  // Components that are not looked up are not loaded.
   third.set({{"components.tertiary", "off"}});
   third.r.solver_load("cache", file);
   CHECK_FALSE(test::cache(third.r)->ready());
@@ -121,20 +121,20 @@ TEST_CASE("a loaded cache goes on: what another view is missing is added, and al
   const film::Image without = third.finish();
   for (size_t i = 0; i < without.samples.size(); ++i) tertiary |= without.components[2][i] != vec3(0);
   CHECK_FALSE(tertiary);
-  // Having looked at the view that it was made for, it has found (nearly) nothing.
+  // A search over the view that the file was built for finds (almost) no gaps.
   Bed looked;
   looked.set({{"cache.stop", "0.0021"}});
   looked.r.solver_load("cache", file);
   CHECK_FALSE(test::cache(looked.r)->ready());
   looked.finish();
   CHECK(looked.records().size() <= saved.size() + saved.size() / 33);
-  // How it is sampled has not changed.
+  // Sampling settings do not invalidate the cache.
   Bed fourth;
   fourth.set({{"sampling.mode", "adaptive"}, {"samples", "9"}, {"film.ev", "2"}});
   fourth.r.solver_load("cache", file);
   CHECK(test::cache(fourth.r)->ready());
 
-  // One that ended for want of room goes on where there is more.
+  // A cache that stopped at its record limit continues with a higher limit.
   Bed narrow;
   narrow.set({{"cache.max_records", "100"}});
   narrow.finish();
@@ -149,7 +149,7 @@ TEST_CASE("a loaded cache goes on: what another view is missing is added, and al
   CHECK(wide.records().size() > 100);
 }
 
-TEST_CASE("what does not fit is refused, and neither picture nor records are lost by it") {
+TEST_CASE("a file that does not fit is refused, and picture and records stay") {
   const test::Folder folder;
   const fs::path file = folder.path / "a.cache", broken = folder.path / "broken.cache";
   Bed first;
@@ -179,15 +179,15 @@ TEST_CASE("what does not fit is refused, and neither picture nor records are los
   CHECK(identical(picture, bed.r.image()));
   CHECK(begins_with(bed.records(), mine));
   CHECK(bed.records().size() == mine.size());
-  // It still is the cache of this view.
+  // The records still belong to this view.
   bed.r.restart();
   CHECK(identical(picture, bed.finish()));
 
-  // Neither is the file there when a new one cannot be written.
+  // A failed save keeps the existing file.
   CHECK_THROWS_WITH(bed.r.solver_save("cache", folder.path / "no" / "a.cache"),
                     Contains("cannot be written"));
 
-  // Tertiary light that was gathered otherwise: its records were read in the place of paths, or the reverse.
+  // Tertiary light was gathered differently: from records instead of paths, or the reverse.
   Bed paths(Settings{{"components.secondary", "cache"}});
   CHECK(paths.refusal(file) ==
         file.string() +
@@ -199,15 +199,15 @@ TEST_CASE("what does not fit is refused, and neither picture nor records are los
   CHECK(paths.refusal(other).empty());
   CHECK_THAT(bed.refusal(other), Contains("was made with") || Contains("were made with"));
   CHECK_THAT(first.refusal(other), Contains("gathered by 'path', here it is by 'cache'"));
-  // Where nothing reads it there is no difference.
+  // Without lookups of tertiary light this makes no difference.
   paths.set({{"components.tertiary", "off"}});
   CHECK(paths.refusal(file).empty());
 
-  // Parts that it does not hold.
+  // The file lacks a component.
   Bed caustic(Settings{{"components.tertiary", "cache"}});
   CHECK_THAT(caustic.refusal(file), Contains("its records hold secondary, tertiary light; the components "
                                              "that are looked up need caustic light too"));
-  // More than there is room for.
+  // The file has more records than the limit.
   const uint32_t count = first.records().size();
   Bed narrow;
   narrow.set({{"cache.max_records", std::to_string(count - 1)}});
@@ -218,7 +218,7 @@ TEST_CASE("what does not fit is refused, and neither picture nor records are los
   CHECK(narrow.refusal(file).empty());
 }
 
-TEST_CASE("a cache is of its scene as it is lit; without one, or before it is built, there is none to save") {
+TEST_CASE("a cache belongs to its scene and lighting; without a built cache there is nothing to save") {
   const test::Folder folder;
   const fs::path file = folder.path / "a.cache";
   session::Renderer empty(test::renderer_options(false));
@@ -233,7 +233,7 @@ TEST_CASE("a cache is of its scene as it is lit; without one, or before it is bu
   bed.r.solver_save("cache", file);
   CHECK(bed.refusal(file).empty());
 
-  // Edits of the light, and taking them back.
+  // Light edits, and their undo.
   scene::Light lamp = bed.r.scene()->lights[0];
   const scene::Light before = lamp;
   lamp.intensity.x = 4;
@@ -260,7 +260,7 @@ TEST_CASE("a cache is of its scene as it is lit; without one, or before it is bu
   CHECK_THROWS_WITH(plain.r.solver_save("cache", file), Contains("no component is computed by 'cache'"));
 }
 
-TEST_CASE("the cache of a scene without diffuse surfaces is saved and loaded like any other") {
+TEST_CASE("the cache of a scene without diffuse surfaces can be saved and loaded") {
   const test::Folder folder;
   const fs::path file = folder.path / "a.cache";
   scene::Scene mirrors = test::block_room();

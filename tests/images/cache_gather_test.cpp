@@ -1,7 +1,7 @@
 // links: session
-// Along edges paths gather light themselves: the picture there is path tracing's without a bias, with less
-// noise where light comes from little of what is seen, and who comes nearer has records where there were
-// none.
+// Paths gather light along edges. The picture there agrees with path tracing without bias and has less noise
+// where the light comes from a small part of the visible scene. Records are added where the camera comes
+// nearer.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr uint32_t k_size = 32;
 
-/// So wide a least radius that all of a small picture lies along edges.
+/// The minimum radius is so large that every pixel of a small picture lies along an edge.
 const Settings k_all_gathered = test::dense_records({{"cache.min_radius", "100"},
                                                      {"cache.max_radius", "1"},
                                                      {"cache.rays", "256"},
@@ -30,7 +30,7 @@ uint32_t crowded(const irradiance_cache::RawRecords& all) {
 }
 
 struct Light {
-  double mean = 0, error = 0;  ///< of a component over the picture, over seeds: its standard error
+  double mean = 0, error = 0;  ///< of a component over the picture, over seeds; and its standard error
   double noise = 0;            ///< of a pixel, over seeds: standard deviation over the mean
 };
 Light light(const std::vector<film::Image>& seeds, int component) {
@@ -56,7 +56,8 @@ Light light(const std::vector<film::Image>& seeds, int component) {
   return l;
 }
 
-/// Pictures of eight seeds by cache and of eight others by paths, and the last cache's records.
+/// Pictures of eight seeds with the cache and of eight others by path tracing, and the records of the last
+/// cache.
 struct Seeds {
   std::vector<film::Image> cached, traced;
   irradiance_cache::RawRecords records;
@@ -75,8 +76,8 @@ Seeds seeds_of(const scene::Scene& room, const Settings& cache, const char* samp
   return {std::move(cached), std::move(traced), by_cache.records()};
 }
 
-/// Whether a component's mean is the same but for 4.2 standard errors and `bias` of it, both known to
-/// `error`.
+/// Checks that a component's means agree within 4.2 standard errors and `bias` of the component, and that the
+/// standard error is at most `error` of it.
 void check_alike(const Seeds& seeds, int component, double bias, double error) {
   const Light a = light(seeds.cached, component), b = light(seeds.traced, component);
   INFO("component " << component << ": " << a.mean << " +- " << a.error << ", path tracing " << b.mean
@@ -88,9 +89,9 @@ void check_alike(const Seeds& seeds, int component, double bias, double error) {
 
 }  // namespace
 
-// Independent seeds, each with a cache of its own. Two components of two rooms: 4.2 standard errors of the
-// difference are significant at 1e-4 for all four.
-TEST_CASE("where all of a picture is gathered by paths it is path tracing's, with less noise") {
+// Independent seeds, each with its own cache. Two components of two rooms: 4.2 standard errors of the
+// difference are significant at 1e-4 for all four together.
+TEST_CASE("a picture gathered by paths alone agrees with path tracing and has less noise") {
   for (const bool environment : {false, true}) {
     INFO((environment ? "with a sky" : "with a lamp alone"));
     const Seeds seeds = seeds_of(test::block_room(environment), k_all_gathered, "64");
@@ -100,10 +101,11 @@ TEST_CASE("where all of a picture is gathered by paths it is path tracing's, wit
   }
 }
 
-// What such a path looks up where it arrives is the light of further vertices; that of lights at this one it
-// has to sample and to meet. Of a sky that is mostly met.
-TEST_CASE("where paths gather and then read records they bring the sky's light too") {
-  // They do along edges, which is half of the picture, but not where their rays arrive.
+// At the point that such a path hits, the lookup gives the light of further vertices; the path itself samples
+// and hits the lights at this vertex, mostly the environment.
+TEST_CASE("paths that gather and then read records include environment light") {
+  // Paths gather along edges, which is half of the picture; at the points that their rays hit records are
+  // read.
   const Seeds seeds =
       seeds_of(test::block_room(true),
                {{"cache.min_radius", "2"}, {"cache.rays", "256"}, {"cache.error", "0.15"}}, "32");
@@ -111,13 +113,13 @@ TEST_CASE("where paths gather and then read records they bring the sky's light t
   INFO(crowded(seeds.records) << " of " << count << " records crowd");
   CHECK(crowded(seeds.records) > count / 4);
   CHECK(crowded(seeds.records) < count * 3 / 4);
-  // With what interpolation is off by.
+  // Tolerance for the interpolation error.
   for (const int c : {1, 2}) check_alike(seeds, c, 0.01, 0.01);
 }
 
-// What else is seen at such a vertex, gloss, direct light and what alpha lets through, is counted once. Eight
-// branches take most of the noise away that does not come of where in a pixel paths fall.
-TEST_CASE("a sample that gathers by several paths is the same picture with less noise") {
+// Gloss, direct light and transmitted light at such a vertex are counted once. Eight branches remove most of
+// the noise except that of the positions of paths in a pixel.
+TEST_CASE("a sample that gathers with several paths gives the same picture with less noise") {
   scene::Scene room = test::block_room(true);
   room.materials[0].specular = 1, room.materials[0].roughness = 0.4f;
   room.materials[1].alpha_mode = scene::AlphaMode::blend, room.materials[1].base_color.w = 0.6f;
@@ -135,16 +137,15 @@ TEST_CASE("a sample that gathers by several paths is the same picture with less 
   CHECK(ratio < 0.6);
 }
 
-TEST_CASE("paths that gather find light that comes from little of the hemisphere") {
-  // A lamp twelve centimetres above the floor: what the ceiling has of the floor comes mostly from a spot in
-  // it.
+TEST_CASE("paths that gather find light from a small part of the hemisphere") {
+  // A lamp twelve centimetres above the floor: the ceiling is lit mostly by a small spot of the floor.
   scene::Scene s;
   s.name = s.file = "spot";
   s.materials = {test::diffuse(vec3(0.6f))};
   s.environment.given = true;
   test::add_box(s, {-1, 0, -1}, {1, 1, 1});
   s.lights.push_back({.name = "lamp", .intensity = vec3(1), .position = {0.4f, 0.12f, 0.4f}});
-  // All that is seen is near the edge of ceiling and wall.
+  // Every visible point is near the edge between ceiling and wall.
   scene::Camera up;
   up.yfov = 0.2f;
   up.to_world = glm::inverse(glm::lookAt(vec3(0, 0.5f, 0), vec3(0, 1, -1), vec3(0, 1, 0)));
@@ -168,7 +169,7 @@ TEST_CASE("paths that gather find light that comes from little of the hemisphere
   CHECK(guided.noise < 0.6 * traced.noise);
 }
 
-TEST_CASE("records hold light where the camera has come near enough") {
+TEST_CASE("records store light once the camera has come near enough") {
   test::CacheRenderer shown(test::block_room(), k_size);
   shown.set(test::k_cached);
   shown.set({{"samples", "1"}});
@@ -181,9 +182,9 @@ TEST_CASE("records hold light where the camera has come near enough") {
   shown.finish();
   const irradiance_cache::RawRecords now = shown.records();
   INFO(far.size() << " records, " << crowded(far) << " crowd; then " << now.size() << ", " << crowded(now));
-  // Those with light stay as they were.
+  // Records that already have light do not change.
   CHECK(test::keeps_places(test::lit(now), test::lit(far)));
-  // Where something is no nearer than the radii are now, nothing crowds that did.
+  // Records with room beyond the present minimum radius are no longer crowded.
   const irradiance_cache::Cache& cache = *test::cache(shown.r);
   int roomy = 0, of_before = 0;
   for (const irradiance_cache::Record& r : cache.records().read()) {
@@ -193,7 +194,7 @@ TEST_CASE("records hold light where the camera has come near enough") {
     roomy += r.lesser_radius > 2.02f * least && r.least_distance > 4.04f * least;
     of_before += r.lesser_radius > 2.02f * least;
   }
-  INFO(of_before << " are of before, " << roomy << " of them with room");
+  INFO(of_before << " are not updated, " << roomy << " of them with room");
   CHECK(roomy == 0);
   CHECK(test::lit(now).size() > test::lit(far).size() + 20);
 }

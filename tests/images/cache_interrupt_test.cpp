@@ -1,7 +1,7 @@
 // links: session
-// Edits that come while an irradiance cache is being built, as somebody makes them who drags a lamp: at every
-// stage of every pass every kind of change, and a long seeded run of all of them. What comes out is the
-// picture of the scene as it is then, and nothing on the way shows what is not there.
+// Edits while an irradiance cache is being built, as when a user drags a lamp: every kind of edit at every
+// stage of every pass, and a long seeded run of all kinds. The final picture is that of the edited scene, and
+// no intermediate picture shows invalid data.
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -13,7 +13,7 @@ using test::Settings;
 
 namespace {
 
-/// Everything over the picture that reads what is being built.
+/// All overlays that read data under construction.
 const Settings k_shown = test::dense_records({{"components.secondary", "cache"},
                                               {"components.tertiary", "cache"},
                                               {"cache.rays", "64"},
@@ -32,8 +32,8 @@ struct Bed {
   session::Renderer r;
   const scene::Scene before = room();
 
-  /// There is a second lamp, something that shines and something that glosses, whatever is edited: so edits
-  /// need no other kernels, but for those that are meant to.
+  /// The room has a second lamp, an emissive and a glossy surface in every state, so edits compile no new
+  /// kernels except the kinds that are meant to.
   static scene::Scene room() {
     scene::Scene s = test::block_room(true);
     s.lights.push_back(s.lights[0]);
@@ -54,7 +54,7 @@ struct Bed {
   }
   ~Bed() { CHECK(r.device().validation_messages() == 0); }
 
-  /// The edits, each with a strength that makes it another one.
+  /// The edits, each with a strength that makes it different.
   static constexpr int k_kinds = 10;
   static const char* name(int kind) {
     constexpr const char* k_names[k_kinds] = {"lamp",     "lamp off", "environment", "colour",  "mirror",
@@ -100,7 +100,7 @@ struct Bed {
     r.set_size(16, 16);
   }
 
-  /// Whoever watches sees a picture and is told of records that are there.
+  /// Reads picture and report as the window does: both are valid.
   void watch() {
     REQUIRE(r.picture(false).size() == size_t{4} * r.film().width() * r.film().height());
     const auto report = test::cache_report(r);
@@ -111,7 +111,7 @@ struct Bed {
       REQUIRE(std::isfinite(record.radius));
   }
 
-  /// Builds to the end and renders; the picture is a picture.
+  /// Builds to the end and renders; all pixels are finite.
   void finish() {
     test::set(r, {{"cache.pause", "off"}});
     const film::Image image = test::finish(r);
@@ -121,7 +121,7 @@ struct Bed {
   }
 };
 
-/// Where building is, so that a failure says where it was interrupted.
+/// The current build stage, to locate a failure.
 std::string where(const session::Renderer& r) {
   const irradiance_cache::CacheStatus& s = test::cache(r)->status();
   return s.last ? irradiance_cache::stage_words(*s.last) : "the beginning";
@@ -142,12 +142,12 @@ void edit_at_random(Bed& bed, int edits, uint32_t seed) {
 
 }  // namespace
 
-TEST_CASE("whatever is changed at whatever stage of the building, it goes on from there") {
+TEST_CASE("an edit at any stage of the build is followed by a valid build") {
   Bed bed;
   session::Renderer& r = bed.r;
   uint32_t interrupted = 0;
   for (int kind = 0; kind < Bed::k_kinds; ++kind) {
-    // As many stages as there are; the last edit finds a finished cache. Kernels take their time.
+    // As many stages as a build has; the last edit finds a finished cache. Kernels take long to compile.
     for (int stages = 1; stages < 40; stages += kind == 9 ? 4 : 1) {
       bed.undo();
       test::set(r, {{"cache.pause", "stage"}, {"cache.noise", "0.03"}});
@@ -169,23 +169,22 @@ TEST_CASE("whatever is changed at whatever stage of the building, it goes on fro
     bed.finish();
     bed.watch();
   }
-  // Two passes of some six stages each, and every kind.
+  // Two passes of about six stages each, for every kind.
   CHECK(interrupted > 9 * Bed::k_kinds);
 }
 
-TEST_CASE("while a cache is built and edited the validation layers have nothing to say") {
+TEST_CASE("no validation errors while a cache is built and edited") {
   Bed bed(true);
   edit_at_random(bed, 40, 8);
   bed.finish();
 }
 
-TEST_CASE("three hundred edits while a cache is built end in the picture of the scene as it is then") {
+TEST_CASE("three hundred edits during a build end in the picture of the edited scene") {
   Bed bed;
   session::Renderer& r = bed.r;
   edit_at_random(bed, 300, 7);
   bed.undo();
-  // The same scene with a cache that has lived through nothing: secondary and tertiary light are its, but for
-  // where records happen to lie.
+  // The same scene with a new cache: secondary and tertiary light agree up to the positions of records.
   test::set(r, {{"cache.rays", "1024"}, {"cache.max_rays", "1024"}, {"samples", "64"}});
   bed.finish();
   const film::Image lived = r.image();
@@ -198,8 +197,7 @@ TEST_CASE("three hundred edits while a cache is built end in the picture of the 
   }
 }
 
-TEST_CASE(
-    "a cache that is told to make do at any time ends at once, and the picture is that of a complete one") {
+TEST_CASE("a cache build can finish early at any time, and the picture is that of a complete one") {
   Bed bed;
   session::Renderer& r = bed.r;
   test::set(r, {{"samples", "64"}});
@@ -229,11 +227,11 @@ TEST_CASE(
     ++(before == 0 ? none : some);
     bed.finish();
     bed.watch();
-    // What is not served is path traced, with the noise of 256 pixels' 64 samples.
+    // Uncovered points are path traced, with the noise of 64 samples of 256 pixels.
     const film::Image image = r.image();
     for (const int c : {0, 1, 2})
       CHECK(test::mean(image.components[c]) == Approx(test::mean(complete.components[c])).epsilon(0.06));
-    // And the next change of the light relights what there is.
+    // The next light edit relights the existing records.
     bed.edit(0, 0);
     bed.watch();
     bed.undo();
@@ -243,8 +241,7 @@ TEST_CASE(
   CHECK(records > 0);
 }
 
-TEST_CASE(
-    "a lamp that is moved while the first pass is under way takes away only what its light has gone into") {
+TEST_CASE("moving a lamp during the first pass discards only the work that used its light") {
   for (const char* metric : {"split-sphere", "hessian"}) {
     Bed bed;
     session::Renderer& r = bed.r;
@@ -259,7 +256,7 @@ TEST_CASE(
         }
         if (stage + 1 < stages) r.solver_command("cache", "step");
       }
-      // And some way into the next one.
+      // Also some steps into the next pass.
       test::set(r, {{"cache.pause", "off"}});
       r.step();
       INFO(metric << ", after " << where(r));

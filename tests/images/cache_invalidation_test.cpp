@@ -1,6 +1,6 @@
 // links: session
-// What a change leaves of an irradiance cache: every row of its table, and that a cache
-// which is relit where it stands is the one that would have been built in that light.
+// What a change invalidates of an irradiance cache: every row of its table. A cache that is relit in place
+// equals a cache built in that light.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -21,7 +21,7 @@ namespace {
 const Settings k_base = test::dense_records({{"components.secondary", "cache"},
                                              {"components.tertiary", "cache"},
                                              {"cache.rays", "64"},
-                                             // Records are placed alike in any light, and reach alike.
+                                             // Positions and radii do not depend on the light.
                                              {"cache.irradiance_weight", "0"},
                                              {"cache.metric", "split-sphere"},
                                              {"cache.max_rays", "256"},
@@ -49,8 +49,8 @@ struct Bed : test::CacheRenderer {
   }
 };
 
-/// Whether the first records of `all` that hold light are those of `some`, light aside, to the bit. Where
-/// others have been added they may serve less far: these know what is nearer.
+/// True if the first lit records of `all` are those of `some` bit for bit, except for their light. Their
+/// radii may shrink where records have been added, which see nearer surfaces.
 bool same_places(const RawRecords& all, const RawRecords& some) {
   if (all.size() == some.size() && !begins_with(all.spheres, some.spheres)) return false;
   return test::keeps_places(test::lit(all), test::lit(some));
@@ -60,7 +60,7 @@ double mean(const film::Image& image, int component) { return test::mean(image.c
 
 }  // namespace
 
-TEST_CASE("every kind of change spoils what its row says, and nothing else") {
+TEST_CASE("every kind of change invalidates what its row says, and nothing else") {
   const test::Folder folder;
   const auto file = folder.path / "base.cache";
   Bed bed({}, true);
@@ -71,7 +71,7 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
   REQUIRE(base.size() > 100);
   REQUIRE(bed.status().stop == StopReason::covered);
 
-  // A change of each kind; for settings, values that differ from k_base and the defaults.
+  // One change of each kind; settings get values that differ from k_base and from the defaults.
   const std::map<Change, std::function<void()>> edits{
       {Change::camera, [&] { bed.r.choose_camera("above"); }},
       {Change::size, [&] { bed.r.set_size(40, 24); }},
@@ -108,12 +108,15 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
       {"preview.", {{"preview.filter", "off"}}},
       {"overlay.", {{"overlay.records", "true"}, {"overlay.overlap", "true"}}},
       {"relight.", {{"relight.enabled", "on"}, {"relight.layers", "true"}}},
+      {"relight.presets", {{"relight.presets", "day = "}}},
+      {"relight.layers", {{"relight.layers", "true"}}},
       {"about", {{"about", "nothing"}}},
       {"camera", {{"camera", "above"}}},
       {"tracer", {{"tracer", "host"}}},
       {"path.batch", {{"path.batch", "4096"}}},
       {"lights.", {{"lights.sampling", "power"}}},
       {"path.classes", {{"path.classes", "off"}}},
+      {"path.", {}},  // no other setting of paths
       {"path.roulette_depth", {{"path.roulette_depth", "7"}}},
       {"path.max_depth", {{"path.max_depth", "5"}}},
       {"seed", {{"seed", "3"}}},
@@ -128,11 +131,12 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
       {"cache.pause", {{"cache.pause", "stage"}}},
       {"cache.", {{"cache.error", "0.4"}}},
   };
-  for (const solvers::ChangeRow& row : irradiance_cache::info().changes) {
+  for (const solvers::ChangeRow& row : solvers::changes_of(irradiance_cache::info())) {
     const auto* edit = std::get_if<Change>(&row.change);
     const auto* head = std::get_if<std::string_view>(&row.change);
     INFO((edit ? "edit " + std::to_string(int(*edit)) : "setting " + std::string(*head)) << ": " << row.why);
     if (edit && *edit == Change::shape) continue;  // see below
+    if (head && settings.contains(*head) && settings.at(*head).empty()) continue;
     bed.r.solver_load("cache", file);
     REQUIRE(test::cache(bed.r)->ready());
     REQUIRE(begins_with(bed.records(), base));
@@ -177,38 +181,39 @@ TEST_CASE("every kind of change spoils what its row says, and nothing else") {
     CHECK(bed.status().relighting.records == 0);
     take_back();
   }
-  // Another scene, be it the same again.
+  // Another scene object, even with the same content.
   bed.r.set_scene(std::make_shared<scene::Scene>(room()));
   bed.set(k_base);
   CHECK(test::cache(bed.r)->records().size() == 0);
 }
 
-TEST_CASE("every edit and every setting has a row, and those of the cache that are not named spoil all") {
+TEST_CASE("every edit and setting has a row; cache settings without a row invalidate everything") {
   using namespace solvers;
   const SolverInfo& cache = irradiance_cache::info();
+  const std::vector<ChangeRow> rows = changes_of(cache);
   std::set<std::variant<Change, std::string_view>> named;
-  for (const ChangeRow& row : cache.changes) {
+  for (const ChangeRow& row : rows) {
     CHECK(named.insert(row.change).second);
     CHECK_FALSE(row.why.empty());
-    // Places without light or coverage make no sense.
+    // Places without light or coverage are useless.
     if (row.invalidates.places) CHECK(row.invalidates == k_invalidates_all);
   }
   for (const Change edit : scene::k_all_changes) CHECK(named.contains(edit));
   for (const OptionInfo& o : plan::options()) {
     bool found = false;
-    for (const ChangeRow& row : cache.changes)
+    for (const ChangeRow& row : rows)
       if (const auto* head = std::get_if<std::string_view>(&row.change)) found |= o.key.starts_with(*head);
     INFO(o.key);
     const SolverInfo* owner = owner_of(o.key);
-    if (!owner || owner == &cache) CHECK(found);  // others' spoil nothing, whatever they begin with
-    // What does not begin the picture anew cannot spoil records.
+    if (!owner || owner == &cache) CHECK(found);  // otherwise nothing is invalidated
+    // A setting that does not restart the picture cannot invalidate records.
     if (!o.restarts) CHECK_FALSE(invalidated_by_setting(cache, o.key).any());
   }
   CHECK(invalidated_by_setting(cache, "cache.of_tomorrow") == k_invalidates_all);
   CHECK(invalidated_by_setting(cache, "unheard.of") == k_invalidates_all);
 }
 
-TEST_CASE("a setting of one solver spoils nothing of another's work") {
+TEST_CASE("a setting of one solver invalidates no other solver's work") {
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const solvers::SolverInfo* other : solvers::registered())
       for (const OptionInfo& o : other->options) {
@@ -220,7 +225,7 @@ TEST_CASE("a setting of one solver spoils nothing of another's work") {
       }
 }
 
-TEST_CASE("a cache that is relit is the one that would have been built in that light, to the bit") {
+TEST_CASE("a relit cache equals one built in that light, bit for bit") {
   Bed relit;
   relit.finish();
   const RawRecords before = relit.records();
@@ -238,7 +243,7 @@ TEST_CASE("a cache that is relit is the one that would have been built in that l
     CHECK(relit.records().size() == fresh.records().size());
     CHECK(relit.status().stop == fresh.status().stop);
     CHECK(identical(picture, expected));
-    // What is spent is the rays of the records, without those that tried places.
+    // The relit cache spends the rays of its records only, not those that tested places.
     CHECK(relit.status().rays < fresh.status().rays);
   };
   compare("another colour of the lamp", [](Bed& b) { b.set_lamp({1, 4, 2}); });
@@ -248,7 +253,7 @@ TEST_CASE("a cache that is relit is the one that would have been built in that l
     b.set_lamp({1, 4, 2}, false);
     b.r.set_environment(3, 120);
   });
-  // Taken back it is the cache that there was.
+  // After the edits are undone it equals the original cache.
   relit.paint(1, vec3(room().materials[1].base_color));
   relit.r.set_environment(1, 0);
   relit.set_lamp(vec3(5));
@@ -256,11 +261,11 @@ TEST_CASE("a cache that is relit is the one that would have been built in that l
   CHECK(begins_with(relit.records(), before));
 }
 
-TEST_CASE("a material that shines, mirrors, or is diffuse again brings its light and its records") {
+TEST_CASE("a material that becomes emissive, a mirror or diffuse again changes light and records") {
   Bed bed;
   bed.finish();
   const RawRecords base = bed.records();
-  // A mirror asks for no records; those on it stay and harm nobody.
+  // A mirror needs no records; existing records on it stay unused.
   bed.paint(1, {0.9f, 0.9f, 0.9f}, 1);
   const film::Image mirror = bed.finish();
   CHECK(same_places(bed.records(), base));
@@ -273,7 +278,7 @@ TEST_CASE("a material that shines, mirrors, or is diffuse again brings its light
   for (const auto& r : test::cache(bed.r)->records().read())
     red += double(r.parts[1].value.x), green += double(r.parts[1].value.y);
   CHECK(red > 2 * green);
-  // Begun as a mirror, it has no records until it is painted.
+  // A surface that starts as a mirror has no records until it becomes diffuse.
   Bed second;
   second.paint(1, {0.9f, 0.9f, 0.9f}, 1);
   second.finish();
@@ -282,7 +287,7 @@ TEST_CASE("a material that shines, mirrors, or is diffuse again brings its light
   CHECK(second.status().relighting.records == without);
   second.finish();
   CHECK(second.records().size() > without);
-  // What rays find as the scene's shape is not edited; nothing has changed then.
+  // Edits that change what rays hit are refused, and change nothing.
   scene::Material glass = second.r.scene()->materials[1];
   glass.name = "block", glass.transmission = 1;
   CHECK_THROWS_WITH(second.r.set_material(1, glass), Catch::Contains("cannot be changed"));
@@ -291,8 +296,8 @@ TEST_CASE("a material that shines, mirrors, or is diffuse again brings its light
   CHECK(second.r.scene()->materials[1].transmission == 0);
 }
 
-TEST_CASE("another colour brings the light of a cache built with it") {
-  // Which paths go on depends on what they carry, so that a few records are placed elsewhere.
+TEST_CASE("a change of colour updates the light of a cache") {
+  // Russian roulette depends on the throughput, so a few records lie elsewhere.
   const Settings interpolated{{"cache.gather", "false"}};
   Bed relit(interpolated), fresh(interpolated);
   relit.finish();
@@ -305,8 +310,8 @@ TEST_CASE("another colour brings the light of a cache built with it") {
   for (const int c : {1, 2}) CHECK(mean(picture, c) == Approx(mean(expected, c)).epsilon(0.03));
 }
 
-TEST_CASE("ellipses that other light makes smaller leave no gaps") {
-  // With so many rays the means differ by about 1 % from seed to seed.
+TEST_CASE("ellipses that shrink in other light leave no gaps") {
+  // With this number of rays the means differ by about 1 % between seeds.
   const Settings ellipses{{"cache.metric", "hessian"},
                           {"cache.min_radius", "1"},
                           {"cache.gather", "false"},
@@ -322,14 +327,14 @@ TEST_CASE("ellipses that other light makes smaller leave no gaps") {
   };
   move_lamp(fresh, {-1.4f, 0.3f, 0.8f});
   const film::Image expected = fresh.finish();
-  // There and back and there again: passes are counted anew each time.
+  // Back and forth several times: passes are counted from zero each time.
   for (int round = 0; round < 5; ++round) {
     move_lamp(relit, round % 2 ? vec3(1, 2, 1) : vec3(-1.4f, 0.3f, 0.8f));
     CHECK(relit.status().relighting.records == records);
     const film::Image picture = relit.finish();
     const irradiance_cache::CachePass& last = relit.status().passes.back();
     INFO("round " << round << ": " << records << " records, then " << relit.records().size() << "; of "
-                  << last.paths << " paths in the end " << last.uncovered << " asked");
+                  << last.paths << " paths in the end " << last.uncovered << " gaps");
     CHECK(relit.status().stop == StopReason::covered);
     CHECK(last.paths > 0);
     CHECK(double(last.uncovered) <= 0.002 * double(last.paths));
@@ -341,8 +346,8 @@ TEST_CASE("ellipses that other light makes smaller leave no gaps") {
   }
 }
 
-TEST_CASE("light that has been seen before asks for next to no records again") {
-  // As a person has it: where irradiance seems to change the picture asks too.
+TEST_CASE("light that was present before needs almost no new records") {
+  // As with default settings: places are also chosen where irradiance changes across the picture.
   Bed bed({{"cache.metric", "hessian"}, {"cache.min_radius", "1"}, {"cache.irradiance_weight", "1"}});
   bed.finish();
   const auto move_lamp = [&](vec3 to) {
@@ -357,7 +362,7 @@ TEST_CASE("light that has been seen before asks for next to no records again") {
   const uint32_t same = move_lamp(here), moved = move_lamp(there), back = move_lamp(here);
   INFO("built " << built << ", in the same light " << same);
   CHECK(same == built);
-  // From here on nothing is new: neither the light nor the picture.
+  // From here on neither the light nor the picture is new.
   uint32_t records = back;
   for (int round = 0; round < 3; ++round) {
     const uint32_t again = move_lamp(there), once_more = move_lamp(here);
@@ -369,17 +374,17 @@ TEST_CASE("light that has been seen before asks for next to no records again") {
   }
 }
 
-TEST_CASE("relighting can be cancelled, begun anew, moved and interrupted") {
+TEST_CASE("relighting can be cancelled, restarted, moved and interrupted") {
   Bed uninterrupted, bed;
   const film::Image before = uninterrupted.finish();
   uninterrupted.set_lamp({9, 2, 1});
   const film::Image expected = uninterrupted.finish();
   bed.finish();
-  // Another light in the middle of relighting, and every other piece of work cancelled.
+  // Another light while records are relit; every other work item is cancelled.
   bed.set_lamp({0, 0, 7});
   for (int i = 0; i < 3; ++i) bed.r.step();
   CHECK(bed.status().relighting.records > 0);
-  // What is relit serves and is counted; the picture waits.
+  // Relit records are used and counted; the picture waits.
   CHECK(bed.status().records <= bed.status().relighting.records);
   CHECK(bed.r.samples() == 0);
   bed.set_lamp({9, 2, 1});
@@ -397,12 +402,12 @@ TEST_CASE("relighting can be cancelled, begun anew, moved and interrupted") {
     }
   }
   CHECK(cancelled > 2);
-  CHECK(grown > 2);  // progress is seen
+  CHECK(grown > 2);  // progress is reported
   CHECK(share > 0.9f);
   CHECK(identical(expected, bed.finish()));
   CHECK(begins_with(bed.records(), uninterrupted.records()));
 
-  // The camera moves while records are relit: they are, and then more are placed.
+  // The camera moves while records are relit: first they are relit, then more are placed.
   bed.set_lamp(vec3(5));
   bed.r.step();
   bed.r.choose_camera("above");
@@ -411,12 +416,12 @@ TEST_CASE("relighting can be cancelled, begun anew, moved and interrupted") {
   const RawRecords more = bed.records();
   CHECK(same_places(more, uninterrupted.records()));
   CHECK(more.size() > uninterrupted.records().size());
-  // ... and none of them has light of before: back in front nothing is missing but little.
+  // All have the new light: back at the first camera almost no records are missing.
   bed.r.choose_camera("front");
   bed.finish();
   CHECK(bed.records().size() <= more.size() + more.size() / 20);
 
-  // In the middle of building: what has been placed stays, the rest is built in the new light.
+  // During a build: placed records stay, and the rest is built in the new light.
   Bed building;
   while (test::cache(building.r)->records().size() == 0 || building.status().records < 20) building.r.step();
   building.set_lamp({9, 2, 1});
@@ -428,12 +433,12 @@ TEST_CASE("relighting can be cancelled, begun anew, moved and interrupted") {
     CHECK(record.radius > 0);
   }
 
-  // Built without an interruption the first picture is still what it was.
+  // A build without interruption still gives the first picture.
   Bed again;
   CHECK(identical(before, again.finish()));
 }
 
-TEST_CASE("components that are switched off leave records whole, and find them when they are back") {
+TEST_CASE("switched-off components keep records complete, and reuse them when switched on") {
   Bed bed;
   const film::Image both = bed.finish();
   const RawRecords base = bed.records();
@@ -454,7 +459,7 @@ TEST_CASE("components that are switched off leave records whole, and find them w
     CHECK(identical(both, bed.finish()));
     CHECK(bed.status().rays == rays);
   }
-  // Relit while tertiary light is off, records lack it: back on, they are relit again.
+  // Records relit while tertiary light is off lack it: switching it on relights them again.
   bed.set({{"components.tertiary", "off"}});
   bed.set_lamp({9, 2, 1});
   bed.finish();
@@ -464,12 +469,12 @@ TEST_CASE("components that are switched off leave records whole, and find them w
   Bed fresh;
   fresh.set_lamp({9, 2, 1});
   CHECK(identical(relit, fresh.finish()));
-  // Tertiary light is path traced behind the records, or theirs is read: gathered otherwise.
+  // Tertiary light behind records is now path traced instead of read, so it must be gathered again.
   bed.set({{"components.tertiary", "path"}});
   CHECK(bed.status().relighting.records == base.size());
   bed.finish();
   CHECK(same_places(bed.records(), base));
-  // Fewer than there are: there is no room to keep them.
+  // A limit below the number of records discards them.
   bed.set({{"cache.max_records", std::to_string(base.size() - 1)}});
   CHECK(test::cache(bed.r)->records().size() == 0);
 }

@@ -1,7 +1,7 @@
 // links: session
-// Which records get how many rays: those that more of the picture reads stop at less noise, by the rule that
-// cache.h states (noise.h: one by one); and how much of the picture that is. Computed again here from what
-// records tell.
+// How many rays each record gets: a record that more of the picture reads stops at less noise, by the rule in
+// cache.h (noise.h for a single record); and how much of the picture reads a record. Both are computed here
+// again from the records' data.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -14,7 +14,7 @@
 
 using namespace lucerna;
 
-TEST_CASE("the more of the picture reads a record, the less noise it has when it is done") {
+TEST_CASE("the more of the picture reads a record, the less noise it has at the end") {
   constexpr float k_noise = 0.05f;
   const scene::Scene room = test::block_room();
   test::CacheRenderer shown(room, 64, false);
@@ -37,9 +37,10 @@ TEST_CASE("the more of the picture reads a record, the less noise it has when it
   };
   double mean = 0;
   for (const irradiance_cache::Record& r : records) mean += double(light(r)) / double(records.size());
-  int less = 0, more = 0, none = 0;  // that one noise for all would stop later, sooner; that nobody reads
-  // Records are judged by those around, so that they keep to the rule on average: rms of noise over its
-  // bound.
+  // Records for which a common noise bound would stop later; sooner; records that no pixel reads.
+  int less = 0, more = 0, none = 0;
+  // The stop criterion averages over neighbouring records, so records meet the rule on average: the rms of
+  // noise over bound.
   double stopped = 0;
   int stops = 0;
   for (size_t i = 0; i < records.size(); ++i) {
@@ -47,7 +48,7 @@ TEST_CASE("the more of the picture reads a record, the less noise it has when it
     // Dark records stop earlier.
     if (r.crowded || double(light(r)) < 0.5 * mean) continue;
     const int level = r.rays == 256 ? 0 : r.rays == 1280 ? 1 : r.rays == 5376 ? 2 : 3;
-    if (level == 3) continue;  // there are no more rays to be had
+    if (level == 3) continue;  // the maximum number of rays
     const float share = std::ldexp(0.03f * std::sqrt(0.5f / std::max(importance[i], 1e-20f)), level);
     if (importance[i] > 0) {
       const double over = double(r.error) / (k_noise * double(share) * double(light(r)));
@@ -59,22 +60,22 @@ TEST_CASE("the more of the picture reads a record, the less noise it has when it
   }
   stopped = std::sqrt(stopped / stops);
   INFO(stopped << " of the bound where " << stops << " stop");
-  // 0.42: the last level leaves most well below. With twice the bound it is 1.1, with half of it 0.19.
+  // 0.42: most records of the last level are well below the bound. Twice the bound gives 1.1, half of it
+  // 0.19.
   CHECK(stopped < 0.6);
   CHECK(stopped > 0.3);
-  // Both sides of the rule are met, and its end.
-  INFO(less << " less and " << more << " more, " << none << " that nobody reads, of " << records.size());
+  // Both sides of the rule and its end occur.
+  INFO(less << " less and " << more << " more, " << none << " without readers, of " << records.size());
   CHECK(less > 5);
   CHECK(more > 5);
   CHECK(none > 0);
 }
 
-TEST_CASE("how much of the picture reads a record: the square of its share, summed over the pixels") {
+TEST_CASE("a record's importance is the square of its share of the picture, summed over the pixels") {
   const test::PanelRoom room;
   constexpr uint32_t k_size = 64;
   test::CacheRenderer shown(room.s, k_size);
-  // Records do not read each other. One level, so that radii stay as they were when it was measured; circles,
-  // as below.
+  // Records do not read each other. One level, so radii stay as measured; circles, as assumed below.
   shown.set({{"components.secondary", "cache"},
              {"cache.gather", "false"},
              {"cache.max_rays", "256"},
@@ -85,9 +86,9 @@ TEST_CASE("how much of the picture reads a record: the square of its share, summ
   const std::vector<float>& importance = test::cache(shown.r)->importance();
   REQUIRE(importance.size() == records.size());
 
-  // The camera sees the floor alone: a record's weight there falls from its centre to its border.
+  // The camera sees the floor alone: a record's weight there decreases from its centre to its border.
   const float half = 0.98f * std::tan(0.7f);
-  constexpr int k_points = 64;  // a pixel
+  constexpr int k_points = 64;  // per pixel
   std::mt19937 random(3);
   const auto unit = [&] { return float(random() >> 8) / 16777216.0f; };
   std::vector<double> expected(records.size());
@@ -112,7 +113,7 @@ TEST_CASE("how much of the picture reads a record: the square of its share, summ
   double all = 0, measured = 0, off = 0;
   for (size_t i = 0; i < records.size(); ++i) {
     all += expected[i], measured += double(importance[i]);
-    // A pair of points a pixel says it with some noise, and in steps of 1/256 of a pixel.
+    // A pair of points per pixel estimates it with some noise, in steps of 1/256 of a pixel.
     off += std::abs(expected[i] - double(importance[i]));
     if (expected[i] == 0) CHECK(importance[i] < 1e-6f);
   }
@@ -122,7 +123,7 @@ TEST_CASE("how much of the picture reads a record: the square of its share, summ
   CHECK(off < 0.15 * all);
 }
 
-TEST_CASE("what the picture reads through another record counts by what it brings there") {
+TEST_CASE("light that the picture reads through another record counts by its contribution there") {
   const test::PanelRoom room;
   constexpr uint32_t k_size = 64;
   test::CacheRenderer shown(room.s, k_size, false);
@@ -136,8 +137,8 @@ TEST_CASE("what the picture reads through another record counts by what it bring
   const std::vector<float>& importance = test::cache(shown.r)->importance();
   REQUIRE(importance.size() == records.size());
 
-  // Paths as the camera's: to the floor, then by a cosine's chance to a wall or the ceiling of a room of
-  // 2 x 1 x 2 m; what meets the black panel brings nothing.
+  // Paths like the camera's: to the floor, then cosine-distributed to a wall or the ceiling of a room of 2 x
+  // 1 x 2 m; paths that hit the black panel contribute nothing.
   std::mt19937 random(5);
   const auto unit = [&] { return float(random() >> 8) / 16777216.0f; };
   struct Served {
@@ -161,11 +162,11 @@ TEST_CASE("what the picture reads through another record counts by what it bring
     return s;
   };
   const float half = 0.98f * std::tan(0.7f);
-  constexpr int k_paths = 8;  // a pixel and half
+  constexpr int k_paths = 8;  // per pixel and half
   std::vector<double> expected(records.size());
   for (uint32_t y = 0; y < k_size; ++y)
     for (uint32_t x = 0; x < k_size; ++x) {
-      // The square of a mean, of two that are independent.
+      // The square of a mean, as a product of two independent means.
       std::map<size_t, std::array<double, 2>> share;
       for (int k = 0; k < 2 * k_paths; ++k) {
         const vec3 from(half * (2 * (float(x) + unit()) / k_size - 1), 0,
@@ -187,7 +188,7 @@ TEST_CASE("what the picture reads through another record counts by what it bring
       }
       for (const auto& [i, s] : share) expected[i] += s[0] * s[1] / (k_size * k_size);
     }
-  // On the floor records are read by the picture itself, too.
+  // The picture itself also reads records on the floor.
   double all = 0, measured = 0;
   size_t beyond = 0;
   for (size_t i = 0; i < records.size(); ++i) {
@@ -197,6 +198,6 @@ TEST_CASE("what the picture reads through another record counts by what it bring
   INFO(beyond << " records, " << measured << " where " << all << " is expected");
   CHECK(beyond > 100);
   CHECK(all > 0.001);
-  // A pair of paths a pixel: of each, some pairs alone meet one record.
+  // One pair of paths per pixel: only some of the pairs read a record.
   CHECK(measured == Approx(all).epsilon(0.15));
 }

@@ -1,6 +1,7 @@
 // links: session
-// Records get further light as a picture's samples grow more, where that takes more from its error than as
-// many samples do: the same places and radii, less noise, and the same picture however work is cut.
+// Records get more rays as a picture's number of samples grows, where that reduces its error more than as
+// many samples do. Positions and radii stay, noise falls, and the picture does not depend on the size of work
+// items.
 #include <catch2/catch.hpp>
 
 #include "cache_support.h"
@@ -10,7 +11,7 @@ using namespace lucerna;
 
 namespace {
 
-/// Indirect light alone, with as few rays to begin with as there may be.
+/// Indirect light alone, with the minimum number of initial rays.
 test::Settings noisy_records(const char* samples) {
   test::Settings settings = test::k_cached;
   for (const auto& [key, value] : test::Settings{{"components.primary", "off"},
@@ -25,7 +26,7 @@ test::Settings noisy_records(const char* samples) {
 
 }  // namespace
 
-TEST_CASE("records are refined once their noise is more of the error than further samples would take") {
+TEST_CASE("records are refined once more rays reduce the error more than further samples do") {
   const scene::Scene room = test::block_room();
   test::CacheRenderer shown(room, 48, false);
   shown.set(noisy_records("8"));
@@ -42,21 +43,21 @@ TEST_CASE("records are refined once their noise is more of the error than furthe
             << shown.r.image_error().relative_records());
   CHECK(shown.status().rays > rays + rays / 4);
   CHECK(shown.r.image_error().relative_records() < 0.8 * noise);
-  // Radii and places are what they were.
+  // Radii and positions are unchanged.
   REQUIRE(after.size() == before.size());
   CHECK(after.spheres == before.spheres);
 
-  // Cut into other items, and interrupted.
+  // Other work items, and an interruption.
   test::CacheRenderer other(room, 48, false);
   other.r.settings().set("path.batch", "32768");
   other.set(noisy_records("256"));
-  int asked = 0;
-  while (!other.r.done()) other.r.step([&] { return ++asked % 97 == 0; });
+  int calls = 0;
+  while (!other.r.done()) other.r.step([&] { return ++calls % 97 == 0; });
   CHECK(test::identical(other.r.image(), picture));
   CHECK(other.records().lights == after.lights);
 }
 
-TEST_CASE("records that nobody need refine keep their rays") {
+TEST_CASE("records whose noise does not matter keep their rays") {
   const scene::Scene room = test::block_room();
   test::CacheRenderer shown(room, 32, false);
   test::Settings settings = noisy_records("16");

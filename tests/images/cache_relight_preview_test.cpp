@@ -1,6 +1,6 @@
 // links: session
-// What the window shows while records are relit: it is near what relighting ends with after a few drafts, at
-// once where it is known what an edit does to light, and relighting does not depend on it.
+// What the window shows while records are relit: after a few preview samples it is close to the final
+// picture, immediately if the effect of the edit on light is known. Relighting does not depend on it.
 #include <catch2/catch.hpp>
 
 #include "images/cache_support.h"
@@ -24,7 +24,7 @@ const Settings k_base = test::dense_records({{"components.secondary", "cache"},
                                              {"samples", "2"},
                                              {"path.batch", "8192"}});
 
-/// The window's renderer, step by step.
+/// A renderer as in the window, step by step.
 struct Bed {
   session::Renderer r;
   explicit Bed(bool interactive, const char* metric)
@@ -49,13 +49,13 @@ struct Bed {
     lamp.intensity = intensity, lamp.position = position;
     r.set_light(0, lamp);
   }
-  /// Some drafts before the work goes on; how many there were.
+  /// Draws preview samples before the work continues; returns their number.
   int draw_drafts(int most = 6) {
     int drawn = 0;
     while (drawn < most && r.draw_draft()) ++drawn;
     return drawn;
   }
-  /// Mean of what the window shows, 0..1, encoded.
+  /// Mean of the displayed picture, 0..1, encoded.
   double shown() {
     const std::vector<uint8_t> rgba = r.shown_picture(r.samples() == 0);
     double sum = 0;
@@ -66,7 +66,7 @@ struct Bed {
 
 }  // namespace
 
-TEST_CASE("what relighting brings does not depend on what is shown meanwhile, to the bit") {
+TEST_CASE("the result of relighting does not depend on the preview, bit for bit") {
   for (const char* metric : {"split-sphere", "hessian"}) {
     INFO(metric);
     Bed window(true, metric), batch(false, metric);
@@ -75,7 +75,7 @@ TEST_CASE("what relighting brings does not depend on what is shown meanwhile, to
     for (const vec3 position : {vec3(-1.2f, 1.5f, 0.6f), vec3(0.8f, 1.6f, -0.4f), vec3(0, 1, 0)}) {
       for (Bed* bed : {&window, &batch}) bed->set_lamp(vec3(2, 5, 9), position);
       if (round != 1) CHECK(window.draw_drafts() >= 3);
-      // In the second round the next edit comes while some are relit and some are not.
+      // In the second round the next edit comes during relighting.
       for (int step = 0; step < (round == 1 ? 40 : 0); ++step) {
         window.r.draw_draft();
         window.r.step();
@@ -93,14 +93,14 @@ TEST_CASE("what relighting brings does not depend on what is shown meanwhile, to
   }
 }
 
-TEST_CASE("after an edit the window shows the light that will be, long before records are relit") {
+TEST_CASE("after an edit the window shows the new light long before records are relit") {
   Bed bed(true, "hessian");
   const double before = bed.shown();
-  // Twice as bright and elsewhere.
+  // Twice as bright and in another position.
   bed.set_lamp(vec3(14), {-1.2f, 1.5f, 0.6f});
   REQUIRE_FALSE(bed.cache().ready());
   REQUIRE(bed.cache().status().relighting.share == 0);
-  // At once what was there is.
+  // At first the previous picture is shown.
   CHECK(bed.shown() == Approx(before).epsilon(0.02));
   CHECK(bed.r.preview_shares().stale > 0.95);
   const uint64_t rays = bed.cache().status().rays;
@@ -116,7 +116,7 @@ TEST_CASE("after an edit the window shows the light that will be, long before re
   CHECK(early == Approx(finally).epsilon(0.06));
 }
 
-TEST_CASE("a few drafts tell how much light there is, whatever has changed") {
+TEST_CASE("a few preview samples show the final brightness, whatever has changed") {
   Bed bed(true, "hessian");
   auto scene = std::make_shared<scene::Scene>(*bed.r.scene());
   scene->lights.push_back(scene->lights[0]);
@@ -129,7 +129,7 @@ TEST_CASE("a few drafts tell how much light there is, whatever has changed") {
   test::set(bed.r, fine);
   test::finish(bed.r);
   const double before = bed.shown();
-  // One of two lamps a sixth as bright: of what is everywhere nothing is known.
+  // One of two lamps is dimmed to a sixth: the effect on the total light is unknown.
   bed.set_lamp(scene->lights[0].intensity / 6.0f, scene->lights[0].position);
   CHECK_FALSE(bed.cache().previews_relighting());
   CHECK(bed.draw_drafts() >= 4);
@@ -142,7 +142,7 @@ TEST_CASE("a few drafts tell how much light there is, whatever has changed") {
   CHECK(early == Approx(finally).epsilon(0.08));
 }
 
-TEST_CASE("a lamp of a group of its own is dimmed and tinted at once, without a ray") {
+TEST_CASE("a lamp in its own group is dimmed and tinted in the preview immediately, without a ray") {
   Bed bed(true, "hessian");
   auto scene = std::make_shared<scene::Scene>(*bed.r.scene());
   scene->lights.push_back(scene->lights[0]);
@@ -157,13 +157,13 @@ TEST_CASE("a lamp of a group of its own is dimmed and tinted at once, without a 
   REQUIRE(bed.r.relight().separate);
   const double before = bed.shown();
   bed.set_lamp(scene->lights[0].intensity * vec3(0.1f, 0.3f, 0.2f), scene->lights[0].position);
-  // What was shown is shown as that mix of it, and so are records.
+  // The previous picture is shown with the new mix, and so are records.
   const double recalled = bed.shown();
   CHECK(bed.cache().previews_relighting());
   CHECK(bed.cache().status().relighting.share == 0);
   for (int i = 0; i < 3; ++i) bed.r.draw_draft();
   const double drafted = bed.shown();
-  // Nor is anything lost when the next edit comes before records are relit.
+  // Nothing is lost when the next edit comes before records are relit.
   bed.set_lamp(scene->lights[0].intensity * 0.5f, scene->lights[0].position);
   bed.set_lamp(scene->lights[0].intensity * vec3(0.1f, 0.3f, 0.2f), scene->lights[0].position);
   for (int i = 0; i < 3; ++i) bed.r.draw_draft();
@@ -178,7 +178,7 @@ TEST_CASE("a lamp of a group of its own is dimmed and tinted at once, without a 
   CHECK(again == Approx(finally).epsilon(0.03));
 }
 
-TEST_CASE("another solver's light begins as what the one before it has shown") {
+TEST_CASE("after a switch of solvers the preview starts from the previous picture") {
   Bed bed(true, "hessian");
   const double before = bed.shown();
   for (const auto& [key, value] : Settings{{"components.secondary", "path"},
@@ -195,14 +195,14 @@ TEST_CASE("another solver's light begins as what the one before it has shown") {
       CHECK(bed.r.preview_shares().stale > 0.5);
     }
   }
-  // But a component less is another light.
+  // Switching a component off is a different light.
   test::set(bed.r, {{"components.tertiary", "off"}});
   for (int i = 0; i < 40 && bed.r.samples() == 0; ++i) bed.r.draw_draft(), bed.r.step();
   test::finish(bed.r);
   CHECK(bed.shown() < 0.9 * before);
 }
 
-TEST_CASE("batch rendering has neither drafts nor light for them") {
+TEST_CASE("batch rendering has no preview samples and no preview light") {
   Bed batch(false, "hessian");
   batch.set_lamp(vec3(1), vec3(0, 1, 0));
   CHECK_FALSE(batch.cache().previews_relighting());

@@ -1,7 +1,7 @@
 // links: session
-// Where an irradiance cache could go wrong: walls between light and dark, corners, normal maps, coordinates
-// far from the origin, too little room, nothing to do. Everywhere the picture is that of the path tracer
-// within a stated bias, because what no record can serve is path traced.
+// Difficult cases for an irradiance cache: walls between light and dark, corners, normal maps, coordinates
+// far from the origin, a low record limit, empty scenes. The picture agrees with path tracing within a stated
+// bias, because points that no record covers are path traced.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -18,16 +18,16 @@ namespace {
 
 constexpr uint32_t k_size = 32;
 
-/// Without the rays that lights are learned from, which few samples have many of, whoever computes what.
+/// Without the training rays of learned lights, which are a large share of few samples and would distort ray
+/// counts.
 const Settings k_paths{{"lights.sampling", "power"}};
-/// One branch, so that rays tell where records serve.
+/// One branch, so ray counts show where records are used.
 const Settings k_both = test::dense_records({{"components.secondary", "cache"},
                                              {"lights.sampling", "power"},
                                              {"components.tertiary", "cache"},
                                              {"cache.max_records", "20000"},
                                              {"cache.branches", "1"}});
-/// Radii as wide as they may be, so that only what limits them keeps records from reaching where they must
-/// not.
+/// Maximum radii, so only the other limits stop records from reaching too far.
 const Settings k_wide = test::dense_records({{"components.secondary", "cache"},
                                              {"lights.sampling", "power"},
                                              {"components.tertiary", "cache"},
@@ -44,12 +44,12 @@ Result render(const scene::Scene& scene, const Settings& settings, uint32_t samp
   return test::render(scene, settings, samples, k_size);
 }
 
-/// Of the picture's.
+/// Rays per path of the picture, without preparation.
 double rays_a_path(const Result& r) { return double(r.stats.rays - r.prepared_rays) / double(r.stats.paths); }
 
-/// Every block of secondary and tertiary light is the path tracer's within `bias` of it and the noise of
-/// both: 4.5 standard errors, 3e-4 for all 32 of them together. Returns the root mean square of what blocks
-/// are off by, the noise taken off, over the layers' means.
+/// Every block of secondary and tertiary light agrees with path tracing within `bias` of it and the noise of
+/// both: 4.5 standard errors, 3e-4 for all 32 together. Returns the root mean square error of the blocks
+/// without noise, relative to the layers' means.
 double compare(const Result& path, const Result& cached, double bias, uint32_t middle = 0) {
   double sum = 0;
   for (const int c : {1, 2}) {
@@ -86,25 +86,25 @@ TEST_CASE("light does not leak through walls, around their ends, or far from the
     Room room(p.at);
     room.wall(p.z0, p.z1, p.height, p.thickness);
     Settings wide = k_wide;
-    wide["lights.sampling"] = "power";  // pilots take the same rays from either, of few samples a large share
+    wide["lights.sampling"] = "power";  // no training rays of learned lights
     const Result path = render(room.s, {{"lights.sampling", "power"}}, 128),
                  cached = render(room.s, wide, 16);
-    // A record serves half a pixel around it at least (cache.min_radius), through whatever stands there: what
-    // the columns at the wall show is left out.
+    // A record covers at least half a pixel around it (cache.min_radius), whatever is in between: the columns
+    // at the wall are excluded.
     const double off = compare(path, cached, 0.2, 1);
     INFO("off by " << off);
     CHECK(off < 0.06);
     CHECK(cached.cache.records > 50);
-    // The left half is dark, so that light would be seen there.
+    // The left half is dark, so leaked light would show.
     CHECK(block_mean(path.image, 1, 1, 1).value < 0.5 * block_mean(path.image, 1, 2, 1).value);
-    // And it is looked up: not all of it is path traced.
+    // Records are used: not all of it is path traced.
     CHECK(rays_a_path(cached) < 0.7 * rays_a_path(path));
   }
 }
 
-TEST_CASE("records in a medium see through it, and serve nobody outside") {
-  // An absorbing block of glass that refracts nothing, half in the floor's way: inside it a corner of two
-  // walls and a panel that shines.
+TEST_CASE("records in a medium see through it and cover nothing outside") {
+  // An absorbing block of glass with index of refraction 1 covers half of the floor: inside it a corner of
+  // two walls and an emissive panel.
   Room room;
   scene::Material glass;
   glass.metallic = 0, glass.roughness = 0, glass.transmission = 1, glass.ior = 1, glass.thickness = 1;
@@ -120,7 +120,7 @@ TEST_CASE("records in a medium see through it, and serve nobody outside") {
   test::add_quad(room.s, lo + vec3(0.9f, 0.4f, 0.4f), {0.1f, 0, 0}, {0, 0, 0.1f}, 1);
   Settings settings = k_both;
   settings["cache.error"] = "0.15", settings["cache.noise"] = "0.02";
-  settings["cache.min_radius"] = "1";  // else all of so small a picture is edges
+  settings["cache.min_radius"] = "1";  // otherwise all pixels of so small a picture are edges
   const Result path = render(room.s, k_paths, 512), cached = render(room.s, settings, 64);
   for (const int c : {1, 2})
     for (int channel = 0; channel < 3; ++channel) {
@@ -141,7 +141,7 @@ TEST_CASE("records in a medium see through it, and serve nobody outside") {
   CHECK(rays_a_path(cached) < 0.8 * rays_a_path(path));
 }
 
-TEST_CASE("normal maps tilt what records bring as far as they can, and beyond that light is path traced") {
+TEST_CASE("normal maps tilt record lookups up to a limit, and beyond it light is path traced") {
   double rays[3];
   int i = 0;
   for (const float degrees : {0.0f, 12.0f, 45.0f}) {
@@ -153,19 +153,19 @@ TEST_CASE("normal maps tilt what records bring as far as they can, and beyond th
     CHECK(off < 0.05);
     rays[i++] = rays_a_path(cached) / rays_a_path(path);
   }
-  INFO("rays a path over those of the path tracer: " << rays[0] << ", " << rays[1] << ", " << rays[2]);
-  // Within the records' reach nothing is traced that is not on the straight wall; three quarters of the steep
-  // one are.
+  INFO("rays per path over those of the path tracer: " << rays[0] << ", " << rays[1] << ", " << rays[2]);
+  // Within the records' limit only lookups on the untilted wall are path traced; three quarters of the
+  // strongly tilted one are.
   CHECK(rays[1] < rays[0] + 0.05);
   CHECK(rays[2] > rays[0] + 0.3);
 }
 
-TEST_CASE("the smaller the error bound, the nearer the picture comes to the path tracer's") {
+TEST_CASE("the smaller the error bound, the closer the picture is to path tracing") {
   Room room;
   room.wall(-1, 0.5f, 0.6f, 0.1f);
   const Result path = render(room.s, k_paths, 512);
   double before = 1;
-  // Radii in all their bounds; what records may be off by in a block, and in all.
+  // The bounds of radii, and the allowed error of records in a block and in total.
   struct Bound {
     const char *error, *least, *most;
     double block, all;
@@ -178,18 +178,18 @@ TEST_CASE("the smaller the error bound, the nearer the picture comes to the path
     settings["cache.error"] = error, settings["cache.min_radius"] = least;
     settings["cache.max_radius"] = most;
     settings["cache.noise"] = "0.02", settings["cache.max_rays"] = "1024";
-    settings["cache.gather"] = "false";  // what is interpolated is meant
+    settings["cache.gather"] = "false";  // tests interpolation only
     const Result cached = render(room.s, settings, 16);
     const double off = compare(path, cached, block);
     UNSCOPED_INFO("error bound " << error << ": " << cached.cache.records << " records, off by " << off);
     CHECK(off < all);
-    // So much is left of records' noise.
+    // Remaining noise of the records.
     CHECK(off < std::max(0.015, 0.3 * before));
     before = off;
   }
 }
 
-TEST_CASE("a cache with too little room says so once, and what it cannot hold is path traced") {
+TEST_CASE("a cache at its record limit reports it once, and light without records is path traced") {
   Room room;
   room.wall(-1, 0.5f, 0.6f, 0.1f);
   Settings settings = k_both;
@@ -204,7 +204,7 @@ TEST_CASE("a cache with too little room says so once, and what it cannot hold is
                                       Catch::Contains("path traced") && Catch::Contains("cache.max_records"));
 }
 
-TEST_CASE("with nothing diffuse, or nothing that shines, a cache costs nothing and says nothing") {
+TEST_CASE("without diffuse surfaces or without lights a cache costs nothing and reports nothing") {
   const test::Complaints complaints;
   Room mirrors;
   mirrors.s.materials[0].metallic = 1, mirrors.s.materials[0].roughness = 0.2f;
@@ -222,13 +222,13 @@ TEST_CASE("with nothing diffuse, or nothing that shines, a cache costs nothing a
   for (const auto& component : dark.image.components)
     for (const vec3& v : component) REQUIRE(v == vec3(0));
 
-  // A lamp that goes off leaves records to be relit when it is back, wherever the camera has gone.
+  // A lamp that is switched off: its records are relit when it is on again, wherever the camera is.
   session::Renderer r(test::renderer_options(true));
   r.set_size(24, 24);
   Room room(vec3(0), false);
   room.s.lights.push_back({.name = "lamp", .intensity = vec3(1), .position = {0.5f, 0.8f, 0.5f}});
   r.set_scene(std::make_shared<scene::Scene>(room.s));
-  r.settings().set("samples", "32");  // each reads one of the records that serve, and pixels are compared
+  r.settings().set("samples", "32");  // each reads one record; pixels are compared
   test::set(r, k_wide);
   test::set(r, {{"cache.gather", "false"}});
   const film::Image lit = test::finish(r);

@@ -1,18 +1,18 @@
 #pragma once
-// Pictures with the irradiance cache, for tests that edit what they show.
+// Pictures with the irradiance cache, for tests that edit the scene.
 #include "support/records.h"
 #include "support/render.h"
 
 namespace lucerna::test {
 
-/// All that may be looked up.
+/// Every component that can be cached.
 inline const Settings k_cached{{"components.secondary", "cache"}, {"components.tertiary", "cache"}};
 
-/// Shows a scene of the test's; when it goes the device must have had nothing to say. `validated`: the layers
-/// take half of the time, which repetitions need not spend. `interactive`: as for a window, with drafts.
+/// Shows a scene of the test; on destruction no validation message may exist. `validated`: use the validation
+/// layers, which take half of the time. `interactive`: as for a window, with preview samples.
 struct CacheRenderer {
   session::Renderer r;
-  /// As of a file beside the scene, which stand where nothing else is set.
+  /// As from a file beside the scene: used where nothing else is set.
   static auto scene_settings() {
     std::vector<session::SettingChange> all{{"cache.max_records", k_room, ""}};
     for (const auto& [key, value] : k_dense_records) all.push_back({key, value, ""});

@@ -1,5 +1,5 @@
 // links: session
-// Pictures with the irradiance cache against path-traced ones: each component for itself.
+// Pictures with the irradiance cache compared with path-traced ones, for each component.
 #include <catch2/catch.hpp>
 
 #include "images/cache_support.h"
@@ -10,7 +10,7 @@ using test::identical, test::k_cached, test::mean, test::Settings;
 
 namespace {
 
-/// Root mean square of the differences of 8x8 blocks' means, over the mean.
+/// Root mean square difference of the means of 8x8 blocks, relative to the mean.
 double block_error(const test::Result& a, const test::Result& b, int component, uint32_t width) {
   const auto& x = a.image.components[component];
   const auto& y = b.image.components[component];
@@ -28,16 +28,16 @@ double block_error(const test::Result& a, const test::Result& b, int component, 
   return std::sqrt(squares / (across * down)) / mean(y);
 }
 
-/// A closed room, 2 m wide, cut in two by a wall 1 mm thick that leaves 10 cm under the ceiling; a panel
-/// lights one half. The camera stands on the wall's edge and looks down at both floors.
+/// A closed room, 2 m wide, divided by a wall 1 mm thick that ends 10 cm below the ceiling; a panel lights
+/// one half. The camera is on the wall's edge and looks down at both floors.
 scene::Scene divided_room() {
   test::PanelRoom room(vec3(0), true, 0.001f);
   room.wall(-1, 1, 0.9f, 0.001f);
   return room.s;
 }
 
-/// The same room without the wall, its left and right side of rough metal: of the light on a surface a good
-/// part has come over it.
+/// The same room without the wall; its left and right sides are rough metal, so much of the light on a
+/// surface has been reflected by metal.
 scene::Scene metal_room() {
   scene::Scene s = test::PanelRoom(vec3(0), true, 0.001f).s;
   s.materials.push_back(s.materials[0]);
@@ -47,7 +47,7 @@ scene::Scene metal_room() {
   return s;
 }
 
-/// ... with a block of rough glass between floor and ceiling, through which much is lit and seen.
+/// The same with a block of rough glass between floor and ceiling, which transmits much of the light.
 scene::Scene glass_room() {
   test::PanelRoom room(vec3(0), true, 0.001f);
   scene::Material glass;
@@ -73,12 +73,12 @@ const test::Result& cornell_by_paths() {
 
 }  // namespace
 
-TEST_CASE("the cache brings the light of its components, and no other changes") {
+TEST_CASE("the cache computes the light of its components and changes no other") {
   const test::Result& path = cornell_by_paths();
   test::Render r = k_cornell;
   const test::Result few = test::render(r);
   r.settings.insert(k_cached.begin(), k_cached.end());
-  r.settings["cache.gather"] = "false";  // paths that gather go other ways
+  r.settings["cache.gather"] = "false";  // gathering uses other paths
   const test::Result cached = test::render(r);
   CHECK(cached.validation_messages == 0);
   CHECK(cached.stats.dropped == 0);
@@ -95,7 +95,8 @@ TEST_CASE("the cache brings the light of its components, and no other changes") 
 
 TEST_CASE(
     "tertiary light alone is looked up at the second diffuse vertex, behind path-traced secondary light") {
-  // Noise of either is less than 0.5 % of the mean; without what comes over the metal it would be 11 % less.
+  // The noise of either is below 0.5 % of the mean; without the light reflected by metal it would be 11 %
+  // less.
   for (const bool glass : {false, true}) {
     const scene::Scene room = glass ? glass_room() : metal_room();
     const film::Image
@@ -111,8 +112,9 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("what is seen in mirrors is looked up too, whatever else is off") {
-  // The blurred mirror of the floor shows walls whose light only records bring; paths to them carry nothing.
+TEST_CASE("records are looked up in mirrors too, whatever other component is off") {
+  // The blurred mirror of the floor shows walls whose light comes from records only; paths to them carry
+  // nothing.
   const Settings off{{"components.primary", "off"}, {"components.caustic", "off"}, {"seed", "4"}};
   test::Render r{.scene = "teapot", .width = 64, .height = 64, .samples = 512, .settings = off};
   const test::Result path = test::render(r);
@@ -120,7 +122,7 @@ TEST_CASE("what is seen in mirrors is looked up too, whatever else is off") {
   r.settings.insert(k_cached.begin(), k_cached.end());
   const test::Result cached = test::render(r);
   for (const int c : {1, 2}) {
-    // The lowest quarter is nearly all floor.
+    // The lowest quarter is almost only floor.
     const auto floor = [&](const test::Result& result) {
       const auto& layer = result.image.components[c];
       return mean({layer.begin() + 48 * 64, layer.end()});
@@ -132,7 +134,7 @@ TEST_CASE("what is seen in mirrors is looked up too, whatever else is off") {
   }
 }
 
-TEST_CASE("records that read records bring the light of those that trace their paths to the end") {
+TEST_CASE("records that read records compute the same light as records with full-length paths") {
   test::Render r{.scene = "teapot",
                  .width = 64,
                  .height = 64,
@@ -155,7 +157,7 @@ TEST_CASE("records that read records bring the light of those that trace their p
   }
 }
 
-TEST_CASE("switched-off light stays off") {
+TEST_CASE("components that are off stay off") {
   test::Render r{.scene = "cornell", .width = 32, .height = 32, .samples = 4, .settings = k_cached};
   r.settings["components.tertiary"] = "off";
   const test::Result no_tertiary = test::render(r);
@@ -168,9 +170,9 @@ TEST_CASE("switched-off light stays off") {
   CHECK(mean(no_primary.image.components[2]) > 0);
 }
 
-TEST_CASE("a cached picture does not depend on how its work was cut") {
+TEST_CASE("a cached picture does not depend on the size of work items") {
   test::Render r{.scene = "cornell", .width = 28, .height = 28, .samples = 4, .settings = k_cached};
-  // So that records get all levels, and those of the last more rays than the smaller batch has paths.
+  // Records get all levels, and those of the last level more rays than the smaller batch has paths.
   r.settings["cache.rays"] = "64", r.settings["cache.noise"] = "0.005";
   const test::Result whole = test::render(r);
   r.validated = false;
@@ -182,8 +184,7 @@ TEST_CASE("a cached picture does not depend on how its work was cut") {
   CHECK_FALSE(identical(whole.image.components[1], other.image.components[1]));
 }
 
-TEST_CASE(
-    "records do not depend on how many blocks are looked along at once, when pixels are several times") {
+TEST_CASE("records do not depend on how many blocks are probed at once, with several passes per pixel") {
   test::Render r{.scene = "cornell", .width = 24, .height = 24, .samples = 1, .settings = k_cached};
   r.settings.insert(
       {{"cache.rays", "64"}, {"cache.error", "0.1"}, {"cache.min_radius", "0.5"}, {"cache.stop", "0.0001"}});
@@ -193,7 +194,7 @@ TEST_CASE(
   for (int c = 0; c < 4; ++c) CHECK(identical(whole.image.components[c], cut.image.components[c]));
 }
 
-TEST_CASE("records that reach as far as things are away bring the same light, whatever way work was cut") {
+TEST_CASE("records with split-sphere radii compute the same light, independent of work items") {
   const test::Result& path = cornell_by_paths();
   test::Render r = k_cornell;
   r.settings.insert(k_cached.begin(), k_cached.end());
@@ -212,18 +213,18 @@ TEST_CASE("records that reach as far as things are away bring the same light, wh
   r.settings["path.batch"] = "2048";
   const test::Result cut = test::render(r);
   for (int c = 0; c < 4; ++c) CHECK(identical(whole.image.components[c], cut.image.components[c]));
-  // They are others than those that serve in ellipses.
+  // They differ from records with elliptical areas.
   r.settings.erase("cache.metric"), r.settings.erase("path.batch");
   CHECK_FALSE(identical(whole.image.components[2], test::render(r).image.components[2]));
 }
 
-TEST_CASE("light does not leak through a wall of a millimetre") {
-  // Radii as wide as they may be, so that only what limits them keeps records from reaching through.
+TEST_CASE("light does not leak through a wall of one millimetre") {
+  // Maximum radii, so only the other limits stop records from reaching through.
   Settings wide = k_cached;
   wide["cache.error"] = "1", wide["cache.max_radius"] = "1";
   const film::Image path = test::render(divided_room(), {}, 512, 64).image;
-  // Columns of the picture by their distance from the wall, which stands in its middle: floors left (dark)
-  // and right.
+  // Columns of the picture by their distance from the wall in the middle: the floor on its left (dark) and on
+  // its right.
   const auto column_mean = [](const film::Image& image, int component, uint32_t from, uint32_t to) {
     test::Mean mean;
     for (uint32_t y = 16; y < 48; ++y)
@@ -247,11 +248,12 @@ TEST_CASE("light does not leak through a wall of a millimetre") {
         INFO(metric << ", component " << c << ", columns " << from << " to " << to << ": " << value << " of "
                     << truth.value << " +- " << noise);
         CHECK(truth.value > 0);
-        // Noise of the paths, what few and wide records miss, and a leak: of the light on the other side.
+        // Noise of the paths, the error of few and wide records, and the leak allowed from the light on the
+        // other side.
         const double leak = 0.0015 * column_mean(path, c, 38, 44).value;
         CHECK(std::abs(value - truth.value) < 4 * noise + 0.03 * truth.value + leak);
       }
   }
-  // The dark half is dark: what leaked would show.
+  // The dark half is dark, so leaked light would show.
   CHECK(column_mean(path, 1, 20, 26).value < 0.02 * column_mean(path, 1, 38, 44).value);
 }

@@ -1,5 +1,6 @@
 // links: session film_io
-// The image is a function of scene, settings and seed: not of threads, of time slices, of cancelled work.
+// The image is a function of scene, settings and seed; it does not depend on threads, time slices or
+// cancelled work.
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -44,7 +45,7 @@ bool identical(const film::FilmImage& a, const film::FilmImage& b) {
 
 }  // namespace
 
-TEST_CASE("bit-identical over the number of threads, of the device and of the host tracer") {
+TEST_CASE("bit-identical for any number of threads, of the device and of the host tracer") {
   for (const char* tracer : {"host", "compute-bvh"}) {
     INFO(tracer);
     const film::FilmImage usual = render_with("", tracer);
@@ -56,9 +57,9 @@ TEST_CASE("bit-identical over the number of threads, of the device and of the ho
   }
 }
 
-TEST_CASE("bit-identical over what memory held before") {
-  // glibc fills what it hands out with the complement of the byte; lavapipe's device memory comes from there.
-  // Scenes without glossy, emissive or refracting surfaces have kernels of their own, which skip fields that
+TEST_CASE("bit-identical for any previous content of memory") {
+  // glibc fills allocated memory with the complement of the byte; lavapipe allocates device memory with it.
+  // Scenes without glossy, emissive or refracting surfaces have separate kernels, which skip fields that
   // nothing reads.
   for (const char* scene : {"cornell", "glass", "studio", "furnace-open", "furnace-disk"})
     for (const char* tracer : {"host", "compute-bvh --error 0.3 --set sampling.min_samples=8"}) {
@@ -68,7 +69,7 @@ TEST_CASE("bit-identical over what memory held before") {
     }
 }
 
-TEST_CASE("bit-identical over time slices: work that is cancelled between bounces is done again") {
+TEST_CASE("bit-identical for any time slices: work cancelled between bounces is repeated") {
   session::Renderer r(test::renderer_options(true));
   r.settings().set("path.batch", "1024");
   r.set_size(40, 36);
@@ -97,7 +98,7 @@ TEST_CASE("bit-identical over time slices: work that is cancelled between bounce
   CHECK(identical(whole, r.film_image()));
 }
 
-TEST_CASE("memory of the paths in flight does not grow with the picture") {
+TEST_CASE("memory of paths in flight does not grow with the picture") {
   const auto peak = [](uint32_t side) {
     session::Renderer r(test::renderer_options(false));
     r.settings().set("path.batch", "65536");
@@ -110,8 +111,8 @@ TEST_CASE("memory of the paths in flight does not grow with the picture") {
     return r.device().peak_bytes();
   };
   const uint64_t small = peak(64), large = peak(512);
-  // The film itself: 4 components of 48 bytes, albedo and normal of 16, a count and a picture of 4, and a
-  // sixteenth of that for the coarse one.
+  // The film: 4 components of 48 bytes, albedo and normal of 16, a count and a picture of 4, plus a sixteenth
+  // of that for the coarse level.
   const double per_pixel = 4 * 48 + 2 * 16 + 2 * 4, more = 512.0 * 512 - 64.0 * 64;
   CHECK(double(large - small) < 1.1 * per_pixel * (1 + 1.0 / 16) * more);
   CHECK(double(large - small) > 0.9 * per_pixel * more);

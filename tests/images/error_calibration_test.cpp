@@ -1,6 +1,6 @@
 // links: session
-// Is the estimated noise the true noise? Pictures of many seeds are held against a long reference whose own
-// noise is taken off; and a tile's interval of 90 % must hold the truth in 85 to 95 of 100 tiles.
+// Calibration of the noise estimate: pictures of many seeds are compared with a long reference, whose noise
+// is subtracted. The 90 % interval of a tile must contain the reference in 85 to 95 of 100 tiles.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -14,7 +14,7 @@ namespace {
 struct Shot {
   film::ImageError error;
   std::vector<film::TileError> tiles;
-  std::vector<float> luminance;  // of the pixels
+  std::vector<float> luminance;  // per pixel
 };
 
 class Bench {
@@ -48,15 +48,15 @@ class Bench {
 
 struct Figures {
   double ratio = 0;    // estimated over true rms error of the picture
-  double covered = 0;  // share of the tiles that are not heavy-tailed whose interval holds the reference
+  double covered = 0;  // share of the tiles without heavy tails whose interval contains the reference
   double heavy = 0;    // share of heavy-tailed tiles
-  size_t asked = 0;    // tiles that are not
+  size_t tested = 0;   // tiles without heavy tails
 };
 
 Figures measure(Bench& bench, const Shot& reference, uint32_t samples, uint32_t shots) {
   const double own = reference.error.rms[0] * reference.error.rms[0];
   double estimated = 0, found = 0;
-  size_t inside = 0, asked = 0, heavy = 0;
+  size_t inside = 0, tested = 0, heavy = 0;
   for (uint32_t s = 0; s < shots; ++s) {
     const Shot shot = bench.shoot(s, samples);
     estimated += shot.error.rms[0] * shot.error.rms[0];
@@ -70,20 +70,20 @@ Figures measure(Bench& bench, const Shot& reference, uint32_t samples, uint32_t 
         ++heavy;
         continue;
       }
-      // Both are noisy: variances add, and with them their degrees of freedom (Welch, Satterthwaite).
+      // Both are noisy: variances add, with their degrees of freedom (Welch, Satterthwaite).
       const double va = a.standard_error * a.standard_error, vr = r.standard_error * r.standard_error;
       const double degrees = (va + vr) * (va + vr) / (va * va / a.degrees + vr * vr / r.degrees);
-      ++asked;
+      ++tested;
       inside += std::abs(a.luminance - r.luminance) <= film::student_90(degrees) * std::sqrt(va + vr);
     }
   }
-  return {std::sqrt(estimated / found), double(inside) / double(std::max<size_t>(1, asked)),
-          double(heavy) / double(asked + heavy), asked};
+  return {std::sqrt(estimated / found), double(inside) / double(std::max<size_t>(1, tested)),
+          double(heavy) / double(tested + heavy), tested};
 }
 
 }  // namespace
 
-TEST_CASE("the estimated error is the true one") {
+TEST_CASE("the estimated error equals the true error") {
   struct Shots {
     uint32_t samples, count;
   };
@@ -94,9 +94,9 @@ TEST_CASE("the estimated error is the true one") {
   };
   const char* more = std::getenv("LUCERNA_CALIBRATION");
   const uint32_t k = more ? uint32_t(std::atoi(more)) : 1;
-  // Its noise is in both figures as what it is (taken off the one, added to the other's interval): of what a
-  // picture of 64 samples is off by it makes a sixteenth, so that the tiles of different seeds hardly share
-  // it.
+  // The reference's noise is accounted for in both figures: subtracted from the error, added to the interval.
+  // It is a sixteenth of the error of a picture with 64 samples, so tiles of different seeds are almost
+  // independent.
   constexpr uint32_t k_reference = 1024;
   for (const Case& c :
        {Case{"cornell", 48, 48, {{64, 8}, {256, 4}}}, Case{"glass", 48, 48, {{64, 8}, {256, 8}}},
@@ -110,9 +110,9 @@ TEST_CASE("the estimated error is the true one") {
       INFO(c.scene << " " << samples);
       CHECK(f.ratio > 0.8);
       CHECK(f.ratio < 1.25);
-      // Where nearly all tiles are heavy-tailed no claim is made (glass with few samples): 50 tiles are the
-      // least that could tell 90 from 80 %.
-      if (f.asked < 50) continue;
+      // No claim where almost all tiles are heavy-tailed (glass with few samples): 50 tiles are the minimum
+      // that distinguishes 90 from 80 %.
+      if (f.tested < 50) continue;
       CHECK(f.covered > 0.85);
       CHECK(f.covered < 0.95);
     }

@@ -1,14 +1,14 @@
 // links: session
-// What stands far away from a closed room, and is seen from nowhere in it, changes no bit of its picture,
-// whichever way its light is computed: no radius, cell or margin is in units of the scene's extent.
+// An object far outside a closed room, invisible from inside, changes no bit of the picture, whichever solver
+// computes it: no radius, cell or margin scales with the scene's extent.
 #include "support/caustics.h"
 
 using namespace lucerna;
 
 namespace {
 
-/// A closed room with a lamp under its ceiling, a ball of glass of `size` metres on its floor and the eye
-/// near it; and a wall outside so far away, if that is not 0.
+/// A closed room with a lamp under its ceiling, a glass ball of radius `size` metres on its floor and the
+/// camera near it; if `away` is not 0, a wall outside at that distance.
 scene::Scene room(float away, float size = 0.3f) {
   scene::Scene s;
   s.name = "room";
@@ -39,25 +39,25 @@ void check_same(const test::Settings& settings, float size = 0.3f,
 
 }  // namespace
 
-TEST_CASE("far things change nothing of path tracing, by either tracer") {
+TEST_CASE("far objects do not change path tracing, with either tracer") {
   check_same({{"tracer", "compute-bvh"}});
   check_same({{"tracer", "host"}});
 }
-TEST_CASE("far things change nothing of photons and their radius, near a ball of five millimetres") {
+TEST_CASE("far objects do not change photons and their radius, near a ball of five millimetres") {
   check_same({{"components.caustic", "photons"}, {"photons.efficiency", "false"}}, 0.005f);
 }
-TEST_CASE("far things change nothing of photons behind a diffuse vertex") {
+TEST_CASE("far objects do not change photons behind a diffuse vertex") {
   check_same({{"components.tertiary", "photons"},
               {"components.caustic", "photons"},
               {"photons.efficiency", "false"}});
 }
-TEST_CASE("far things change nothing of records") {
+TEST_CASE("far objects do not change records") {
   for (const char* metric : {"split-sphere", "hessian"})
     check_same(
         {{"components.secondary", "cache"}, {"components.tertiary", "cache"}, {"cache.metric", metric}}, 0.3f,
         {1e5f});
 }
-TEST_CASE("under a sun a far thing takes no more than half of the light paths, and no light") {
+TEST_CASE("under a sun a far object gets at most half of the light paths and no light") {
   const test::Settings photons{{"components.caustic", "photons"},
                                {"photons.efficiency", "false"},
                                {"photons.aim", "false"},
@@ -73,4 +73,4 @@ TEST_CASE("under a sun a far thing takes no more than half of the light paths, a
     CHECK(both.noise.x < 3 * alone.noise.x + 0.002 * alone.value.x);
   }
 }
-TEST_CASE("far things change nothing of light tracing") { check_same({{"components.caustic", "light"}}); }
+TEST_CASE("far objects do not change light tracing") { check_same({{"components.caustic", "light"}}); }

@@ -1,5 +1,5 @@
 // links: session
-// What is foretold of renders, against what they come to.
+// Forecasts of render time compared with the actual values.
 #include <catch2/catch.hpp>
 #include <cstdio>
 
@@ -17,8 +17,8 @@ struct Case {
   const char* target;
 };
 
-/// Forecast over truth at the first line of the ledger after a tenth of the rays that tells one: low, middle,
-/// high.
+/// Forecast over actual value at the first ledger entry with a forecast after a tenth of the rays: low,
+/// middle, high.
 stats::Band forecast(const Case& c, const char* seed) {
   session::Renderer r(test::renderer_options(false));
   r.set_size(c.width, c.height);
@@ -32,12 +32,12 @@ stats::Band forecast(const Case& c, const char* seed) {
   r.finish_ledger();
   const auto& entries = r.ledger().entries();
   const double total = double(entries.back().rays);
-  CHECK(entries.back().total_rays->middle == Approx(total).epsilon(1e-9));  // what is done needs no forecast
+  CHECK(entries.back().total_rays->middle == Approx(total).epsilon(1e-9));  // finished work needs no forecast
   for (const stats::Entry& e : entries) {
     if (double(e.rays) < 0.1 * total || !e.total_rays) continue;
     const stats::Band& b = *e.total_rays;
     std::printf(
-        "%-8s %ux%u to %s, seed %s: %.2f M rays in all; after %.0f %% (%.0f samples a pixel) the forecast "
+        "%-8s %ux%u to %s, seed %s: %.2f M rays in all; after %.0f %% (%.0f samples per pixel) the forecast "
         "is %.2f of that, band %.2f to %.2f\n",
         c.scene, c.width, c.height, c.target, seed, 1e-6 * total, 100 * double(e.rays) / total, e.samples,
         b.middle / total, b.low / total, b.high / total);
@@ -48,8 +48,8 @@ stats::Band forecast(const Case& c, const char* seed) {
 
 }  // namespace
 
-TEST_CASE("a tenth of an adaptive render foretells the whole") {
-  // At the default minimum and maximum of samples; the targets ask for two to ten times the minimum.
+TEST_CASE("a tenth of an adaptive render predicts the total") {
+  // Default minimum and maximum of samples; the targets need two to ten times the minimum.
   for (const Case& c :
        {Case{"cornell", 64, 64, "0.07"}, Case{"studio", 96, 54, "0.03"}, Case{"atrium", 64, 36, "0.13"}}) {
     CAPTURE(c.scene, c.target);
@@ -62,9 +62,9 @@ TEST_CASE("a tenth of an adaptive render foretells the whole") {
   }
 }
 
-TEST_CASE("in uniform sampling the band told at every line holds the truth in eight cases of ten") {
-  // Rooms, metal, a studio's sky: the error falls by another law in each. A ledger's line is told by those
-  // before it, in samples, which is time on a machine that has nothing else to do.
+TEST_CASE("in uniform sampling the forecast band contains the actual value in eight cases of ten") {
+  // Rooms, metal, a studio's environment: the error decreases by a different law in each. Each ledger entry
+  // is predicted from those before it, in samples, which equals time on an otherwise idle machine.
   size_t reported = 0, held = 0;
   session::Renderer r(test::renderer_options(false));
   r.set_size(48, 32);
@@ -90,7 +90,7 @@ TEST_CASE("in uniform sampling the band told at every line holds the truth in ei
       if (!band) continue;
       ++of_scene, within += band->low <= truth->middle && truth->middle <= band->high;
       if (e.samples < 20 || (e.samples > 60 && e.samples < 75))
-        std::printf("%-8s with %.0f samples a pixel: %.2f of the truth, %.2f to %.2f\n", scene, e.samples,
+        std::printf("%-8s with %.0f samples per pixel: %.2f of the truth, %.2f to %.2f\n", scene, e.samples,
                     band->middle / truth->middle, band->low / truth->middle, band->high / truth->middle);
     }
     std::printf("%-8s %zu of %zu held the truth\n", scene, within, of_scene);

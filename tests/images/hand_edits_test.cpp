@@ -1,6 +1,6 @@
 // links: session
-// What the window's panels change through the renderer: lamps moved, surfaces made lights, the sky taken from
-// a file, the background hidden. Each gives the picture, bit for bit, of a scene that was made so.
+// Edits that the window's panels make through the renderer: moved lamps, emissive surfaces, an environment
+// from a file, a hidden background. Each gives, bit for bit, the picture of a scene built that way.
 #include <catch2/catch.hpp>
 #include <fstream>
 
@@ -32,7 +32,7 @@ struct Bench {
 
 bool same(const film::Image& a, const film::Image& b) { return a.components == b.components; }
 
-/// A sky of 8 x 4 texels as a file.
+/// Writes an environment of 8 x 4 texels.
 void write_sky(const std::filesystem::path& file, const std::vector<vec3>& texels, uint32_t width = 8) {
   film::FilmImage image;
   image.width = width, image.height = uint32_t(texels.size()) / width;
@@ -46,7 +46,7 @@ void write_sky(const std::filesystem::path& file, const std::vector<vec3>& texel
 
 }  // namespace
 
-TEST_CASE("the exposure is measured by the light that is shown") {
+TEST_CASE("automatic exposure measures the light that is shown") {
   Bench b(test::block_room(true));
   const film::Image image = b.image();
   const vec2 at(0.5f, 0.7f);
@@ -73,7 +73,7 @@ TEST_CASE("the exposure is measured by the light that is shown") {
   CHECK_FALSE(b.r.measure(at).ev);
 }
 
-TEST_CASE("a lamp that is moved, and a surface made a light, light as if they had always been so") {
+TEST_CASE("a moved lamp and a surface made emissive light the scene as if built that way") {
   const scene::Scene before = test::block_room(true);
   scene::Scene after = before;
   after.lights[0].position = {-1, 2, 0.5f};
@@ -91,7 +91,8 @@ TEST_CASE("a lamp that is moved, and a surface made a light, light as if they ha
   CHECK(same(edited.image(), old));
 }
 
-TEST_CASE("a file lights as it does when the scene names it; its own sky comes back") {
+TEST_CASE(
+    "an environment file lights the scene as if the scene named it; the scene's own one can be restored") {
   const test::Folder folder;
   const scene::Scene own = test::block_room(true);
   std::vector<vec3> texels;
@@ -111,13 +112,13 @@ TEST_CASE("a file lights as it does when the scene names it; its own sky comes b
   CHECK(dropped.r.scene()->environment.file == file.string());
   dropped.r.set_environment(2, 90), made.r.set_environment(2, 90);
   CHECK(same(dropped.image(), made.image()));
-  dropped.r.set_environment_file(file);  // again: the earlier one goes
+  dropped.r.set_environment_file(file);  // again: the earlier one is dropped
   CHECK(dropped.r.scene()->images.size() == own.images.size() + 1);
   dropped.r.set_environment_file("");
   dropped.r.set_environment(1, 0);
   CHECK(same(dropped.image(), old));
 
-  // What cannot be read changes nothing.
+  // A file that cannot be read changes nothing.
   const auto failure = [&](const std::filesystem::path& bad) -> std::string {
     try {
       dropped.r.set_environment_file(bad);
@@ -139,7 +140,7 @@ TEST_CASE("a file lights as it does when the scene names it; its own sky comes b
   CHECK(same(dropped.image(), old));
 }
 
-TEST_CASE("a hidden background takes away what the eye sees of the sky, and nothing that it lights") {
+TEST_CASE("a hidden background hides the directly visible environment only, not the light it gives") {
   Bench b(test::block_room(true));
   const film::Image shown = b.image();
   b.r.settings().set("film.background", "hidden");
@@ -152,7 +153,7 @@ TEST_CASE("a hidden background takes away what the eye sees of the sky, and noth
       ++sky;
       CHECK(luminance(shown.components[0][i]) > 0);
       CHECK(hidden.components[0][i] == vec3(0));
-    } else if (i / 48 > 20) {  // below all of the sky
+    } else if (i / 48 > 20) {  // below the environment
       ++surfaces;
       REQUIRE(hidden.components[0][i] == shown.components[0][i]);
     }
@@ -164,7 +165,7 @@ TEST_CASE("a hidden background takes away what the eye sees of the sky, and noth
   CHECK(same(b.image(), shown));
 }
 
-TEST_CASE("the picture is measured as a whole and at a point, coarse at first") {
+TEST_CASE("the picture is measured as a whole and at a point, first on the coarse level") {
   Bench b(test::block_room(true), true);
   CHECK_THROWS_WITH(b.r.measure(std::nullopt), Catch::Contains("no picture to measure yet"));
   REQUIRE(b.r.draw_draft());
@@ -176,5 +177,5 @@ TEST_CASE("the picture is measured as a whole and at a point, coarse at first") 
   const auto sky = b.r.measure(vec2(0.5f, 0.02f)), floor = b.r.measure(vec2(0.5f, 0.95f));
   REQUIRE((sky.ev && floor.ev));
   CHECK(luminance(sky.color) * std::exp2(*sky.ev) == Approx(0.18));
-  CHECK(sky.color.z == Approx(1.5f * sky.color.x).epsilon(0.01));  // the sky's blue
+  CHECK(sky.color.z == Approx(1.5f * sky.color.x).epsilon(0.01));  // the environment's blue
 }

@@ -1,6 +1,6 @@
 // links: session
-// Hits shaded by kernels of their classes make the picture that one kernel for all makes, bit for bit,
-// whatever is looked up and however light is kept apart.
+// Hits shaded by one kernel per class give bit for bit the picture of one kernel for all, for all lookups and
+// for per-group light.
 #include <catch2/catch.hpp>
 
 #include "images/shafts_support.h"
@@ -43,19 +43,19 @@ TEST_CASE("hits of every kind are shaded by class as by one kernel") {
   check_same(all_kinds(lamps), {});
 }
 
-TEST_CASE("hits are shaded by class as by one kernel by the other tracer") {
+TEST_CASE("shading by class equals shading by one kernel with the other tracer") {
   check_same(all_kinds(false), {{"tracer", "compute-bvh"}});
 }
 
-TEST_CASE("hits are shaded by class as by one kernel where few paths go on") {
+TEST_CASE("shading by class equals shading by one kernel where few paths continue") {
   check_same(all_kinds(true), {{"path.max_depth", "3"}, {"path.roulette_depth", "1"}});
 }
 
-TEST_CASE("hits are shaded by class as by one kernel where light is kept apart") {
+TEST_CASE("shading by class equals shading by one kernel with per-group light") {
   check_same(all_kinds(true), {{"relight.enabled", GENERATE("on", "compact")}});
 }
 
-TEST_CASE("hits are shaded by class as by one kernel where light is looked up") {
+TEST_CASE("shading by class equals shading by one kernel with lookups") {
   test::PanelRoom room(vec3(0.5f));
   room.s.materials.push_back(test::shafts::metal(0.3f));
   test::add_quad(room.s, {-0.5f, -0.9f, -0.5f}, {0, 0.2f, 0.5f}, {0.5f, 0, 0},

@@ -1,7 +1,7 @@
 // links: session
-// Learned lights in hard cases: very many emissive triangles, powers of all magnitudes, lights that few
-// places see, and skies of bad texels. Light is that by power, or that of the scene without the lights that
-// reach nothing, and no pixel is left without a number.
+// Learned lights in difficult cases: very many emissive triangles, powers of all magnitudes, lights visible
+// from few places, environments with invalid texels. The light equals selection by power, or the scene
+// without the lights that reach nothing, and every pixel is finite.
 #include "images/learned_lights_support.h"
 
 using namespace lucerna;
@@ -9,7 +9,7 @@ using test::Settings, test::sky, test::window_room, test::with;
 
 namespace {
 
-/// By how many standard errors the mean of the sums of all components differs.
+/// Difference of the means of the sums of all components, in standard errors.
 double mean_z(const film::Image& a, const film::Image& b) {
   const auto whole = [](const film::Image& image) {
     test::Mean m;
@@ -32,8 +32,8 @@ bool finite(const film::Image& image) {
   return true;
 }
 
-/// Learned, of two seeds, against `expected` by power: blocks (test::worst_z: 6 comes by chance in fewer than
-/// one of 10^4 comparisons) and the picture's mean (4.5: fewer than one of 10^5).
+/// Learned selection with two seeds against `expected` by power: blocks (test::worst_z: 6 occurs by chance in
+/// fewer than one of 10^4 comparisons) and the picture's mean (4.5: fewer than one of 10^5).
 void check_light(const char* name, const scene::Scene& s, const scene::Scene& expected, uint32_t samples,
                  const Settings& settings = {}) {
   for (const char* seed : {"1", "2"}) {
@@ -62,8 +62,8 @@ scene::Scene room_of_lamps(const std::vector<std::pair<vec3, float>>& lamps) {
   return s;
 }
 
-/// `count` pairs of triangles that shine beneath the ceiling, of six strengths from 1 to 10^5, and as many in
-/// the block, where no one sees them.
+/// `count` pairs of emissive triangles below the ceiling, of six strengths from 1 to 10^5, and as many hidden
+/// in the block.
 scene::Scene panel(uint32_t side) {
   scene::Scene s = room_of_lamps({});
   const auto first = uint32_t(s.materials.size());
@@ -92,7 +92,8 @@ scene::Scene panel(uint32_t side) {
   return s;
 }
 
-/// A shaft in the floor's corner with a bright lamp deep in it: a patch of the ceiling sees it.
+/// A shaft in the corner of the floor with a bright lamp deep inside, visible from a patch of the ceiling
+/// only.
 scene::Scene shaft() {
   scene::Scene s = room_of_lamps({{{1, 2, 1}, 1}, {{-1.5f, 0.05f, -1.5f}, 60}, {{0, 0.5f, -0.5f}, 1000}});
   test::add_box(s, {-1.6f, 0.01f, -1.6f}, {-1.4f, 1.5f, -1.4f}, 0, true);
@@ -100,7 +101,7 @@ scene::Scene shaft() {
   return s;
 }
 
-/// Emissive balls behind panes and in a case of solid glass.
+/// Emissive balls behind panes and inside solid glass.
 scene::Scene behind_glass() {
   scene::Scene s = room_of_lamps({{{1, 2.2f, 1}, 0.5f}});
   s.materials.push_back(test::diffuse(vec3(0.1f), vec3(30, 20, 10)));
@@ -122,15 +123,15 @@ TEST_CASE("forty thousand emissive triangles of six strengths, half of them hidd
   check_light("panel", s, s, 64);
 }
 
-TEST_CASE("lamps of 1e-8 and 1e8 W side by side, and the one where the other is hidden") {
+TEST_CASE("lamps of 1e-8 and 1e8 W side by side, and the weak one where the strong one is hidden") {
   const vec3 a(1, 2, 1), b(-1, 2, 1), outside(9, 1, 0), block(0, 0.5f, -0.5f);
   check_light("side by side", room_of_lamps({{a, 1e-8f}, {b, 1e8f}}), room_of_lamps({{b, 1e8f}}), 64);
-  // The weak one is all that the room sees. Paths that choose the strong one bring nothing.
+  // Only the weak lamp lights the room. Paths that choose the strong one contribute nothing.
   for (const vec3& hidden : {outside, block})
     check_light("hidden", room_of_lamps({{a, 1e-8f}, {hidden, 1e8f}}), room_of_lamps({{a, 1e-8f}}), 128);
 }
 
-TEST_CASE("lights of strength 0 have no part, and a scene of such alone is black") {
+TEST_CASE("lights of strength 0 are never chosen, and a scene with no others is black") {
   scene::Scene s = room_of_lamps({{{1, 2, 1}, 5}, {{-1, 2, 1}, 0}, {{0, 2, 1}, 0}, {{-1, 2, -1}, 3}});
   s.materials.push_back(test::diffuse(vec3(0.5f), vec3(0)));
   test::add_quad(s, {-1.5f, 2.4f, 0.4f}, {0.2f, 0, 0}, {0, 0, 0.2f}, uint32_t(s.materials.size() - 1));
@@ -140,7 +141,7 @@ TEST_CASE("lights of strength 0 have no part, and a scene of such alone is black
   for (const auto& component : dark.components) CHECK(test::mean(component) == 0);
 }
 
-TEST_CASE("one light alone: a triangle, a lamp, a sun") {
+TEST_CASE("a single light: a triangle, a lamp, a sun") {
   scene::Scene triangle = room_of_lamps({});
   triangle.materials.push_back(test::diffuse(vec3(0.5f), vec3(20)));
   scene::Primitive p;
@@ -157,8 +158,8 @@ TEST_CASE("one light alone: a triangle, a lamp, a sun") {
   CHECK(test::identical(with(sun, "learned", 8).image, with(sun, "power", 8).image));
 }
 
-TEST_CASE("a sky with a texel of 1e7, with negative texels and with texels that are no numbers") {
-  // The sun that the texel is lies where no place in the room sees it, or shines in.
+TEST_CASE("an environment with a texel of 1e7, with negative texels and with NaN texels") {
+  // The bright texel, a sun, is either invisible from the room or shines in.
   for (const size_t row : {12u, 5u}) {
     scene::Image image = sky();
     for (int k = 0; k < 3; ++k) image.floats[4 * (row * 32 + 16) + size_t(k)] = 1e7f;
@@ -181,8 +182,8 @@ TEST_CASE("emission behind panes of glass") {
   check_light("glass", s, s, 128);
 }
 
-TEST_CASE("a lamp that one place in a hundred sees") {
-  // By power primary light is the sum of that of each lamp alone, which is chosen every time.
+TEST_CASE("a lamp visible from one place in a hundred") {
+  // The primary light is the sum of the lamps' own pictures, in which each is always chosen.
   const Settings primary = {
       {"components.secondary", "off"}, {"components.tertiary", "off"}, {"components.caustic", "off"}};
   const scene::Scene s = shaft();
@@ -210,8 +211,7 @@ TEST_CASE("a lamp that one place in a hundred sees") {
   }
 }
 
-TEST_CASE(
-    "a lamp that is switched on after learning, and a wall that goes, make the picture of a new scene") {
+TEST_CASE("a lamp switched on after learning, and a removed wall, give the picture of a new scene") {
   scene::Scene s = room_of_lamps({{{1, 2, 1}, 5}, {{-1, 2, 1}, 8}, {{0.3f, 1.4f, 1}, 2}});
   s.lights[1].enabled = false;
   session::Renderer renderer(test::renderer_options(false));
@@ -227,14 +227,14 @@ TEST_CASE(
   s.lights[1].enabled = true;
   CHECK(test::identical(lit, with(s, "learned", 8).image));
   check_light("switched on", s, s, 64);
-  // The block goes.
+  // The block is removed.
   s.instances.pop_back();
   renderer.set_scene(std::make_shared<scene::Scene>(s));
   test::set(renderer, {{"samples", "8"}});
   CHECK(test::identical(test::finish(renderer), with(s, "learned", 8).image));
 }
 
-TEST_CASE("what is learned takes memory within bounds, records none once it is learned") {
+TEST_CASE("learning takes bounded memory, and no records once it has finished") {
   session::Renderer renderer(test::renderer_options(false));
   renderer.settings().set("path.batch", test::k_batch);
   renderer.set_size(64, 64);
@@ -248,7 +248,7 @@ TEST_CASE("what is learned takes memory within bounds, records none once it is l
   };
   const uint64_t learning = bytes("4"), learned = bytes("8");
   INFO(learning << " bytes with two generations of records, " << learned << " at last");
-  // Rows of at most 4 million texels, records of one dispatch, and 52 bytes an emissive triangle.
+  // Rows of at most 4 million texels, records of one dispatch, and 52 bytes per emissive triangle.
   CHECK(learned < (uint64_t{64} << 20) + (uint64_t{7} << 20) + 60 * 60 * 4 * 52 + (uint64_t{16} << 20));
   CHECK(learned > 1u << 20);
   CHECK(learning > 1u << 20);

@@ -1,5 +1,6 @@
 #pragma once
-// What tests of learned lights share: a room with a window, skies, and pictures by either way of choosing.
+// Shared by tests of learned lights: a room with a window, environments, and pictures with either way of
+// choosing lights.
 #include <limits>
 
 #include "images/light_mix_support.h"
@@ -13,7 +14,7 @@ inline Result with(const scene::Scene& s, const char* how, uint32_t samples, Set
   return render(s, settings, samples, size, false);
 }
 
-/// A room with one opening of `wide` metres in its wall, under that sky; looked down into.
+/// A room under that environment with one opening of `wide` metres in its wall, seen from above.
 inline scene::Scene window_room(scene::Image sky, bool pane, float wide = 0.5f) {
   scene::Scene s;
   s.name = "window", s.file = "window.gltf";

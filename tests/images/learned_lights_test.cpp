@@ -1,6 +1,6 @@
 // links: session
-// Direct light that learns: the same light as by power whatever there is to learn, to the bit the same
-// picture each time, and less noise where walls hide most of the lights.
+// Learned light selection: the same light as selection by power in every scene, reproducible bit for bit, and
+// less noise where walls hide most of the lights.
 #include "images/learned_lights_support.h"
 
 using namespace lucerna;
@@ -9,8 +9,7 @@ namespace {
 
 using test::Settings, test::sky, test::window_room, test::with;
 
-/// Lamps of very different power behind a screen: the brightest light next to nothing, and one lies in a
-/// niche.
+/// Lamps of very different power behind a screen: the brightest is next to a surface, one is in a niche.
 scene::Scene lamps() {
   scene::Scene s = test::block_room();
   s.materials.push_back(test::diffuse(vec3(0.5f), vec3(40, 20, 10)));
@@ -30,7 +29,7 @@ scene::Scene lamps() {
   return s;
 }
 
-/// Pictures by power and learned, of as many samples: of that many seeds each.
+/// Pictures by power and learned, with the same number of samples for each of that many seeds.
 void check_same_light(const char* name, const scene::Scene& s, uint32_t samples,
                       const Settings& settings = {}) {
   INFO(name);
@@ -47,7 +46,7 @@ void check_same_light(const char* name, const scene::Scene& s, uint32_t samples,
 
 }  // namespace
 
-TEST_CASE("the same light: through a window, through a pane, under a constant sky") {
+TEST_CASE("the same light through a window, through a pane and under a constant environment") {
   check_same_light("window", window_room(sky(), false), 128);
   check_same_light("pane", window_room(sky(), true), 128);
   scene::Scene constant = window_room({}, false);
@@ -55,20 +54,20 @@ TEST_CASE("the same light: through a window, through a pane, under a constant sk
   check_same_light("constant", constant, 128);
 }
 
-TEST_CASE("the same light of lamps, most of them hidden") { check_same_light("lamps", lamps(), 256); }
+TEST_CASE("the same light of lamps that are mostly hidden") { check_same_light("lamps", lamps(), 256); }
 
-TEST_CASE("the same light of an open room, and of materials that reflect and refract") {
+TEST_CASE("the same light in an open room and with materials that reflect and refract") {
   check_same_light("open", test::room(), 128, {{"relight.enabled", "off"}});
 }
 
-TEST_CASE("texels that are huge, negative or no numbers spoil nothing") {
+TEST_CASE("texels that are huge, negative or NaN do not invalidate the estimate") {
   const scene::Scene s = window_room(sky(true), false);
   const test::Result r = with(s, "learned", 64);
   CHECK(r.stats.dropped == 0);
   for (const vec3& v : r.image.components[0]) REQUIRE(std::isfinite(luminance(v)));
 }
 
-TEST_CASE("one lamp, and a scene without light: nothing to learn, and nothing is paid") {
+TEST_CASE("with one lamp or no light nothing is learned and nothing is spent") {
   const scene::Scene one = test::block_room();
   CHECK(test::identical(with(one, "learned", 8).image, with(one, "power", 8).image));
   scene::Scene dark = window_room(sky(), false);
@@ -82,7 +81,7 @@ TEST_CASE("the picture is a function of scene, settings and seed") {
   CHECK(test::identical(first, with(s, "learned", 8).image));
   CHECK(test::identical(first, with(s, "learned", 8, {{"path.batch", "1024"}}).image));
   CHECK_FALSE(test::identical(first, with(s, "power", 8).image));
-  // Work that was cancelled leaves no trace.
+  // Cancelled work changes nothing.
   session::Renderer renderer(test::renderer_options(false));
   renderer.settings().set("path.batch", test::k_batch);
   renderer.set_size(32, 32);
@@ -90,8 +89,8 @@ TEST_CASE("the picture is a function of scene, settings and seed") {
   test::set(renderer,
             {{"lights.sampling", "learned"}, {"samples", "8"}, {"cache.max_records", test::k_room}});
   for (int limit = 0; !renderer.done(); ++limit) {
-    int asked = 0;
-    renderer.step([&] { return ++asked > limit; });
+    int calls = 0;
+    renderer.step([&] { return ++calls > limit; });
   }
   CHECK(test::identical(first, renderer.image()));
 }

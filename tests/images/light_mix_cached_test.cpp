@@ -1,7 +1,7 @@
 // links: session
-// Light of records by groups of lights (relight.enabled=compact): the picture as it is, to the bit that
-// without groups; a mix of it as if the records had been made in that light, within what records are off by;
-// whatever is done to records on the way.
+// Per-group light of records (relight.enabled=compact): the unmixed picture equals, bit for bit, the one
+// without groups; a mix equals records made in that light, within the records' error, whatever happens to the
+// records in between.
 #include <catch2/catch.hpp>
 
 #include "images/light_mix_support.h"
@@ -13,7 +13,7 @@ using namespace lucerna::test;
 
 namespace {
 
-/// Radii by distances alone: records then lie where they do in any light.
+/// Radii from distances alone, so records lie at the same positions in any light.
 Settings cached(Settings more = {}) {
   const Settings all{{"components.secondary", "cache"}, {"components.tertiary", "cache"},
                      {"cache.metric", "split-sphere"},  {"cache.noise", "1"},
@@ -22,8 +22,8 @@ Settings cached(Settings more = {}) {
   return more;
 }
 
-/// By how much 8x8 blocks of two pictures differ, over the second's mean: the root of the mean square, and
-/// the whole.
+/// Difference of the 8x8 blocks of two pictures relative to the second's mean: root mean square, and of the
+/// whole picture.
 struct Off {
   double blocks = 0, mean = 0;
 };
@@ -47,9 +47,8 @@ const irradiance_cache::Records& records(const session::Renderer& r) { return te
 
 }  // namespace
 
-TEST_CASE(
-    "records that keep groups of lights apart hold the light, and make the picture, of those that do not") {
-  const scene::Scene even = block_room(true);  // no sun, which would be a light of its own
+TEST_CASE("records with light groups have the same light, and give the same picture, as records without") {
+  const scene::Scene even = block_room(true);  // no sun, which would be a separate light
   Bench separate(even, cached()), together(even, cached({{"relight.enabled", "off"}}));
   const film::Image a = separate.image(), b = together.image();
   CHECK(separate.r.relight().separate);
@@ -64,8 +63,8 @@ TEST_CASE(
   CHECK(separate.r.device().validation_messages() == 0);
 }
 
-TEST_CASE("a mix of records' light is the mix of path traced light, within what records are off by") {
-  // Of the same samples, so that direct light is the same.
+TEST_CASE("a mix of records' light equals the mix of path-traced light within the records' error") {
+  // The same samples, so direct light is identical.
   Bench b(room(), cached({{"cache.rays", "256"}, {"cache.max_rays", "1024"}, {"cache.noise", "0.02"}}), 256),
       traced(room(), {{"relight.enabled", "compact"}}, 256);
   b.image(), traced.image();
@@ -81,14 +80,14 @@ TEST_CASE("a mix of records' light is the mix of path traced light, within what 
         "spot: solo color=0.1,1,0.2", "sky: color=1,0.2,0.1; lamp: kelvin=9000 ev=1.3"}) {
     const Off o = both(text);
     INFO(text << ": " << o.blocks << " of blocks, " << o.mean << " of the mean");
-    // A group that brings a hundredth of the light has few of the records' rays.
+    // A group that contributes a hundredth of the light gets few of the records' rays.
     CHECK(o.blocks < 0.1);
     CHECK(std::abs(o.mean) < 0.02);
   }
   CHECK(b.r.stats().rays == rays);
 }
 
-TEST_CASE("records' groups follow the settings, and other light") {
+TEST_CASE("records' groups follow settings and light edits") {
   const scene::Scene s = room();
   const char* const mix = "spot: ev=3; sky: mute";
   const auto fresh = [&](const scene::Scene& of, Settings more) {
@@ -97,10 +96,10 @@ TEST_CASE("records' groups follow the settings, and other light") {
   };
   Bench b(s, cached({{"relight.enabled", "off"}}));
   b.image();
-  // Kept apart from now on: records stay where they are and gather anew.
+  // Groups are tracked from now on: records keep their positions and gather again.
   set(b.r, {{"relight.enabled", "compact"}, {"relight.mix", mix}});
   CHECK(identical(b.image(), fresh(s, {})));
-  // Groups change places; their names, and how many there are, stay.
+  // Lights change groups; the groups' names and number stay.
   const Settings regrouped{{"relight.groups", "spot=block; block=spot"}};
   set(b.r, regrouped);
   const film::Image other = b.image();
@@ -113,7 +112,7 @@ TEST_CASE("records' groups follow the settings, and other light") {
   CHECK(b.r.device().validation_messages() == 0);
 }
 
-TEST_CASE("a saved cache keeps groups of lights, and is lit anew where there are others") {
+TEST_CASE("a saved cache keeps its light groups and is relit for other groups") {
   const Folder folder;
   const scene::Scene s = room();
   Bench b(s, cached({{"relight.mix", "spot: ev=3; sky: mute"}}));
@@ -126,20 +125,20 @@ TEST_CASE("a saved cache keeps groups of lights, and is lit anew where there are
     other.r.solver_load("cache", folder / "a.cache");
     const film::Image again = other.image();
     if (*groups == 0) CHECK(identical(again, image));
-    // Loaded ones count too; those that are relit have their rays anew.
+    // Loaded records count too; relit ones have gathered again.
     CHECK(test::cache(other.r)->status().rays == gathered);
     CHECK(test::cache(other.r)->status().records == test::cache(b.r)->status().records);
     if (*groups != 0) CHECK(off(again, image).blocks > 0.02);  // the block is brighter, not the spot
   }
 }
 
-TEST_CASE("what is told of records' errors is of the light as it is mixed") {
+TEST_CASE("reported record errors are those of the mixed light") {
   const scene::Scene s = room();
   Bench b(s, cached(), 16);
   b.image();
   const film::ImageError as_it_is = b.r.image_error();
   REQUIRE(as_it_is.records_rms > 0);
-  // All light by the same factor: all errors, and blocks' sums of them, by the same, too.
+  // The same factor for all light scales all errors and the blocks' sums of them.
   const std::vector<film::TileError> before = b.r.tile_errors();
   b.mix("sky: ev=2; sun: ev=2; lamp: ev=2; spot: ev=2; block: ev=2");
   const film::ImageError brighter = b.r.image_error();
@@ -149,7 +148,7 @@ TEST_CASE("what is told of records' errors is of the light as it is mixed") {
   const std::vector<film::TileError> after = b.r.tile_errors();
   for (size_t t = 0; t < before.size(); ++t)
     CHECK(after[t].records.noise == Approx(4 * before[t].records.noise).epsilon(1e-3));
-  // Without the lights there is nothing to err in.
+  // Without light there is no error.
   b.mix("sky: mute; sun: mute; lamp: mute; spot: mute; block: mute");
   CHECK(b.r.image_error().records_rms == 0);
 }

@@ -1,7 +1,7 @@
 // links: session
-// Light kept apart by groups in short (relight.enabled=compact), against the same light kept by component and
-// against rendering anew: as it is to the bit the picture without groups, under any mix within 0.02 % of the
-// exact one in light and in noise, whatever was mixed before, and with no ray traced.
+// Compact per-group light (relight.enabled=compact), compared with per-group light by component and with a
+// new render: unmixed it equals, bit for bit, the picture without groups; under any mix light and noise are
+// within 0.02 % of the exact values; the result does not depend on earlier mixes, and no ray is traced.
 #include <catch2/catch.hpp>
 
 #include "film/io/image_file.h"
@@ -32,7 +32,7 @@ const char* const k_mixes[] = {
     "lamp: mute; sun: mute; sky: mute",
     "sky: color=1,0.2,0.1; sun: kelvin=2500; lamp: kelvin=9000 ev=1.3; block: color=0.3,0.1,1"};
 
-/// The largest difference of two pictures of all components over the pixel's brightest channel.
+/// The largest difference between two pictures of all components, relative to the pixel's brightest channel.
 double worst_share(const std::vector<vec3>& a, const std::vector<vec3>& b) {
   double worst = 0;
   for (size_t i = 0; i < a.size(); ++i)
@@ -45,8 +45,8 @@ double worst_share(const std::vector<vec3>& a, const std::vector<vec3>& b) {
 
 }  // namespace
 
-TEST_CASE("as it is, light kept in short is to the bit the picture without groups, noise included") {
-  const scene::Scene even = block_room(true);  // no sun, which would be a light of its own
+TEST_CASE("unmixed compact light equals the picture without groups bit for bit, noise included") {
+  const scene::Scene even = block_room(true);  // no sun, which would be a separate light
   Bench separate(even, k_compact), together(even, {{"relight.enabled", "off"}});
   const film::Image a = separate.image(), b = together.image();
   CHECK(separate.r.relight().separate);
@@ -62,8 +62,7 @@ TEST_CASE("as it is, light kept in short is to the bit the picture without group
   CHECK(worst_z(c, without.image()) < 5.5);
 }
 
-TEST_CASE(
-    "a mix of light kept in short is that of light kept by component within 0.02 %, and so is its noise") {
+TEST_CASE("a mix of compact light equals that of light by component within 0.02 %, and so does its noise") {
   constexpr double k_share = 2e-4;
   Bench exact(room(), {}, 64), compact(room(), k_compact, 64);
   exact.image(), compact.image();
@@ -79,19 +78,19 @@ TEST_CASE(
     CHECK(off < k_share);
     CHECK(odd_off < k_share);
     most = std::max(most, off);
-    // What is told of the noise of the picture, and of its brightness.
+    // The reported noise and brightness of the picture.
     const film::ImageError reported = compact.r.image_error(), right = exact.r.image_error();
     CHECK(reported.rms[0] == Approx(right.rms[0]).epsilon(1e-3));
     CHECK(reported.luminance[0] == Approx(right.luminance[0]).epsilon(k_share));
-    // Components are estimates, and never more than the picture: they are its shares.
+    // Components are estimates; their sum never exceeds the picture, because they are shares of it.
     double sum = 0;
     for (size_t c = 1; c < reported.luminance.size(); ++c) sum += reported.luminance[c];
     CHECK(sum == Approx(reported.luminance[0]).epsilon(1e-4));
   }
-  CHECK(most > 0);  // or nothing was in short
+  CHECK(most > 0);  // otherwise no light was compact
 }
 
-TEST_CASE("light kept in short and mixed equals rendering anew, by statistics") {
+TEST_CASE("a mix of compact light equals a new render, statistically") {
   const scene::Scene s = room();
   Bench b(s, compact({{"seed", "1"}}), 64);
   b.image();
@@ -105,7 +104,7 @@ TEST_CASE("light kept in short and mixed equals rendering anew, by statistics") 
   }
 }
 
-TEST_CASE("a mix of light kept in short traces no ray and does not depend on what was mixed before") {
+TEST_CASE("a mix of compact light traces no ray and does not depend on earlier mixes") {
   Bench b(room(), k_compact);
   const film::Image neutral = b.image();
   const uint64_t rays = b.r.stats().rays, restarts = b.r.restarts();
@@ -128,18 +127,18 @@ TEST_CASE("a mix of light kept in short traces no ray and does not depend on wha
   for (int i = 0; i < 3; ++i) between.r.step();
   between.mix("lamp: ev=2; sky: mute");
   CHECK(identical(between.image(), mixed));
-  // Without any light nothing is left.
+  // Without any light the picture is black.
   b.mix("sky: mute; sun: mute; lamp: mute; spot: mute; block: mute");
   for (const auto& component : b.r.image().components)
     CHECK(std::all_of(component.begin(), component.end(), [](const vec3& v) { return v == vec3(0); }));
 }
 
-TEST_CASE("the picture that is shown at once after a mix is the one that is developed afterwards") {
+TEST_CASE("the picture shown immediately after a mix equals the one developed later") {
   session::RendererOptions options = renderer_options(true);
   options.interactive = true;
   session::Renderer r(options);
   r.set_size(48, 32);
-  // auto: the window keeps light in short.
+  // auto: the window stores compact per-group light.
   r.set_scene(std::make_shared<scene::Scene>(room()), {},
               {{"samples", "16", ""}, {"path.max_depth", "8", ""}});
   while (r.step()) {
@@ -161,9 +160,9 @@ TEST_CASE("the picture that is shown at once after a mix is the one that is deve
   CHECK(r.stats().dropped == 0);
 }
 
-TEST_CASE("light of the sun and of the sky are told apart where light is kept in short") {
+TEST_CASE("sun and environment are separate groups in compact light") {
   scene::Scene s = room();
-  s.lights.clear();  // nothing else shines
+  s.lights.clear();  // no other lights
   s.materials[1].emission = vec3(0);
   const scene::LightGroups groups = scene::group_lights(s);
   Bench b(s, compact({{"seed", "1"}}), 64);
@@ -179,13 +178,13 @@ TEST_CASE("light of the sun and of the sky are told apart where light is kept in
     Bench rendered(alone, {{"seed", "2"}, {"relight.enabled", "off"}}, 64);
     CHECK(worst_z(solo[k], as_one_component(rendered.image())) < 5.5);
   }
-  CHECK(worst_z(solo[0], solo[1]) > 20);  // or nothing could be mistaken
+  CHECK(worst_z(solo[0], solo[1]) > 20);  // otherwise a mix-up would not show
   film::Image both = solo[0];
   for (size_t i = 0; i < both.samples.size(); ++i) both.components[0][i] += solo[1].components[0][i];
   CHECK(worst_share(both.components[0], whole.components[0]) < 2e-4);
 }
 
-TEST_CASE("drafts of light kept in short are mixed like the picture") {
+TEST_CASE("preview samples of compact light are mixed like the picture") {
   const scene::Scene s = room();
   const std::vector<vec3> weights = scene::mix_weights(
       scene::parse_mix("lamp: ev=1 color=1,0.4,0.2; sun: mute; sky: ev=-3"), groups_of_room());
@@ -197,7 +196,7 @@ TEST_CASE("drafts of light kept in short are mixed like the picture") {
   CHECK(worst_share(all_components(a, false), all_components(neutral, false)) > 0.1);
 }
 
-TEST_CASE("layers by group sum up to the picture within 0.2 %") {
+TEST_CASE("layers by group sum to the picture within 0.2 %") {
   const Folder folder;
   Bench b(room(), compact({{"relight.layers", "true"},
                            {"relight.mix", "lamp: ev=1.3 color=1,0.8,0.3; sun: ev=-2; sky: mute"}}));
@@ -221,13 +220,12 @@ TEST_CASE("layers by group sum up to the picture within 0.2 %") {
   }
 }
 
-TEST_CASE("what is kept by groups takes 16 bytes a pixel for each, 128 for eight") {
+TEST_CASE("per-group light takes 16 bytes per pixel and group, 128 for eight") {
   CHECK(film::sum_bytes(8, film::GroupStorage::compact) - film::sum_bytes(1) == 128);
   CHECK(film::sum_bytes(1, film::GroupStorage::compact) == film::sum_bytes(1));
 }
 
-TEST_CASE(
-    "the window keeps light in short unless told otherwise, batch renders keep none; each can be changed") {
+TEST_CASE("the window stores compact light by default, batch renders store none; each can be changed") {
   for (const bool interactive : {false, true}) {
     session::RendererOptions options = renderer_options(true);
     options.interactive = interactive;

@@ -1,6 +1,6 @@
 // links: session
-// Light that is traced from lights to the camera, by groups of lights (relight.enabled=compact): the picture
-// as it is to the bit that without groups; a mix of it as if the paths had come from lamps of that strength.
+// Per-group light of light tracing (relight.enabled=compact): the unmixed picture equals, bit for bit, the
+// one without groups; a mix equals light traced from lamps of that strength.
 #include <catch2/catch.hpp>
 
 #include "images/light_mix_support.h"
@@ -10,7 +10,7 @@ using namespace lucerna::test;
 
 namespace {
 
-/// Caustic light alone, so that nothing else hides whose it is.
+/// Caustic light alone, so no other light hides the groups.
 Settings traced(Settings more = {}) {
   const Settings all{{"components.primary", "off"},  {"components.secondary", "off"},
                      {"components.tertiary", "off"}, {"components.caustic", "light"},
@@ -19,7 +19,7 @@ Settings traced(Settings more = {}) {
   return more;
 }
 
-/// Without a sun, which would be a light of its own where groups are kept apart.
+/// Without a sun, which would be a separate light in per-group light.
 scene::Scene even_room() {
   scene::Scene s = block_room(true);
   scene::Material metal;
@@ -31,7 +31,7 @@ scene::Scene even_room() {
 
 }  // namespace
 
-TEST_CASE("splats that know their lights' groups make the picture of those that do not") {
+TEST_CASE("splats with light groups give the picture of splats without") {
   const scene::Scene s = even_room();
   Bench separate(s, traced(), 4), whole(s, traced({{"relight.enabled", "off"}}), 4);
   const film::Image a = separate.image(), b = whole.image();
@@ -42,7 +42,7 @@ TEST_CASE("splats that know their lights' groups make the picture of those that 
   CHECK(separate.r.device().validation_messages() == 0);
 }
 
-TEST_CASE("a mix of splats is that of light traced from lamps of that strength, by statistics") {
+TEST_CASE("a mix of splats equals light traced from lamps of that strength, statistically") {
   const scene::Scene s = room();
   Settings other;
   other["seed"] = "2", other["relight.enabled"] = "off";

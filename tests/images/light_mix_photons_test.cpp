@@ -1,6 +1,6 @@
 // links: session
-// Light of photons by groups of lights (relight.enabled=compact): as it is to the bit the picture without
-// groups; a mix of it as if photons had come from lamps of that strength, within noise; and of records whose
+// Per-group light of photons (relight.enabled=compact): the unmixed picture equals, bit for bit, the one
+// without groups; a mix equals photons from lamps of that strength, within noise; the same for records whose
 // rays end in photons.
 #include <catch2/catch.hpp>
 
@@ -22,8 +22,8 @@ Settings photons(Settings more = {}) {
 
 }  // namespace
 
-TEST_CASE("photons that know their lights' groups make the picture of those that do not") {
-  const scene::Scene even = block_room(true);  // no sun, which would be a light of its own
+TEST_CASE("photons with light groups give the picture of photons without") {
+  const scene::Scene even = block_room(true);  // no sun, which would be a separate light
   Bench separate(even, photons(), 4), whole(even, photons({{"relight.enabled", "off"}}), 4);
   const film::Image a = separate.image(), b = whole.image();
   CHECK(separate.r.relight().separate);
@@ -33,9 +33,9 @@ TEST_CASE("photons that know their lights' groups make the picture of those that
   CHECK(separate.r.device().validation_messages() == 0);
 }
 
-TEST_CASE("a mix of photons' light is that of photons from lamps of that strength, by statistics") {
+TEST_CASE("a mix of photons' light equals photons from lamps of that strength, statistically") {
   const scene::Scene s = room();
-  // One radius, so that samples are alike and their halves tell the noise.
+  // One radius, so samples are alike and the halves give the noise.
   const Settings how{{"photons.radius", "6"}, {"photons.floor", "6"}};
   Settings other = how;
   other["seed"] = "2", other["relight.enabled"] = "off";
@@ -47,14 +47,14 @@ TEST_CASE("a mix of photons' light is that of photons from lamps of that strengt
     INFO(text);
     b.mix(text);
     Bench rendered(scene::mixed_scene(s, groups_of_room(), scene::parse_mix(text)), photons(other), 32);
-    // Radii are in pixels, so that both blur alike. 24 blocks, 2 pictures: 5 errors of some 64 degrees of
-    // freedom come by chance in one of 5000 such tests; light of a wrong group is off by tens.
+    // Radii are in pixels, so both blur alike. 24 blocks, 2 pictures: 5 errors with about 64 degrees of
+    // freedom occur by chance in one of 5000 such tests; light of a wrong group is off by tens.
     CHECK(worst_z(as_one_component(b.r.image()), as_one_component(rendered.image())) < 5);
   }
   CHECK(b.r.stats().rays == rays);
 }
 
-TEST_CASE("layers of groups that are not kept are missed aloud") {
+TEST_CASE("a request for layers of untracked groups is reported") {
   const auto warnings = [](const Settings& how) {
     Bench b(room(), photons(how), 1);
     b.image();

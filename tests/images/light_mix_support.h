@@ -1,6 +1,6 @@
 #pragma once
-// What tests of the light mix share: a room with light of five groups in every component, and renderers and
-// comparisons of its pictures.
+// Shared by tests of the light mix: a room with light of five groups in every component, and renderers and
+// comparisons for its pictures.
 #include "bvh/embree/host_tracer.h"
 #include "schedule/uniform.h"
 #include "support/render.h"
@@ -9,8 +9,8 @@
 
 namespace lucerna::test {
 
-/// A room under an uneven sky with a sun in it, with two lamps, a block that shines and a sphere of metal, so
-/// that every component has light of every group. Groups: sky, sun, lamp, spot, block.
+/// A room under an uneven environment with a sun, two lamps, an emissive block and a metal sphere, so every
+/// component has light of every group. Groups: sky, sun, lamp, spot, block.
 inline scene::Scene room() {
   scene::Scene s = block_room(true);
   scene::Image sky;
@@ -39,9 +39,8 @@ inline scene::Scene room() {
   return s;
 }
 
-/// Where samples go is decided by `chosen_by`, the light that they bring is that of `shining`, which differs
-/// in strengths and colours alone: apart by groups, mixed by `weights`. `draft`: onto a film that keeps
-/// nothing apart, as drafts are made.
+/// `chosen_by` decides where samples go; `shining`, which differs in strengths and colours only, gives their
+/// light: per group, mixed by `weights`. `draft`: onto a film without groups, as for preview samples.
 inline film::Image trace(const scene::Scene& chosen_by, const scene::Scene& shining,
                          const std::vector<vec3>& weights, uint32_t samples = 8,
                          film::GroupStorage kept = film::GroupStorage::by_component, bool draft = false) {
@@ -73,7 +72,7 @@ inline film::Image trace(const scene::Scene& chosen_by, const scene::Scene& shin
   return film.read();
 }
 
-/// A renderer at work on a scene, its light kept apart.
+/// A renderer of a scene with per-group light.
 struct Bench {
   session::Renderer r{renderer_options(true)};
   explicit Bench(const scene::Scene& s, const Settings& settings = {}, uint32_t samples = 16) {
@@ -96,7 +95,7 @@ inline std::vector<vec3> all_components(const film::Image& image, bool odd = fal
     for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
   return sum;
 }
-/// All components as one: in the place of the first.
+/// All components summed into the first.
 inline film::Image as_one_component(film::Image image) {
   image.components[0] = all_components(image), image.odd_half[0] = all_components(image, true);
   for (size_t c = 1; c < film::k_components; ++c) {
@@ -118,9 +117,9 @@ inline double difference(const film::Image& a, const film::Image& b) {
   return most / scale;
 }
 
-/// By how many standard errors blocks of two pictures of independent samples differ: the largest, over all
-/// blocks and components. Some 96 of them; a block's error has about 64 degrees of freedom, so that 5.5 of it
-/// come by chance in one of 10^4 such comparisons, and rare bright samples are not met in these scenes.
+/// The largest difference between blocks of two pictures with independent samples, in standard errors, over
+/// all blocks and components. There are about 96, each error has about 64 degrees of freedom, so 5.5 occurs
+/// by chance in one of 10^4 comparisons; these scenes have no rare bright samples.
 inline double worst_z(const film::Image& a, const film::Image& b) {
   double worst = 0;
   for (int c = 0; c < film::k_components; ++c)

@@ -1,7 +1,7 @@
 // links: session
-// Light kept apart by groups of lights and mixed afterwards, against rendering anew: to the bit where weights
-// are powers of two or nothing, else by statistics; no ray is traced; what is muted is gone and nothing else;
-// layers sum up to the picture.
+// Per-group light and mixes of it, compared with a new render: bit for bit where weights are powers of two or
+// zero, otherwise statistically. No ray is traced, a muted group is gone and nothing else, and layers sum to
+// the picture.
 #include <catch2/catch.hpp>
 
 #include "base/blackbody.h"
@@ -14,7 +14,7 @@ using namespace lucerna;
 using namespace lucerna::test;
 using Catch::Matchers::Contains;
 
-TEST_CASE("a mix by powers of two and nothing is, to the bit, the picture of lights that shine so") {
+TEST_CASE("a mix by powers of two and zero equals the picture of such lights bit for bit") {
   const scene::Scene s = room();
   const scene::LightGroups& groups = groups_of_room();
   REQUIRE(groups.groups.size() == 5);
@@ -37,7 +37,7 @@ TEST_CASE("a mix by powers of two and nothing is, to the bit, the picture of lig
   }
 }
 
-TEST_CASE("groups together are the picture that is made without them") {
+TEST_CASE("the sum of the groups equals the picture made without groups") {
   const scene::Scene s = room();
   Bench separate(s), together(s, {{"relight.enabled", "off"}});
   const film::Image a = separate.image();
@@ -45,9 +45,9 @@ TEST_CASE("groups together are the picture that is made without them") {
   CHECK_FALSE(together.r.relight().separate);
   CHECK(separate.r.film().groups() == 5);
   CHECK(together.r.film().groups() == 1);
-  // The sun of the environment is a light of its own where groups are apart: other samples, the same light.
+  // The environment's sun is a separate light in per-group light: other samples, the same light.
   CHECK(worst_z(a, together.image()) < 5.5);
-  // Without a sun it is the same samples, and their sums round otherwise.
+  // Without a sun the samples are the same; only the rounding of sums differs.
   scene::Scene even = block_room(true);
   Bench apart_too(even), together_too(even, {{"relight.enabled", "off"}});
   const film::Image b = apart_too.image();
@@ -55,9 +55,9 @@ TEST_CASE("groups together are the picture that is made without them") {
   CHECK(apart_too.r.stats().rays == together_too.r.stats().rays);
 }
 
-TEST_CASE("an environment's sun that is seen is of its own group") {
+TEST_CASE("a directly visible sun of the environment belongs to its own group") {
   scene::Scene s = room();
-  // From above everything, towards the sun's texel.
+  // From above the room, towards the sun's texel.
   const float theta = 3.5f / 16 * k_pi, phi = (9.5f / 32 - 0.5f) * 2 * k_pi;
   const vec3 towards(std::sin(theta) * std::cos(phi), std::cos(theta), std::sin(theta) * std::sin(phi));
   const vec3 right = glm::normalize(glm::cross(towards, vec3(0, 1, 0))), up = glm::cross(right, towards);
@@ -72,7 +72,7 @@ TEST_CASE("an environment's sun that is seen is of its own group") {
   CHECK(mean(separate.r.image().components[0]) < 0.5 * all);
 }
 
-TEST_CASE("one group of lights costs nothing and changes no bit") {
+TEST_CASE("a single light group costs nothing and changes no bit") {
   const scene::Scene s = room();
   Bench off(s, {{"relight.enabled", "off"}}), one(s, {{"relight.groups", "*=all"}});
   CHECK(one.r.relight().groups->groups.size() == 1);
@@ -82,7 +82,7 @@ TEST_CASE("one group of lights costs nothing and changes no bit") {
   CHECK(one.r.film().groups() == 1);
 }
 
-TEST_CASE("light of one group is mixed without a ray, whoever computes it") {
+TEST_CASE("light of one group is mixed without a ray, for every solver") {
   scene::Scene s = room();
   const char* const text = "all: ev=1 color=1,0.5,0.25";
   for (const Settings& how :
@@ -108,7 +108,7 @@ TEST_CASE("light of one group is mixed without a ray, whoever computes it") {
     CHECK(b.r.restarts() == restarts);
     b.mix("all: ev=3");
     CHECK(b.r.image_error().relative(0) == Approx(noise).epsilon(1e-4));
-    // Also where it is there from the first sample on.
+    // Also if the mix exists from the first sample on.
     all["relight.mix"] = text;
     CHECK(identical(Bench(s, all, 4).image(), after));
     b.mix("all: mute");
@@ -117,7 +117,7 @@ TEST_CASE("light of one group is mixed without a ray, whoever computes it") {
   }
 }
 
-TEST_CASE("what is told of the error of a finished picture is told of the mix that is shown") {
+TEST_CASE("the reported error of a finished picture is that of the displayed mix") {
   Bench b(room());
   session::AccuracyKeeper keeper;
   b.image();
@@ -137,7 +137,7 @@ TEST_CASE("what is told of the error of a finished picture is told of the mix th
   }
 }
 
-TEST_CASE("a mix traces no ray, restarts nothing, and does not depend on what was mixed before") {
+TEST_CASE("a mix traces no ray, restarts nothing, and does not depend on earlier mixes") {
   Bench b(room());
   const film::Image neutral = b.image();
   const uint64_t rays = b.r.stats().rays, restarts = b.r.restarts();
@@ -154,7 +154,7 @@ TEST_CASE("a mix traces no ray, restarts nothing, and does not depend on what wa
   CHECK(b.r.restarts() == restarts);
   CHECK(b.r.done());
   CHECK(b.r.device().validation_messages() == 0);
-  // The same where the mix was there from the first sample on, or came in between.
+  // The same if the mix existed from the first sample on, or was set in between.
   Bench early(room(), {{"relight.mix", "lamp: ev=2; sky: mute"}});
   CHECK(identical(early.image(), mixed));
   Bench between(room());
@@ -163,7 +163,7 @@ TEST_CASE("a mix traces no ray, restarts nothing, and does not depend on what wa
   CHECK(identical(between.image(), mixed));
 }
 
-TEST_CASE("muting takes out the group's light and nothing else") {
+TEST_CASE("muting removes the group's light and nothing else") {
   Bench b(room());
   const film::Image all = b.image();
   std::vector<std::array<std::vector<vec3>, film::k_components>> groups;
@@ -185,10 +185,9 @@ TEST_CASE("muting takes out the group's light and nothing else") {
   }
 }
 
-TEST_CASE("mixing equals rendering anew: switches, strengths from 10^-4 to 10^4, colours, sky and sun") {
-  // Lights that are ten thousand times as strong as others leave these so few samples, when lights are chosen
-  // by power, that no estimate of the noise speaks for them: such a mix is held against a scene without the
-  // others.
+TEST_CASE("a mix equals a new render: switches, strengths from 10^-4 to 10^4, colours, environment and sun") {
+  // Lights ten thousand times as strong as others leave these too few samples, with selection by power, for a
+  // noise estimate: such a mix is compared with a scene without the others.
   const scene::Scene s = room();
   Bench b(s, {{"seed", "1"}}, 64);
   b.image();
@@ -214,14 +213,14 @@ TEST_CASE("mixing equals rendering anew: switches, strengths from 10^-4 to 10^4,
   }
 }
 
-TEST_CASE("noise is told of the picture as it is mixed, and adaptive sampling goes on where that has more") {
+TEST_CASE("noise is reported for the mixed picture, and adaptive sampling continues if a mix raises it") {
   Bench b(room(), {}, 32);
   b.image();
   for (const char* text : {"lamp: solo", "block: ev=4; sky: mute", ""}) {
     INFO(text);
     b.mix(text);
     const film::ImageError reported = b.r.image_error();
-    // By hand, from the halves of the picture that is shown.
+    // Computed here from the halves of the displayed picture.
     const film::Image image = b.r.image();
     double variance = 0, sum = 0;
     for (size_t i = 0; i < image.samples.size(); ++i) {
@@ -237,7 +236,7 @@ TEST_CASE("noise is told of the picture as it is mixed, and adaptive sampling go
     CHECK(b.r.ledger().entries().size() == (*text || b.r.ledger().entries().size() == 1 ? 1u : 0u));
   }
 
-  // Under the lamp alone the target is reached; the shining block, met by chance in metal, needs more.
+  // Under the lamp alone the target is reached; the emissive block, which only metal paths hit, needs more.
   Bench adaptive(room(), {{"sampling.mode", "adaptive"},
                           {"sampling.min_samples", "8"},
                           {"sampling.max_samples", "256"},
@@ -253,7 +252,7 @@ TEST_CASE("noise is told of the picture as it is mixed, and adaptive sampling go
   CHECK(adaptive.r.stats().paths > before);
 }
 
-TEST_CASE("where light is not kept apart a mix lights the scene anew, to the bit as if its lights were so") {
+TEST_CASE("without per-group light a mix edits the lights: bit for bit the picture of such lights") {
   const scene::Scene s = room();
   const std::string text =
       "lamp: ev=1.5 color=1,0.5,0.2; spot: mute; sky: color=0.5,1,1; sun: ev=-1; block: ev=2";
@@ -268,11 +267,11 @@ TEST_CASE("where light is not kept apart a mix lights the scene anew, to the bit
     const uint64_t restarts = mixed.r.restarts();
     mixed.mix(text);
     CHECK(mixed.r.restarts() == restarts + 1);
-    CHECK(mixed.r.scene()->lights[1].intensity == s.lights[1].intensity);  // the scene is what it was
+    CHECK(mixed.r.scene()->lights[1].intensity == s.lights[1].intensity);  // the scene itself is unchanged
     const film::Image image = mixed.image();
     if (settings.size() == 1) CHECK(identical(image, made.image()));
     CHECK(worst_z(image, made.image()) < 5.5);
-    // Edits of the scene stand below the mix.
+    // Scene edits apply below the mix.
     scene::Light lamp = s.lights[0];
     lamp.intensity *= 2;
     mixed.r.set_light(0, lamp);
@@ -282,7 +281,7 @@ TEST_CASE("where light is not kept apart a mix lights the scene anew, to the bit
   }
 }
 
-TEST_CASE("layers by group and component sum up to the picture within 0.2 %") {
+TEST_CASE("layers by group and component sum to the picture within 0.2 %") {
   const Folder folder;
   Bench b(room(), {{"relight.layers", "true"},
                    {"relight.mix", "lamp: ev=1.3 color=1,0.8,0.3; sun: ev=-2; sky: mute"}});
@@ -305,11 +304,11 @@ TEST_CASE("layers by group and component sum up to the picture within 0.2 %") {
     for (size_t i = 0; i < sum.size(); ++i)
       worst = std::max(worst, std::abs(sum[i] - double{picture[i]}) / std::max(1e-3, double{picture[i]}));
     CHECK(worst < 0.002);
-    CHECK(worst > 0);  // of 16-bit floats
+    CHECK(worst > 0);  // 16-bit floats
   }
 }
 
-TEST_CASE("what is no mix is refused, and the one before stays") {
+TEST_CASE("an invalid mix is refused, and the previous one stays") {
   Bench b(room(), {{"relight.mix", "lamp: ev=1"}});
   const film::Image before = b.image();
   for (const char* text :
@@ -320,12 +319,12 @@ TEST_CASE("what is no mix is refused, and the one before stays") {
     CHECK(b.r.settings().text("relight.mix") == "lamp: ev=1");
     CHECK(identical(b.r.image(), before));
   }
-  // A group that is gone changes nothing, and is told.
+  // A group that no longer exists changes nothing, and is reported.
   b.mix("lamp: ev=1; chandelier: ev=5 solo");
   CHECK(identical(b.r.image(), before));
   REQUIRE(b.r.relight().messages.size() == 1);
   CHECK_THAT(b.r.relight().messages[0], Contains("'chandelier'") && Contains("sky, sun, lamp, spot, block"));
-  // Groups can be made otherwise; the picture then begins anew.
+  // Other groups restart the picture.
   const uint64_t restarts = b.r.restarts();
   set(b.r, {{"relight.groups", "lamp=night; spot=night; sun=day; sky=day"}});
   CHECK(b.r.restarts() > restarts);

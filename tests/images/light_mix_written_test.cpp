@@ -1,6 +1,6 @@
 // links: session
-// A mix of light that is written into the lights, and taken out of them again: the light is the same, so that
-// nothing that was traced is lost.
+// A light mix written into the lights, and removed from them again: the light is the same, so no traced light
+// is lost.
 #include <catch2/catch.hpp>
 
 #include "images/cache_support.h"
@@ -27,7 +27,7 @@ struct Bed : test::CacheRenderer {
         mix[group.name] = {.ev = 1.7f, .color = {1, 0.5f, 0.3f}};
     return scene::mix_text(mix);
   }
-  /// The lights with the present mix in them, or as they were made.
+  /// The lights with the current mix applied, or as built.
   session::LightsEdit edit(bool written, const std::string& mix) const {
     const scene::Scene made = test::block_room(true);
     session::LightsEdit e{.lights = {{0, made.lights[0]}},
@@ -50,7 +50,7 @@ bool same(const film::Image& a, const film::Image& b) {
   return same;
 }
 
-/// The largest difference of two pictures' means, relative.
+/// The largest relative difference of two pictures' means.
 double apart(const film::Image& a, const film::Image& b) {
   double most = 0;
   for (int c = 0; c < 3; ++c) {
@@ -62,7 +62,7 @@ double apart(const film::Image& a, const film::Image& b) {
 
 }  // namespace
 
-TEST_CASE("a mix that is written into the lights keeps the picture, and so does taking it back") {
+TEST_CASE("writing a mix into the lights keeps the picture, and so does undoing it") {
   Bed bed, plain;
   const std::string mix = bed.mix();
   bed.set({{"relight.mix", mix}}), plain.set({{"relight.mix", mix}});
@@ -77,7 +77,7 @@ TEST_CASE("a mix that is written into the lights keeps the picture, and so does 
   CHECK(bed.r.stats().paths == paths);
   CHECK(bed.r.settings().text("relight.mix").empty());
   CHECK(bed.r.scene()->lights[0].intensity.x == Approx(5 * std::exp2(1.7)));
-  // Other settings, and more samples: those that the mix would have got.
+  // Other settings, and more samples: the same ones that the mix would have got.
   bed.set({{"film.ev", "1"}});
   unchanged(before);
   bed.set({{"samples", "8"}}), plain.set({{"samples", "8"}});
@@ -85,13 +85,13 @@ TEST_CASE("a mix that is written into the lights keeps the picture, and so does 
   const film::Image more = plain.finish();
   bed.finish();
   unchanged(more);
-  // Undo, and once more.
+  // Undo, and redo.
   bed.r.set_lights(bed.edit(false, mix));
   unchanged(more);
   CHECK(bed.r.scene()->lights[0].intensity == vec3(5));
   bed.r.set_lights(bed.edit(true, ""));
   unchanged(more);
-  // A mix above what was written.
+  // A mix on top of the written one.
   scene::LightMix twice;
   for (const scene::LightGroup& group : bed.r.relight().groups->groups) twice[group.name].ev = 1;
   bed.set({{"relight.mix", scene::mix_text(twice)}});
@@ -101,14 +101,14 @@ TEST_CASE("a mix that is written into the lights keeps the picture, and so does 
           Approx(2 * test::mean(more.components[c])).epsilon(1e-4));
 }
 
-TEST_CASE("after another edit, camera or size the lights that a mix was written into are what is traced") {
+TEST_CASE("after another edit, camera or size the written lights are traced") {
   Bed bed;
   bed.set({{"relight.mix", bed.mix()}});
   bed.finish();
   const session::LightsEdit written = bed.edit(true, "");
   bed.r.set_lights(written);
   Bed fresh;
-  fresh.r.set_lights(written);  // no mix before: it is another light
+  fresh.r.set_lights(written);  // no mix before: a different light
   CHECK(fresh.r.samples() == 0);
   for (Bed* b : {&bed, &fresh}) {
     b->r.choose_camera("above");
@@ -119,7 +119,7 @@ TEST_CASE("after another edit, camera or size the lights that a mix was written 
   CHECK(apart(bed.finish(), fresh.finish()) < 0.05);
   for (Bed* b : {&bed, &fresh}) b->set({{"components.tertiary", "off"}});
   CHECK(apart(bed.finish(), fresh.finish()) < 0.05);
-  // An edit of a light: as in a scene that has always been so.
+  // A light edit: as in a scene that was built that way.
   for (Bed* b : {&bed, &fresh}) {
     scene::Light lamp = b->r.scene()->lights[0];
     lamp.position.x = -1;
@@ -128,8 +128,7 @@ TEST_CASE("after another edit, camera or size the lights that a mix was written 
   CHECK(same(bed.finish(), fresh.finish()));
 }
 
-TEST_CASE(
-    "where light is not kept apart, or is another, the lights are edited and the picture begins again") {
+TEST_CASE("without tracked groups, or with other light, the lights are edited and the picture restarts") {
   Bed bed(Settings{{"relight.enabled", "off"}});
   bed.finish();
   session::LightsEdit e{
@@ -143,7 +142,7 @@ TEST_CASE(
   other.r.set_lights(e);
   CHECK(other.r.samples() == 0);
   CHECK(other.r.settings().text("relight.mix") == e.mix);
-  // Of what cannot be, nothing is done.
+  // An impossible edit changes nothing.
   const session::LightsEdit wrong{.lights = {{7, {}}}, .materials = {}, .environment_scale = {}, .mix = ""};
   CHECK_THROWS_WITH(other.r.set_lights(wrong), "light: there is no light 7");
   e.mix = "nonsense";

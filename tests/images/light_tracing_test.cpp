@@ -1,6 +1,7 @@
 // links: session
-// Light tracing through the real program: its light against closed forms and against path tracing, each word
-// once whoever brings the rest, and the picture one of settings and seed alone.
+// Light tracing through the whole renderer: its light compared with closed forms and with path tracing, each
+// component counted once whichever solver computes the rest, and a picture that depends on settings and seed
+// only.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -16,8 +17,8 @@ constexpr int k_caustic = 3;
 
 const test::Settings k_light{{"components.caustic", "light"}};
 
-/// A room with a shining panel, a ball of glass, a mirror on the wall that shows the ball's caustic, a pane
-/// before a part of the floor and a mat that is there by half.
+/// A room with an emissive panel, a glass ball, a mirror on the wall that shows the ball's caustic, a pane in
+/// front of a part of the floor and a mat of coverage one half.
 scene::Scene glass_room() {
   scene::Scene s;
   s.name = "glass room", s.file = "glass.gltf";
@@ -36,7 +37,7 @@ scene::Scene glass_room() {
   test::add_quad(s, {-1.9f, 0.1f, -1}, {0, 2, 0}, {0, 0, 2}, 3);
   test::add_quad(s, {0.9f, 0, 1}, {0, 0, -2}, {0, 0.8f, 0}, 4);
   test::add_quad(s, {-0.6f, 0.05f, 0.9f}, {1.6f, 0, 0}, {0, 0, -0.9f}, 5);
-  // A mat whose shading normals lean away from its plane.
+  // A mat whose shading normals deviate from its plane.
   test::add_quad(s, {-1.2f, 0.01f, 0.6f}, {1.2f, 0, 0}, {0, 0, -1.2f}, 0);
   s.meshes.back().primitives[0].normals.assign(4, glm::normalize(vec3(0.5f, 0.8f, -0.3f)));
   scene::Camera front;
@@ -48,14 +49,14 @@ scene::Scene glass_room() {
 
 }  // namespace
 
-TEST_CASE("a beam of even light on a plane is seen with the radiance that it has there") {
+TEST_CASE("a beam of even light on a plane has the expected radiance") {
   const vec3 radiance = vec3(0.8f, 0.5f, 0.2f) * vec3(3, 4, 5) * vec3(0.9f, 0.8f, 0.7f) / k_pi;
   scene::Scene s = turned_sun();
   for (const bool parallel : {false, true}) {
     INFO("parallel rays " << parallel);
     s.cameras[0].orthographic = parallel, s.cameras[0].xmag = s.cameras[0].ymag = 0.4f;
     const test::Result r = test::render(s, with(k_light, {{"light.per_round", "200000"}}), 16, 32);
-    // Blocks of the picture's corner and centre alike.
+    // Blocks in the picture's corner and centre alike.
     for (uint32_t block = 0; block < 16; ++block) {
       const uint32_t x = block % 4 * 8, y = block / 4 * 8;
       const MeanOf m = mean_of(r.image, k_caustic, x, y, x + 8, y + 8);
@@ -65,11 +66,11 @@ TEST_CASE("a beam of even light on a plane is seen with the radiance that it has
     for (int c = 0; c < 3; ++c) CHECK(all.value[c] == Approx(double(radiance[c])).epsilon(0.006));
     CHECK(r.stats.dropped == 0);
   }
-  // Paths from the eye never meet it.
+  // Camera paths never hit this light.
   CHECK(test::mean(test::render(turned_sun(), {}, 4, 16).image.components[3]) == 0);
 }
 
-TEST_CASE("light is as bright as its lamp, through 16 decades, and adds up to the bit") {
+TEST_CASE("light scales with its lamp through 16 decades, and adds up bit for bit") {
   scene::Scene s = turned_sun();
   const test::Settings settings = with(k_light, {{"light.per_round", "20000"}});
   const test::Result one = test::render(s, settings, 4, 16);
@@ -81,7 +82,7 @@ TEST_CASE("light is as bright as its lamp, through 16 decades, and adds up to th
   }
 }
 
-TEST_CASE("light that is refracted into water has there the radiance of what comes through") {
+TEST_CASE("light refracted into water has the radiance of the transmitted light") {
   scene::Scene s;
   s.name = "pool";
   s.materials = {test::diffuse({0.8f, 0.5f, 0.2f}), {}};
@@ -107,14 +108,15 @@ TEST_CASE("light that is refracted into water has there the radiance of what com
   }
 }
 
-TEST_CASE("of a surface that is there in part, and through one, as much is seen as there is") {
-  // The floor by a third; above it a veil that lets three quarters through, before the eye but not the light.
+TEST_CASE("partly covered surfaces, seen directly or as a veil, show light in proportion to coverage") {
+  // A floor of coverage a third; above it a veil that transmits three quarters, in front of the camera but
+  // not of the light.
   scene::Scene s = turned_sun();
   s.materials[0].alpha_mode = scene::AlphaMode::blend, s.materials[0].base_color.w = 1.0f / 3;
   const double floor = 0.5 * 4 * 0.8 / double(k_pi) / 3;
   const test::Settings settings = with(k_light, {{"light.per_round", "100000"}});
   CHECK(mean_of(test::render(s, settings, 8, 16).image, k_caustic).value.y == Approx(floor).epsilon(0.01));
-  // The same by photons, which lie on all of it, seen by a third.
+  // The same by photons, which lie on all of it but are seen by a third.
   const test::Settings photons{
       {"components.caustic", "photons"}, {"photons.efficiency", "false"}, {"photons.per_round", "100000"}};
   CHECK(mean_of(test::render(s, photons, 20, 16).image, k_caustic).value.y == Approx(floor).epsilon(0.03));
@@ -123,7 +125,7 @@ TEST_CASE("of a surface that is there in part, and through one, as much is seen 
   veiled.materials[2].alpha_mode = scene::AlphaMode::blend, veiled.materials[2].base_color.w = 0.25f;
   veiled.materials[2].double_sided = true;
   test::add_quad(veiled, {-0.6f, 0.8f, 0.6f}, {1.2f, 0, 0}, {0, 0, -1.2f}, 2);
-  // The beam passes it as well.
+  // The beam passes the veil too.
   CHECK(mean_of(test::render(veiled, settings, 8, 16).image, k_caustic).value.y ==
         Approx(floor * 0.75 * 0.75).epsilon(0.01));
 }
@@ -142,9 +144,9 @@ const test::Result& by_paths() {
   return path;
 }
 
-/// Z of blocks of 8 x 8 pixels and of the whole: the greatest, and their mean square. Paths from the eye meet
-/// this light rarely, and what few of them have met tells too little of their noise: with no more than
-/// `k_most` at a time its variance is up to k_most times the mean.
+/// Z of blocks of 8 x 8 pixels and of the whole picture: the largest, and their mean square. Camera paths
+/// rarely hit this light, and few hits underestimate their noise: with no more than `k_most` per hit the
+/// variance is at most k_most times the mean.
 void check_against_paths(const film::Image& image, double allowed) {
   constexpr double k_most = 20;  // the lamp's radiance times the brightest albedo
   const film::Image& truth = by_paths().image;
@@ -169,7 +171,8 @@ void check_against_paths(const film::Image& image, double allowed) {
 
 }  // namespace
 
-TEST_CASE("light tracing beside paths makes the picture of path tracing, and leaves the rest as it is") {
+TEST_CASE(
+    "light tracing with path tracing gives the picture of path tracing and leaves other light unchanged") {
   const scene::Scene room = glass_room();
   const test::Result r =
       test::render({.width = k_side,
@@ -180,13 +183,13 @@ TEST_CASE("light tracing beside paths makes the picture of path tracing, and lea
   CHECK(r.stats.dropped == 0);
   CHECK(r.bias_known[3]);
   check_against_paths(r.image, 0);
-  // The same random numbers for all other light.
+  // All other light uses the same random numbers.
   const test::Result path =
       test::render({.width = k_side, .height = k_side, .samples = 64, .settings = {{"seed", "9"}}}, &room);
   for (const size_t c : {0u, 1u, 2u}) CHECK(test::identical(path.image.components[c], r.image.components[c]));
 }
 
-TEST_CASE("light tracing with photons for the rest makes the picture of path tracing") {
+TEST_CASE("light tracing with photons for the rest gives the picture of path tracing") {
   const scene::Scene room = glass_room();
   const test::Settings settings{{"components.caustic", "light+photons"},
                                 {"seed", "9"},
@@ -197,7 +200,7 @@ TEST_CASE("light tracing with photons for the rest makes the picture of path tra
       test::render({.width = k_side, .height = k_side, .samples = 22, .settings = settings}, &room);
   CHECK_FALSE(r.bias_known[3]);
   check_against_paths(r.image, 0.04);
-  // Also beside records.
+  // Also with records.
   const test::Result cached = test::render(
       {.width = k_side,
        .height = k_side,
@@ -207,7 +210,7 @@ TEST_CASE("light tracing with photons for the rest makes the picture of path tra
   check_against_paths(cached.image, 0.04);
 }
 
-TEST_CASE("aim changes no mean of light tracing") {
+TEST_CASE("aiming does not change the mean of light tracing") {
   const scene::Scene room = glass_room();
   const auto render = [&](const char* aim) {
     return test::render({.width = k_side,
@@ -225,7 +228,7 @@ TEST_CASE("aim changes no mean of light tracing") {
   CHECK(std::abs(aimed.value.y - plain.value.y) < 4 * std::hypot(aimed.noise.y, plain.noise.y));
 }
 
-TEST_CASE("the picture of light tracing does not depend on batches, and adaptive sampling gives the same") {
+TEST_CASE("the picture of light tracing does not depend on batches or adaptive sampling") {
   const scene::Scene room = glass_room();
   const test::Render base{
       .width = 40, .height = 36, .samples = 6, .settings = with(k_light, {{"light.per_round", "5000"}})};
@@ -246,7 +249,7 @@ TEST_CASE("the picture of light tracing does not depend on batches, and adaptive
   CHECK_FALSE(test::identical(a.image, test::render(other, &room).image));
 }
 
-TEST_CASE("without anything that focuses light no paths are sent, and nothing is paid") {
+TEST_CASE("without surfaces that focus light no light paths are traced, and nothing is spent") {
   const scene::Scene room = test::block_room();
   const test::Result path = test::render(room, {}, 8, 32);
   session::Renderer r(test::renderer_options());
@@ -292,10 +295,10 @@ TEST_CASE("light tracing follows camera, lamp, size and choice of solver") {
   CHECK(r.solver_statistics().at("light").at("rounds") == 3);
 }
 
-TEST_CASE("no lamp, one in a closed shell, one path a round: clear outcomes of light tracing") {
+TEST_CASE("light tracing with no lamp, an enclosed lamp or one path per pass gives defined results") {
   scene::Scene dark = glass_room();
   dark.materials[1].emission = vec3(0);
-  scene::Scene shut = dark;  // its lamp is outside of the room
+  scene::Scene shut = dark;  // its lamp is outside the room
   shut.lights = {{.name = "lamp", .intensity = vec3(5), .position = {5, 1, 0}}};
   for (const scene::Scene& scene : {dark, shut}) {
     const test::Result r = test::render(scene, k_light, 2, 16);
@@ -306,7 +309,7 @@ TEST_CASE("no lamp, one in a closed shell, one path a round: clear outcomes of l
     REQUIRE((std::isfinite(v.x + v.y + v.z) && std::min({v.x, v.y, v.z}) >= 0));
 }
 
-TEST_CASE("paths of light tracing and what they are aimed at are drawn, and change nothing") {
+TEST_CASE("drawing light paths and aim targets does not change the picture") {
   session::Renderer r(test::renderer_options());
   r.set_size(48, 40);
   r.set_scene(std::make_shared<scene::Scene>(glass_room()));

@@ -1,6 +1,6 @@
 // links: session
-// Views of learned lights: arrows from the point under the pointer to the lights that are chosen there, and
-// the shadow rays that arrive. They change nothing of the picture.
+// Views of learned lights: arrows from the point under the pointer to the lights chosen there, and the shadow
+// rays that arrive. They do not change the picture.
 #include "images/learned_lights_support.h"
 
 using namespace lucerna;
@@ -22,7 +22,7 @@ size_t different(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
 
 }  // namespace
 
-TEST_CASE("arrows show the lights of a point with their shares; a map which shadow rays arrive") {
+TEST_CASE("arrows show a point's lights with their shares, and a map shows which shadow rays arrive") {
   session::Renderer r(test::renderer_options());
   r.settings().set("path.batch", test::k_batch);
   r.set_size(48, 48);
@@ -33,7 +33,7 @@ TEST_CASE("arrows show the lights of a point with their shares; a map which shad
   CHECK(of_lights(r.reports()) == nullptr);
 
   test::set(r, {{"overlay.lights", "true"}});
-  CHECK(r.picture(false) == plain);  // no place is inspected
+  CHECK(r.picture(false) == plain);  // no point is inspected
   {
     const auto reports = r.reports();
     const solvers::Report* report = of_lights(reports);
@@ -48,7 +48,7 @@ TEST_CASE("arrows show the lights of a point with their shares; a map which shad
     const solvers::Report* report = of_lights(reports);
     REQUIRE(report);
     REQUIRE(report->card);
-    // Parts of the sky, the greatest first, with shares that are no more than all.
+    // Parts of the environment, the largest first, whose shares sum to at most 100 %.
     double sum = 0, before = 100;
     size_t parts = 0;
     for (const solvers::Card::Line& line : report->card->lines)
@@ -71,13 +71,14 @@ TEST_CASE("arrows show the lights of a point with their shares; a map which shad
     REQUIRE(report);
     REQUIRE(report->legends.size() == 1);
     CHECK(report->legends[0].ramp);
+    CHECK_FALSE(report->legends[0].note.empty());
     CHECK(report->figure("arrived") > 0.02);
   }
   test::set(r, {{"overlay.light_arrival", "false"}});
   CHECK(r.picture(false) == plain);
   CHECK(of_lights(r.reports()) == nullptr);
   CHECK(test::identical(r.image(), image));
-  // By power there is nothing to show, and the legend says so.
+  // With selection by power there is nothing to show, and the legend states this.
   test::set(r, {{"lights.sampling", "power"}, {"overlay.light_arrival", "true"}});
   test::finish(r);
   r.picture(false);
@@ -87,7 +88,7 @@ TEST_CASE("arrows show the lights of a point with their shares; a map which shad
   CHECK(r.device().validation_messages() == 0);
 }
 
-TEST_CASE("places of clusters: lamps where they are, the sky where it is bright, and their names") {
+TEST_CASE("clusters lie at their lamps or at the bright part of the environment, and have names") {
   scene::Scene s = test::block_room();
   s.lights.push_back(s.lights[0]);
   s.lights[1].name = "second", s.lights[1].position = {-1, 2, 1};

@@ -1,5 +1,5 @@
 // links: session
-// Light paths start wherever an emitter's texture shines, however little of it does.
+// Light paths start wherever an emitter's texture is bright, however small that part is.
 #include "support/caustics.h"
 
 using namespace lucerna;
@@ -7,10 +7,10 @@ using test::mean_of, test::MeanOf;
 
 namespace {
 
-constexpr float k_side = 2.0f / 64 * 6;  // of what shines, in metres
+constexpr float k_side = 2.0f / 64 * 6;  // of the emissive part, in metres
 
-/// A panel of two metres over a polished mirror, which turns its light up to a ceiling beside it, of which
-/// one square of 6 x 6 among 64 x 64 texels shines: by its texture, or as a quad of its own.
+/// A panel of two metres over a mirror that reflects its light up to a ceiling beside it. A square of 6 x 6
+/// of its 64 x 64 texels is emissive: by texture, or as a separate quad.
 scene::Scene panel(bool textured) {
   scene::Scene s;
   s.name = "panel";
@@ -53,7 +53,7 @@ MeanOf caustic(bool textured, const char* solver) {
 
 }  // namespace
 
-TEST_CASE("a square of few texels sends as much light as one of its own") {
+TEST_CASE("a square of few texels emits as much light as a separate quad") {
   for (const char* solver : {"light", "photons"}) {
     INFO(solver);
     const MeanOf truth = caustic(false, solver), found = caustic(true, solver);

@@ -1,5 +1,6 @@
 // links: session
-// path.max_depth means the same to all solvers: the scattering events between the eye and a light.
+// path.max_depth has the same meaning for all solvers: the maximum number of scattering events between camera
+// and light.
 #include <catch2/catch.hpp>
 
 #include "support/render.h"
@@ -9,7 +10,7 @@ using namespace lucerna;
 
 namespace {
 
-/// A room that is also seen in a mirror, so that lookups lie at different depths, and a mirror that bundles
+/// A room that is also seen in a mirror, so lookups occur at different depths, and a mirror that focuses
 /// light.
 scene::Scene mirror_room() {
   test::PanelRoom room;
@@ -22,7 +23,7 @@ scene::Scene mirror_room() {
 
 }  // namespace
 
-TEST_CASE("all solvers compute light of as many events") {
+TEST_CASE("all solvers count the same scattering events for path.max_depth") {
   const scene::Scene s = mirror_room();
   for (const char* depth : {"2", "3"}) {
     test::Settings settings{{"path.max_depth", depth},
@@ -48,7 +49,7 @@ TEST_CASE("all solvers compute light of as many events") {
         const double truth = test::mean(paths.components[c]), seen = test::mean(image.components[c]);
         INFO("max_depth " << depth << ", way " << w << ", component " << c << ": " << seen << ", paths "
                           << truth);
-        // Computed by paths in both pictures.
+        // Path traced in both pictures.
         if (ways[w].count("components.caustic") == 0 && c == 3) continue;
         if (truth == 0)
           CHECK(seen == 0);

@@ -1,5 +1,5 @@
 // links: session
-// Paths that start inside absorbing solids, whatever they start from, and solids inside solids.
+// Paths that start inside absorbing solids, from cameras and from lights, and nested solids.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -10,9 +10,9 @@ using namespace lucerna;
 
 namespace {
 
-const vec3 k_water(0.5f, 0.25f, 0.8f);  // transmittance of a metre
+const vec3 k_water(0.5f, 0.25f, 0.8f);  // transmittance per metre
 
-/// That refracts nothing, so that light goes straight on; vec3(1): clear.
+/// With index of refraction 1, so light is not bent; vec3(1): clear.
 scene::Material solid(const vec3& a_metre) {
   scene::Material m;
   m.metallic = 0, m.roughness = 0, m.transmission = 1, m.ior = 1, m.thickness = 1;
@@ -25,7 +25,7 @@ void add_solid(scene::Scene& s, const vec3& lo, const vec3& hi, uint32_t materia
   for (uvec3& t : s.meshes.back().primitives[0].triangles) std::swap(t.y, t.z);  // outwards
 }
 
-/// Looks along -z at a lamp of radiance 1 at z = -10.
+/// A camera that looks along -z at a lamp of radiance 1 at z = -10.
 scene::Scene before_lamp(const vec3& eye, bool parallel) {
   scene::Scene s;
   s.name = "media", s.file = "media.gltf";
@@ -55,12 +55,12 @@ void check_color(const vec3& seen, const vec3& expected, double epsilon) {
 
 }  // namespace
 
-TEST_CASE("a camera inside water sees through the water between") {
+TEST_CASE("a camera inside water sees through the water in between") {
   for (const bool parallel : {false, true}) {
     scene::Scene s = before_lamp({0.1f, 0.2f, 0}, parallel);
     add_solid(s, {-3, -3, -2}, {3, 3, 3}, 1);
     check_color(mean_color(test::render(s, k_no_roulette, 4, 8).image), after(2), 1e-3);
-    // Half of a picture of parallel rays.
+    // Half of a picture with parallel rays.
     if (!parallel) continue;
     s = before_lamp({0, 0, 0}, true);
     add_solid(s, {0, -3, -2}, {3, 3, 3}, 1);
@@ -68,8 +68,8 @@ TEST_CASE("a camera inside water sees through the water between") {
   }
 }
 
-TEST_CASE("behind a clear thing in water there is water again") {
-  for (const float z : {5.0f, 0.0f}) {  // before the water, and inside
+TEST_CASE("behind a clear object in water there is water again") {
+  for (const float z : {5.0f, 0.0f}) {  // in front of the water, and inside
     scene::Scene s = before_lamp({0.1f, 0.2f, z}, true);
     add_solid(s, {-3, -3, -6}, {3, 3, 1}, 1);
     add_solid(s, {-1, -1, -3}, {1, 1, -1.5f}, 2);
@@ -77,7 +77,7 @@ TEST_CASE("behind a clear thing in water there is water again") {
   }
 }
 
-TEST_CASE("a camera inside a clear thing in water, and in a hollow of it") {
+TEST_CASE("a camera inside a clear object in water, and in a cavity of the water") {
   scene::Scene s = before_lamp({0.1f, 0.2f, 0}, true);
   add_solid(s, {-3, -3, -6}, {3, 3, 3}, 1);
   add_solid(s, {-1, -1, -1}, {1, 1, 1}, 2);
@@ -89,17 +89,17 @@ TEST_CASE("a camera inside a clear thing in water, and in a hollow of it") {
   check_color(mean_color(test::render(s, k_no_roulette, 4, 8).image), after(5), 1e-3);
 }
 
-TEST_CASE("overlapping solids end in the order in which they end") {
+TEST_CASE("where solids overlap the one entered last absorbs") {
   scene::Scene s = before_lamp({0.1f, 0.2f, 5}, true);
   s.materials.push_back(solid(vec3(0.7f)));
   add_solid(s, {-3, -3, -4}, {3, 3, 0}, 1);
   add_solid(s, {-3, -3, -6}, {3, 3, -2}, 3);
-  // Two metres of water, then two in which the other has been entered last, then two of it alone.
+  // Two metres of water, then two of the solid entered last, then two of that solid alone.
   check_color(mean_color(test::render(s, k_no_roulette, 4, 8).image), after(2) * std::pow(0.7f, 4.0f), 1e-3);
 }
 
-TEST_CASE("lamps inside absorbing solids light as much through photons and light tracing as through paths") {
-  // A lamp of three kinds in the middle of a ball of water over a floor.
+TEST_CASE("lamps inside absorbing solids give the same light with photons, light tracing and paths") {
+  // A lamp of either kind in the middle of a ball of water above a floor.
   for (const bool mesh : {false, true}) {
     scene::Scene clear;
     for (const bool absorbs : {false, true}) {
@@ -109,7 +109,7 @@ TEST_CASE("lamps inside absorbing solids light as much through photons and light
                      test::diffuse(vec3(0), vec3(40)), solid(vec3(0.9f))};
       test::add_quad(s, {-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, 0);
       test::add_ball(s, {0, 1.5f, 0}, 0.5f, 1, 12);
-      test::add_ball(s, {9, 1.5f, 0}, 0.5f, 3, 4);  // so that something absorbs
+      test::add_ball(s, {9, 1.5f, 0}, 0.5f, 3, 4);  // so that one material absorbs
       if (mesh)
         test::add_ball(s, {0, 1.5f, 0}, 0.05f, 2, 6);
       else
@@ -120,7 +120,7 @@ TEST_CASE("lamps inside absorbing solids light as much through photons and light
         clear = s;
         continue;
       }
-      vec3 expected = after(0.497);  // facets of the ball lie a little inside
+      vec3 expected = after(0.497);  // facets of the ball lie slightly inside it
       for (const char* way : {"path", "photons", "light"}) {
         if (!mesh && std::string(way) == "path") continue;
         const test::Settings settings{{"components.caustic", way}, {"photons.efficiency", "false"}};
@@ -136,8 +136,8 @@ TEST_CASE("lamps inside absorbing solids light as much through photons and light
   }
 }
 
-TEST_CASE("light under water reaches a camera under water, whoever computes it") {
-  // All of a room is full of water that refracts nothing.
+TEST_CASE("light under water reaches a camera under water with every solver") {
+  // The room is filled with water of index of refraction 1.
   test::PanelRoom room;
   room.s.materials.push_back(solid(k_water));
   add_solid(room.s, {-1.5f, -0.5f, -1.5f}, {1.5f, 1.5f, 1.5f}, 2);

@@ -1,8 +1,8 @@
 // links: session
-// Light through stacks of surfaces that let it pass straight on: smooth thin panes and surfaces that alpha
-// says are partly there, in any order and before other things. At right angles a stack passes and reflects
-// what the surfaces' own shares say, all reflections between them included, so that pictures have closed
-// forms.
+// Light through stacks of surfaces that transmit it undeflected: smooth thin panes and partly covered
+// surfaces (alpha), in any order and in front of other objects. At normal incidence a stack transmits and
+// reflects the product of its surfaces' shares, including all reflections between them, so the pictures have
+// closed forms.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <vector>
@@ -15,19 +15,19 @@ using glm::dvec2;
 
 namespace {
 
-/// What a surface passes and reflects, in red and blue.
+/// Transmitted and reflected share of a surface, in red and blue.
 struct Share {
   dvec2 passes{0}, reflects{0};
 };
-/// A surface at right angles to the light, or a solid of two.
+/// A surface perpendicular to the light, or a solid with two such surfaces.
 struct Layer {
   scene::Material material;
-  std::vector<Share> shares;  ///< from the front to the back
+  std::vector<Share> shares;  ///< from front to back
   bool solid = false;
 };
 
 double mirror(double ior) { return (ior - 1) * (ior - 1) / ((ior + 1) * (ior + 1)); }
-/// Of both sides of a pane, reflections within it included.
+/// Both sides of a pane, including internal reflections.
 double slab(double r) { return 2 * r / (1 + r); }
 dvec2 red_blue(const vec3& c) { return {c.x, c.z}; }
 
@@ -39,23 +39,23 @@ Layer pane(const vec3& tint = vec3(1), float ior = 1.5f, float metallic = 0) {
   l.shares = {{glass * (1 - r) * red_blue(tint), glass * dvec2(r) + double(metallic) * red_blue(tint)}};
   return l;
 }
-/// As the layer is, where it is there.
+/// The layer with that coverage.
 Layer partly(double coverage, Layer l) {
   l.material.alpha_mode = scene::AlphaMode::blend;
   l.material.base_color.w = float(coverage);
   for (Share& s : l.shares) s = {1 - coverage + coverage * s.passes, coverage * s.reflects};
   return l;
 }
-/// Black.
+/// A black surface with that coverage.
 Layer leaf(double coverage) { return partly(coverage, {test::diffuse(vec3(0)), {Share{}}}); }
-/// Black by a mask: there or not.
+/// A black surface with a mask: coverage 0 or 1.
 Layer mask(float alpha, float cutoff) {
   Layer l = partly(alpha < cutoff ? 0 : 1, {test::diffuse(vec3(0)), {Share{}}});
   l.material.alpha_mode = scene::AlphaMode::mask, l.material.base_color.w = alpha;
   l.material.alpha_cutoff = cutoff;
   return l;
 }
-/// A smooth coat of ior 1.5 over green, whose colour is not looked at.
+/// A smooth coat of ior 1.5 over green, a colour that is not measured.
 Layer coat() {
   Layer l{test::diffuse({0, 0.8f, 0}), {{dvec2(0), dvec2(0.04)}}};
   l.material.roughness = 0, l.material.specular = 1;
@@ -90,7 +90,7 @@ std::vector<Share> shares_of(const Stack& stack) {
   for (const Layer& l : stack) all.insert(all.end(), l.shares.begin(), l.shares.end());
   return all;
 }
-/// Of a stack of surfaces, each the same from both sides: any number of reflections between them.
+/// A stack of surfaces, each the same from both sides, with any number of reflections between them.
 Share together(const Stack& stack) {
   Share sum{dvec2(1), dvec2(0)};
   dvec2 from_behind(0);
@@ -102,7 +102,7 @@ Share together(const Stack& stack) {
   }
   return sum;
 }
-/// ... or at most one.
+/// The same with at most one reflection.
 Share together_once(const Stack& stack) {
   Share sum{dvec2(1), dvec2(0)};
   for (const Share& s : shares_of(stack)) {
@@ -115,7 +115,7 @@ Share together_once(const Stack& stack) {
 constexpr uint32_t k_cell = 16, k_across = 4;
 constexpr float k_apart = 0.02f;
 
-/// Stacks side by side, looked at along -z; behind them all is red, behind the camera blue.
+/// Stacks side by side, seen along -z; red behind them all, blue behind the camera.
 scene::Scene stacks_scene(const std::vector<Stack>& stacks) {
   scene::Scene s;
   s.name = "stacks", s.file = "stacks.gltf";
@@ -143,8 +143,9 @@ scene::Scene stacks_scene(const std::vector<Stack>& stacks) {
   return s;
 }
 
-/// Every stack's red (passed) and blue (reflected) light. Each path brings something from 0 to 1, so that the
-/// variance is at most that of a coin. |z| < 4.5 for about 30 numbers: a false alarm in 5000.
+/// Checks every stack's red (transmitted) and blue (reflected) light. Each path contributes a value from 0 to
+/// 1, so the variance is at most that of a Bernoulli variable. |z| < 4.5 for about 30 numbers: a false alarm
+/// in 5000.
 void check_stacks(const std::vector<Stack>& stacks, const test::Settings& settings,
                   Share (*expected_of)(const Stack&)) {
   constexpr uint32_t k_samples = 64, k_size = k_cell * k_across;
@@ -168,7 +169,7 @@ void check_stacks(const std::vector<Stack>& stacks, const test::Settings& settin
 
 }  // namespace
 
-TEST_CASE("panes, leaves, coats and glass behind each other pass and reflect what their shares say") {
+TEST_CASE("stacks of panes, leaves, coats and glass transmit and reflect the product of their shares") {
   const Stack blue = {pane({0.4f, 0.6f, 0.9f})}, clear = {pane()},
               gilt = {pane({0.9f, 0.7f, 0.5f}, 1.8f, 0.3f)};
   const Stack third = {leaf(0.3)}, half = {leaf(0.5)}, half_pane = {partly(0.5, pane())};
@@ -182,15 +183,16 @@ TEST_CASE("panes, leaves, coats and glass behind each other pass and reflect wha
       {}, together);
 }
 
-TEST_CASE("what passes straight on is no event: the greatest depth does not count it") {
+TEST_CASE("undeflected transmission is no event: the maximum depth does not count it") {
   const Stack clear = {pane()}, half_pane = {partly(0.5, pane())}, third = {leaf(0.3)};
   check_stacks({1 * clear, 2 * clear + Stack{coat()}, 3 * half_pane + Stack{coat()},
                 third + clear + third + Stack{pane({0.4f, 0.6f, 0.9f})}},
                {{"path.max_depth", "1"}}, together_once);
 }
 
-TEST_CASE("light samples pass what paths pass") {
-  // A lamp over a stack of wide layers over a floor; the camera between stack and floor sees a spot of it.
+TEST_CASE("light samples pass everything that paths pass") {
+  // A lamp above a stack of wide layers above a floor; the camera between stack and floor sees a spot of the
+  // floor.
   constexpr int k_layers = 20;
   for (const float aside : {0.0f, 4.0f}) {
     scene::Scene s;
@@ -224,7 +226,7 @@ TEST_CASE("light samples pass what paths pass") {
   }
 }
 
-TEST_CASE("an unlit surface hides what is behind it, from paths and light samples alike") {
+TEST_CASE("an unlit surface hides what is behind it from paths and from light samples") {
   scene::Scene s;
   s.name = "unlit", s.file = "unlit.gltf";
   s.environment.given = true;

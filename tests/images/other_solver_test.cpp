@@ -1,6 +1,6 @@
 // links: session
-// A solver that the program does not know (support/ambient/ambient.h), registered by this file alone: its
-// light, its components, what changes spoil of it, and that nothing of the other solvers changes beside it.
+// A solver unknown to the program (support/ambient/ambient.h), registered by this file only: its light, its
+// components, what changes invalidate, and that the other solvers stay unchanged.
 #include <catch2/catch.hpp>
 
 #include "solvers/registry.h"
@@ -14,7 +14,7 @@ namespace {
 
 const bool k_added = (solvers::add(test::ambient_type()), true);
 
-/// The inside of a box that shines, all of one albedo and without gloss.
+/// The inside of an emissive box of a single albedo without gloss.
 scene::Scene closed_room() {
   scene::Scene s;
   s.name = "closed room";
@@ -30,23 +30,22 @@ test::Result furnace(const test::Settings& settings, uint32_t samples = 16) {
 
 }  // namespace
 
-TEST_CASE(
-    "a solver of the tests' own is a choice of its component alone, with its options among the settings") {
+TEST_CASE("a solver of the tests is a choice of its component only, and its options are settings") {
   REQUIRE(k_added);
   REQUIRE(solvers::find("ambient"));
   CHECK_NOTHROW(plan::Settings().set("components.tertiary", "ambient"));
   CHECK_THROWS(plan::Settings().set("components.secondary", "ambient"));
   CHECK(plan::Settings().real("ambient.radiance") == 0.5);
   CHECK(solvers::owner_of("ambient.radiance") == &test::ambient_info());
-  // The list is in use: it is too late for more.
+  // The list is in use: registration is closed.
   CHECK_THROWS_AS(solvers::add(test::ambient_type()), std::logic_error);
 }
 
 TEST_CASE("its light is looked up at the second diffuse vertex, and no other component changes") {
   const test::Result path = furnace({});
   const test::Result ambient = furnace({{"components.tertiary", "ambient"}, {"ambient.radiance", "2"}});
-  // A closed room of one albedo: what the second vertex looks up is albedo x radiance, times the first one's
-  // albedo.
+  // A closed room of one albedo: the lookup at the second vertex returns albedo x radiance, times the first
+  // vertex's albedo.
   const vec3 albedo = closed_room().materials[0].base_color;
   for (const vec3& light : ambient.image.components[2])
     for (int c = 0; c < 3; ++c) CHECK(light[c] == Approx(2 * albedo[c] * albedo[c]).epsilon(1e-4));
@@ -55,13 +54,13 @@ TEST_CASE("its light is looked up at the second diffuse vertex, and no other com
   CHECK(ambient.bias_known[1]);
 }
 
-TEST_CASE("light that two solvers would bring is refused, and what was there stays") {
+TEST_CASE("a component computed by two solvers is refused, and the previous settings stay") {
   session::Renderer r(test::renderer_options());
   r.set_size(16, 16);
   r.set_scene(std::make_shared<scene::Scene>(closed_room()));
   test::set(r, {{"components.tertiary", "ambient"}});
   const int made = test::ambient_made();
-  // Behind a cached secondary component the records bring tertiary light, too.
+  // The records of a cached secondary component include tertiary light.
   CHECK_THROWS_WITH(test::set(r, {{"components.secondary", "cache"}, {"cache.rays", "64"}}),
                     Catch::Contains("components.tertiary: light of the words") &&
                         Catch::Contains("would be counted twice: by 'cache'") &&
@@ -69,11 +68,11 @@ TEST_CASE("light that two solvers would bring is refused, and what was there sta
   CHECK(r.settings().text("components.secondary") == "path");
   CHECK(r.solver("ambient"));
   CHECK_FALSE(r.solver("cache"));
-  CHECK(test::ambient_made() == made);  // before any solver takes memory
+  CHECK(test::ambient_made() == made);  // before any solver allocates memory
   CHECK(r.step());
 }
 
-TEST_CASE("changes spoil of it what its table says; those of other solvers' settings nothing") {
+TEST_CASE("changes invalidate what its table says; other solvers' settings invalidate nothing") {
   session::Renderer r(test::renderer_options());
   r.set_size(16, 16);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/furnace-closed/furnace-closed.gltf");
@@ -87,14 +86,15 @@ TEST_CASE("changes spoil of it what its table says; those of other solvers' sett
   CHECK_FALSE(solvers::invalidated_by_setting(*solvers::find("cache"), "ambient.radiance").any());
   CHECK(solvers::invalidated_by_setting(test::ambient_info(), "ambient.radiance") ==
         solvers::k_invalidates_all);
-  // Another solver's setting that begins the picture anew leaves it as it is; its own makes it anew.
+  // Another solver's setting restarts the picture but keeps this solver's work; its own setting restarts its
+  // work.
   test::set(r, {{"cache.rays", "64"}});
   CHECK(r.figure("begun") == first + 1);
   test::set(r, {{"ambient.radiance", "3"}});
   CHECK(r.solver_statistics().at("ambient").at("radiance") == 3.0);
 }
 
-TEST_CASE("its view is drawn over the picture, and its report and figures are told") {
+TEST_CASE("its view is drawn over the picture, and its report and figures are published") {
   session::Renderer r(test::renderer_options());
   r.set_size(32, 32);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/furnace-closed/furnace-closed.gltf");

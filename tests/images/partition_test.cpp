@@ -1,6 +1,6 @@
 // links: session
 // The four components are a partition: their sum is the plain path tracer's image, switching one off changes
-// no other by a bit, and the image is a function of scene, settings and seed alone.
+// no bit of another, and the image depends on scene, settings and seed only.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdlib>
@@ -15,9 +15,9 @@ namespace {
 
 constexpr const char* k_names[] = {"primary", "secondary", "tertiary", "caustic"};
 
-/// An open room under an uneven sky with a lamp, a glowing panel by texture, textured walls, and in front of
-/// its block of rough glass leaves, a pane and a leaf that is masked by its texture: everything that paths
-/// and light samples pass.
+/// An open room under an uneven environment with a lamp, a textured emissive panel, textured walls, and in
+/// front of its block of rough glass leaves, a pane and a leaf with a texture mask: everything that paths and
+/// light samples pass.
 scene::Scene open_room() {
   scene::Scene s = test::block_room(true);
   scene::Image image;
@@ -55,7 +55,7 @@ test::Result show(const test::Render& r) {
 
 }  // namespace
 
-TEST_CASE("the components' sum agrees with a tracer that has no automaton") {
+TEST_CASE("the components' sum agrees with a path tracer without components") {
   for (const char* scene : {"open room", "glass"}) {
     const test::Result parts = show({.scene = scene, .samples = 128, .settings = {{"seed", "1"}}});
     const test::Result whole = show({.scene = scene,
@@ -64,7 +64,7 @@ TEST_CASE("the components' sum agrees with a tracer that has no automaton") {
                                      .defines = {{"LUCERNA_NO_AUTOMATON", "1"}}});
     for (const auto& component : parts.image.components) CHECK(test::mean(component) > 1e-3);
     // Z-test of 8x8-pixel blocks, errors from the halves of both; 64 blocks of 3 channels. The halves' errors
-    // of the 64 pixels estimate each block's variance. |z| < 5 leaves a false alarm below 1 in 5000
+    // of the 64 pixels estimate each block's variance. |z| < 5 keeps the false alarm rate below 1 in 5000
     // (t-distributed, 64 degrees of freedom).
     for (uint32_t block = 0; block < 64; ++block)
       for (int channel = 0; channel < 3; ++channel) {
@@ -101,13 +101,14 @@ TEST_CASE("switching a component off leaves the others bit-identical") {
       else
         CHECK(identical(all.image.components[c], some.image.components[c]));
     }
-    // Off is not merely multiplied by zero. (Caustics are found on the way to tertiary light, which goes on.)
+    // A component that is off is not merely multiplied by zero. (Caustics are found on the way to tertiary
+    // light, which stays on.)
     CHECK(some.stats.rays <= all.stats.rays);
     if (off != 3) CHECK(some.stats.rays < all.stats.rays);
   }
 }
 
-TEST_CASE("the image does not depend on the size of batches, the tracer's threads or a second run") {
+TEST_CASE("the image does not depend on batch size, the tracer's threads or a second run") {
   for (const char* tracer : {"host", "compute-bvh"}) {
     const test::Render base{
         .scene = "open room", .width = 40, .height = 36, .samples = 8, .settings = {{"tracer", tracer}}};
@@ -159,7 +160,7 @@ TEST_CASE("coherent sampling changes the noise, not the mean") {
   }
 }
 
-TEST_CASE("both tracers make the same image but for grazing ties") {
+TEST_CASE("both tracers make the same image except at grazing ties") {
   test::Render r{
       .scene = "open room", .width = 40, .height = 36, .samples = 8, .settings = {{"tracer", "host"}}};
   const test::Result host = show(r);

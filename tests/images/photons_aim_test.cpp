@@ -1,6 +1,6 @@
 // links: session
-// Light paths that are aimed at what mirrors and refracts, and at where light from afar gets in: they find
-// what others hardly ever meet, and change no mean.
+// Light paths aimed at surfaces that mirror and refract, and at openings through which distant light enters:
+// they find light that unaimed paths almost never hit, and do not change the mean.
 #include <catch2/catch.hpp>
 
 #include "support/render.h"
@@ -43,8 +43,8 @@ Rendered render(const scene::Scene& scene, const test::Settings& settings, uint3
   return out;
 }
 
-/// Mean of the caustics' luminance, with its standard error from the two halves of rounds: the mean of either
-/// is one of many independent rounds.
+/// Mean of the caustics' luminance, with its standard error from the two halves of the passes: each half is a
+/// mean of many independent passes.
 test::Mean mean_of(const film::Image& image) {
   test::Mean m;
   double odd = 0;
@@ -57,8 +57,8 @@ test::Mean mean_of(const film::Image& image) {
   return m;
 }
 
-/// A sun along +x that a square mirror turns straight down onto a floor that is lit by nothing else, a
-/// kilometre wide; `lamps` more that send no light there but have most of the power.
+/// A sun along +x that a square mirror reflects straight down onto a floor, a kilometre wide, that has no
+/// other light; `lamps` more lamps send no light there but have most of the power.
 scene::Scene far_and_small(float mirror, uint32_t lamps) {
   scene::Scene s;
   s.name = "far and small";
@@ -81,7 +81,7 @@ scene::Scene far_and_small(float mirror, uint32_t lamps) {
   return s;
 }
 
-/// Balls of glass in a room, before a lamp that shines on it from outside.
+/// Glass balls in a room, in front of a lamp outside that lights them.
 scene::Scene ball_room() {
   scene::Scene s;
   s.name = "ball room";
@@ -101,8 +101,8 @@ scene::Scene ball_room() {
   return s;
 }
 
-/// A room of 4 m under a sun and a sky, in a plain of 80 m; light comes in through a slot in its ceiling
-/// alone.
+/// A room of 4 m under a sun and an environment, in a plain of 80 m; light enters only through a slot in its
+/// ceiling.
 scene::Scene slotted_room() {
   scene::Scene s;
   s.name = "slotted room";
@@ -121,7 +121,7 @@ scene::Scene slotted_room() {
   return s;
 }
 
-/// Mean square of what the halves of a component differ by.
+/// Mean square difference of a component's halves.
 double noise_of(const film::Image& image, size_t component) {
   double sum = 0;
   for (size_t i = 0; i < image.samples.size(); ++i) {
@@ -133,7 +133,7 @@ double noise_of(const film::Image& image, size_t component) {
 
 }  // namespace
 
-TEST_CASE("light that comes in through a slot is aimed at where it falls, and stays as bright") {
+TEST_CASE("light that enters through a slot is aimed at where it falls, and keeps its brightness") {
   const test::Settings photons{{"components.caustic", "off"},
                                {"components.secondary", "photons"},
                                {"components.tertiary", "photons"},
@@ -142,10 +142,10 @@ TEST_CASE("light that comes in through a slot is aimed at where it falls, and st
   const scene::Scene room = slotted_room();
   const Rendered aimed = render(room, photons, 32, 40), plain = render(room, unaimed(photons), 32, 40);
   CHECK(aimed.entrances >= 1);
-  CHECK(aimed.unaimed < 0.61);  // the least
+  CHECK(aimed.unaimed < 0.61);  // the minimum
   CHECK(plain.entrances == 0);
   CHECK(aimed.photons > 5 * plain.photons);
-  // Narrow discs, for what wide ones blur out of the slot is missing within.
+  // Small radii, because the blur of large ones moves light out of the slot's spot.
   test::Settings narrow = photons;
   narrow["photons.radius"] = narrow["photons.floor"] = "0.4";
   narrow["photons.per_round"] = "100000";
@@ -164,12 +164,12 @@ TEST_CASE("light that comes in through a slot is aimed at where it falls, and st
     CHECK(noise < 0.04 * mean);
     CHECK(std::abs(test::mean(right.components[c]) - mean) < 0.005 * mean + 3 * noise);
   }
-  // In a room that all light reaches nothing is to be found.
+  // In a room that all light reaches no entrances are found.
   scene::Scene open = test::block_room();
   CHECK(render(open, photons, 1, 16).entrances == 0);
 }
 
-TEST_CASE("a wall far away adds nothing to aim at") {
+TEST_CASE("a wall far away adds no aim targets") {
   const test::Settings photons{{"components.caustic", "off"},
                                {"components.secondary", "photons"},
                                {"components.tertiary", "photons"},
@@ -183,7 +183,7 @@ TEST_CASE("a wall far away adds nothing to aim at") {
   CHECK(beside == alone);
 }
 
-TEST_CASE("behind records, too, it is found where light gets in, whether there are some yet or not") {
+TEST_CASE("behind records, too, entrances of light are found, with and without existing records") {
   const scene::Scene room = slotted_room();
   session::Renderer r(test::renderer_options());
   r.set_size(32, 32);
@@ -209,7 +209,7 @@ TEST_CASE("behind records, too, it is found where light gets in, whether there a
   CHECK(test::mean(after.components[2]) > 1.3 * test::mean(first.components[2]));
 }
 
-TEST_CASE("aim changes no mean") {
+TEST_CASE("aiming does not change the mean") {
   const scene::Scene room = ball_room();
   const Rendered aimed = render(room, k_aimed, 64, 40), plain = render(room, unaimed(k_aimed), 64, 40);
   CHECK(aimed.casters == 2);
@@ -219,7 +219,7 @@ TEST_CASE("aim changes no mean") {
   const test::Mean a = mean_of(aimed.image), b = mean_of(plain.image);
   INFO(a.value << " +- " << a.noise << ", without aim " << b.value << " +- " << b.noise);
   CHECK(std::abs(a.value - b.value) < 0.01 * b.value + 3 * std::hypot(a.noise, b.noise));
-  // With all other light besides.
+  // With all other light.
   test::Settings all = k_aimed;
   all["components.secondary"] = all["components.tertiary"] = "photons";
   const film::Image with = render(room, all, 32, 40).image,
@@ -228,11 +228,11 @@ TEST_CASE("aim changes no mean") {
     CHECK(test::mean(with.components[c]) == Approx(test::mean(without.components[c])).epsilon(0.01));
 }
 
-TEST_CASE("a caster of five millimetres in a scene of a kilometre under a sun and fifty lamps is found") {
+TEST_CASE("a caster of five millimetres in a scene of a kilometre with a sun and fifty lamps is found") {
   const scene::Scene s = far_and_small(0.005f, 50);
   const Rendered aimed = render(s, k_aimed, 32, 32);
   CHECK(aimed.casters == 1);
-  // Where the mirror's beam falls, below it, light is irradiance times albedo over pi.
+  // In the mirror's beam on the floor the radiance is irradiance times albedo over pi.
   const double radiance = 3 * 0.5 / double(k_pi);
   double most = 0, sum = 0;
   for (uint32_t y = 0; y < 32; ++y)
@@ -246,8 +246,8 @@ TEST_CASE("a caster of five millimetres in a scene of a kilometre under a sun an
   CHECK(plain.photons == 0);
 }
 
-TEST_CASE("of lamps of one and a million the weak one's caustic is there, as bright as alone") {
-  // The strong one's light is bundled as well, but out of sight.
+TEST_CASE("of lamps with powers of one and a million the weak one's caustic is as bright as alone") {
+  // The strong lamp's light is focused too, but outside the view.
   scene::Scene s = far_and_small(0.1f, 0);
   test::add_quad(s, {300, 1, 300}, {10, -10, 0}, {0, 0, 10}, 1);
   s.lights[0].kind = scene::LightKind::spot;
@@ -264,7 +264,7 @@ TEST_CASE("of lamps of one and a million the weak one's caustic is there, as bri
   CHECK(both.photons > 1000);
 }
 
-TEST_CASE("where nothing bundles light smoothly no path is aimed") {
+TEST_CASE("where no smooth surface focuses light no path is aimed") {
   scene::Scene s = test::block_room();
   s.materials[0].specular = 1, s.materials[0].roughness = 0.4f;  // varnish
   const Rendered r = render(s, k_aimed, 4, 32);
@@ -273,7 +273,7 @@ TEST_CASE("where nothing bundles light smoothly no path is aimed") {
   CHECK(r.photons > 0);
 }
 
-TEST_CASE("a weak lamp in a room has light paths beside a strong one elsewhere") {
+TEST_CASE("a weak lamp in a room has light paths beside a strong lamp elsewhere") {
   // Two closed rooms; the camera is in the one with the weak lamp.
   scene::Scene s;
   s.name = "two rooms";
@@ -291,7 +291,7 @@ TEST_CASE("a weak lamp in a room has light paths beside a strong one elsewhere")
                                {"photons.per_round", "16384"}};
   const film::Image aimed = render(s, photons, 32, 24).image,
                     by_power = render(s, unaimed(photons), 32, 24).image;
-  // Light samples of paths go by power as well: they are asked in a scene without the strong lamp.
+  // Light samples of paths are chosen by power too: the reference uses a scene without the strong lamp.
   s.lights.pop_back();
   const film::Image path =
       render(s, {{"components.caustic", "off"}, {"components.tertiary", "off"}}, 512, 24).image;
@@ -304,11 +304,11 @@ TEST_CASE("a weak lamp in a room has light paths beside a strong one elsewhere")
   CAPTURE(a, b, blind, noise);
   CHECK(a == Approx(b).epsilon(0.02));
   CHECK(noise < 0.01 * a * a / double(aimed.samples.size()));
-  // Without aim one path in a million begins at the weak lamp.
+  // Without aiming one path in a million starts at the weak lamp.
   CHECK(blind < 0.5 * b);
 }
 
-TEST_CASE("the pilot depends on neither batches nor what was rendered before") {
+TEST_CASE("the pilot depends on neither batches nor earlier renders") {
   const scene::Scene room = ball_room();
   const film::Image once = render(room, k_aimed, 4, 40).image;
   test::Settings small = k_aimed;
@@ -323,7 +323,7 @@ TEST_CASE("the pilot depends on neither batches nor what was rendered before") {
   test::finish(r);
   r.set_size(40, 40);
   CHECK(test::identical(once, test::finish(r)));
-  // Without aim in between.
+  // Aiming is off in between.
   test::set(r, {{"photons.aim", "false"}});
   CHECK_FALSE(test::identical(once, test::finish(r)));
   test::set(r, {{"photons.aim", "true"}});

@@ -1,6 +1,6 @@
 // links: session
-// What is told of the blur of photons: against the closed form where light bends by a cosine, nothing where
-// it is even, up to borders, and nothing where no photons are; and that it arrives wherever errors are told.
+// The blur estimate of photons: compared with the closed form for cosine-shaped light; zero for even light,
+// up to borders, and zero without photons; and its propagation to all reported errors.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -13,15 +13,15 @@ using namespace lucerna;
 
 namespace {
 
-constexpr uint32_t k_size = 64;      // pixels along a side of the picture,
-constexpr double k_pixel = 0.02;     // each so many metres wide
-constexpr uint32_t k_periods = 3;    // of the cosine, across the picture
-constexpr float k_middle = 0.5f;     // of the mirror's colour ...
-constexpr float k_amplitude = 0.4f;  // ... and of the cosine in it
+constexpr uint32_t k_size = 64;      // pixels along a side of the picture
+constexpr double k_pixel = 0.02;     // width of a pixel in metres
+constexpr uint32_t k_periods = 3;    // periods of the cosine across the picture
+constexpr float k_middle = 0.5f;     // of the mirror's colour
+constexpr float k_amplitude = 0.4f;  // amplitude of the cosine
 
-/// A sun along +x that a mirror of 2 x 2 m, 45 degrees to it, turns straight down onto a floor, seen by an
-/// orthographic camera below the mirror. The mirror's colour is k_middle, and `wavy` has a cosine along x,
-/// which the floor's irradiance then follows. `half`: of the floor's side.
+/// A sun along +x that a mirror of 2 x 2 m at 45 degrees reflects straight down onto a floor, seen by an
+/// orthographic camera below the mirror. The mirror's colour is k_middle; `wavy` adds a cosine along x, which
+/// the floor's irradiance follows. `half`: half of the floor's side.
 scene::Scene turned_sun(bool wavy, float half = 1) {
   scene::Scene s;
   s.name = "turned sun";
@@ -85,8 +85,7 @@ Reported render(const scene::Scene& scene, uint32_t samples, const test::Setting
 struct Amount {
   double value = 0, noise = 0;  // standard error, from the two halves
 };
-/// The sum over pixels of weight(x, y) times what the picture holds there, or what is told of its bias; in
-/// luminance.
+/// The sum over pixels of weight(x, y) times the picture's value or its estimated bias; in luminance.
 template <class Weight>
 Amount picture_sum(const Reported& t, Weight&& weight) {
   double all = 0, odd = 0;
@@ -107,34 +106,33 @@ Amount bias_sum(const Reported& t, Weight&& weight) {
   return {(even + odd) / 2, std::abs(even - odd) / 2};
 }
 
-/// What kernels leave of a cosine with q radians in a radius: the transforms of Epanechnikov's and of the
-/// flat one.
+/// The factor by which kernels attenuate a cosine with q radians per radius: Fourier transforms of
+/// Epanechnikov's and of the flat kernel.
 double epanechnikov(double q) { return 8 * std::cyl_bessel_j(2, q) / (q * q); }
 double flat(double q) { return 2 * std::cyl_bessel_j(1, q) / q; }
 
 }  // namespace
 
-TEST_CASE(
-    "where light bends by a cosine what is told of its blur is the closed form's, and nearly the truth") {
+TEST_CASE("for cosine-shaped light the blur estimate equals the closed form, and nearly the truth") {
   const double k = 2 * double(k_pi) * k_periods / (k_size * k_pixel);
   const auto one = [](uint32_t, uint32_t) { return 1.0 / (k_size * k_size); };
   const auto wave = [&](uint32_t x, uint32_t) {
     return 2 * std::cos(k * k_pixel * (x + 0.5 - k_size / 2.0)) / (k_size * k_size);
   };
-  // Of a metal by Schlick: c + (1 - c) (1 - cos 45 deg)^5; and a pixel is as wide as it is.
+  // Schlick's Fresnel for a metal: c + (1 - c) (1 - cos 45 deg)^5; and the average over a pixel's width.
   const double graze = std::pow(1 - std::sqrt(0.5), 5);
   const double contrast = (1 - graze) * double(k_amplitude) / (graze + (1 - graze) * double(k_middle)) *
                           std::sin(k * k_pixel / 2) / (k * k_pixel / 2);
   struct Case {
     const char *radius, *alpha;
     uint32_t rounds;
-    double most_short;  // of the bias, that is not told because the light bends by more than a parabola
+    double most_short;  // of the bias: unreported, because the light is not a parabola
   };
   for (const Case& c : {Case{"5", "1", 12, 0.1}, Case{"3", "1", 48, 0.04}, Case{"7", "0.6667", 12, 0.1}}) {
     const Reported t =
         render(turned_sun(true), c.rounds,
                {{"photons.radius", c.radius}, {"photons.alpha", c.alpha}, {"photons.floor", "0"}});
-    double kept = 0, reported = 0;  // averaged over rounds
+    double kept = 0, reported = 0;  // averaged over passes
     for (uint32_t i = 0; i < c.rounds; ++i) {
       const double q = k * k_pixel * std::atof(c.radius) * photons::radius_ratio(i, std::atof(c.alpha));
       kept += epanechnikov(q) / c.rounds, reported += 2 * (flat(q) - epanechnikov(q)) / c.rounds;
@@ -143,19 +141,19 @@ TEST_CASE(
                  even = bias_sum(t, one);
     const double truth = (kept - 1) * contrast * mean.value;
     INFO("radius " << c.radius << ": picture " << picture.value / mean.value << " +- "
-                   << picture.noise / mean.value << " (" << kept * contrast << "), bias told "
+                   << picture.noise / mean.value << " (" << kept * contrast << "), bias estimated "
                    << bias.value / mean.value << " +- " << bias.noise / mean.value << " ("
                    << reported * contrast << "), true " << truth / mean.value);
-    // 4 standard errors, each from two halves, which can be near each other by chance: half a hundredth more.
+    // 4 standard errors, each from two halves, which can coincide by chance: plus half a hundredth.
     CHECK(std::abs(picture.value - kept * contrast * mean.value) < 4 * picture.noise + 0.005 * mean.value);
     CHECK(std::abs(bias.value - reported * contrast * mean.value) < 4 * bias.noise + 0.03 * std::abs(truth));
     CHECK(bias.value < 0);
     CHECK(std::abs(bias.value) > (1 - c.most_short - 0.03) * std::abs(truth) - 4 * bias.noise);
     CHECK(std::abs(bias.value) < 1.03 * std::abs(truth) + 4 * bias.noise);
-    CHECK(bias.noise < 0.05 * std::abs(truth));  // else these say nothing
-    // Blur moves light, and makes none.
+    CHECK(bias.noise < 0.05 * std::abs(truth));  // otherwise these checks prove nothing
+    // Blur moves light but keeps its sum.
     CHECK(std::abs(even.value) < 4 * even.noise + 0.002 * mean.value);
-    // The picture's figure is that of its pixels: the quadratic mean of a cosine.
+    // The picture's figure is the quadratic mean of its pixels: that of a cosine.
     CHECK(t.error.interpolation_rms ==
           Approx(std::abs(reported) * contrast * mean.value / std::sqrt(2.0)).epsilon(0.1));
     CHECK(t.ledger_bias == Approx(t.error.relative_interpolation()));
@@ -164,7 +162,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("even light has no blur to tell of, up to the border of what it lies on") {
+TEST_CASE("even light has no blur estimate, up to the border of its surface") {
   // The floor ends within the picture, 16 pixels from its middle.
   const Reported t =
       render(turned_sun(false, 16 * float(k_pixel)), 32,
@@ -186,20 +184,21 @@ TEST_CASE("even light has no blur to tell of, up to the border of what it lies o
     CHECK(std::abs(bias.value) < 4 * bias.noise + 0.004 * light.value);
     CHECK(bias.noise < 0.01 * light.value);
   }
-  // What is told is noise, as is the picture: of all pixels much less, for the halves do not agree on it.
+  // The estimate is noise, like the picture's: the mean over all pixels is much smaller, because the halves
+  // are uncorrelated.
   CHECK(t.error.interpolation_rms < 0.4 * t.error.rms[0]);
   CHECK(t.error.rms[0] > 0);
 }
 
-TEST_CASE("where there are no photons nothing is told of their blur") {
-  // Nothing focuses.
+TEST_CASE("without photons no blur is reported") {
+  // No surface focuses light.
   scene::Scene plain = turned_sun(false);
   plain.materials[1] = test::diffuse(vec3(0.5f));
   const Reported none = render(plain, 4, {});
   CHECK_FALSE(none.bias_known);
   CHECK(none.error.interpolation_rms == 0);
   CHECK(none.error.relative_sum() == none.error.relative(0));
-  // Paths alone.
+  // Path tracing only.
   const Reported paths = render(turned_sun(true), 4, {{"components.caustic", "path"}});
   CHECK_FALSE(paths.bias_known);
   CHECK(paths.error.interpolation_rms == 0);
@@ -212,7 +211,7 @@ TEST_CASE("where there are no photons nothing is told of their blur") {
     for (const float value : half) REQUIRE(value == 0);
 }
 
-TEST_CASE("what is told is the same however the work is cut or interrupted, and restarts with the picture") {
+TEST_CASE("the estimate does not depend on work items or interruptions, and restarts with the picture") {
   session::Renderer one(test::renderer_options()), other(test::renderer_options());
   const auto make = [](session::Renderer& r, const char* batch) {
     r.settings().set("path.batch", batch);
@@ -225,9 +224,9 @@ TEST_CASE("what is told is the same however the work is cut or interrupted, and 
   };
   make(one, "131072"), make(other, "1024");
   const film::Image image = test::finish(one);
-  int asked = 0, refused = 0;
+  int calls = 0, refused = 0;
   while (!other.done())
-    if (!other.step([&] { return ++asked % 23 == 0; })) REQUIRE(++refused < 10000);
+    if (!other.step([&] { return ++calls % 23 == 0; })) REQUIRE(++refused < 10000);
   CHECK(refused > 0);
   CHECK(test::identical(image, other.image()));
   CHECK(one.film().read_lookup_bias() == other.film().read_lookup_bias());
@@ -240,7 +239,7 @@ TEST_CASE("what is told is the same however the work is cut or interrupted, and 
   CHECK(one.device().validation_messages() == 0);
 }
 
-TEST_CASE("records and photons in one picture are both told of") {
+TEST_CASE("errors of records and photons in one picture are both reported") {
   session::Renderer r(test::renderer_options());
   r.set_size(40, 32);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/glass/glass.gltf");
@@ -262,7 +261,7 @@ TEST_CASE("records and photons in one picture are both told of") {
   CHECK_FALSE(r.film().lookup_bias_known());
   CHECK(r.film().record_errors_complete());
   CHECK(records.interpolation_rms < 0.9 * both.interpolation_rms);
-  // Photons alone: nothing of records, though nobody has told of them.
+  // Photons only: no error of records, and the estimate is complete.
   test::set(r, {{"components.secondary", "off"},
                 {"components.tertiary", "off"},
                 {"components.caustic", "photons"},
@@ -278,7 +277,7 @@ TEST_CASE("records and photons in one picture are both told of") {
   for (const film::TileError& t : r.tile_errors()) CHECK(t.records.noise == 0);
 }
 
-TEST_CASE("a target that blur keeps tiles over is not said to be reached, and costs few samples") {
+TEST_CASE("a target that blur prevents is not reported as reached, and costs few samples") {
   const auto tiles_of = [](const char* radius) {
     session::Renderer r(test::renderer_options());
     r.set_size(k_size, 32);
@@ -303,7 +302,7 @@ TEST_CASE("a target that blur keeps tiles over is not said to be reached, and co
     CHECK(most < 1024);
     return limited;
   };
-  // Blur is a third of the mean for 8 pixels; for one of them it is 3 % where the wave is darkest.
+  // The blur error is a third of the mean for 8 pixels; for one pixel it is 3 % where the wave is darkest.
   CHECK(tiles_of("8") > 16);
   CHECK(tiles_of("1") == 0);
 }

@@ -1,6 +1,6 @@
 // links: session
-// Light along borders and creases of surfaces, where discs of photons reach beyond what is there: even light
-// stays even up to the edge, and what lies on something else is not made brighter than it is.
+// Light along borders and creases of surfaces, where photon discs extend beyond the surface: even light stays
+// even up to the edge, and light on another surface is not counted.
 #include <catch2/catch.hpp>
 
 #include "support/render.h"
@@ -10,7 +10,7 @@ using namespace lucerna;
 
 namespace {
 
-/// Three pixels, of 40: the discs of a third of all pixels reach beyond the walls that they lie on.
+/// Radii of three of 40 pixels: the discs of a third of all pixels extend beyond their walls.
 const test::Settings k_wide{{"components.secondary", "photons"},
                             {"components.tertiary", "photons"},
                             {"photons.efficiency", "false"},
@@ -23,7 +23,7 @@ test::Settings without(test::Settings settings) {
   return settings;
 }
 
-/// A sun along +x that a large mirror turns straight down, onto whatever lies below.
+/// A sun along +x that a large mirror reflects straight down onto everything below.
 scene::Scene sun_from_above() {
   scene::Scene s;
   s.name = "sun from above";
@@ -39,7 +39,7 @@ scene::Scene sun_from_above() {
   return s;
 }
 
-/// Luminance over its true value, of the caustics there, averaged over pixels whose centre's place `counts`.
+/// The caustics' luminance over its true value, averaged over pixels whose centre satisfies `counts`.
 template <class F>
 double brightness(const scene::Scene& s, const test::Settings& more, uint32_t samples, F&& counts) {
   constexpr uint32_t k_size = 48;
@@ -65,7 +65,7 @@ double brightness(const scene::Scene& s, const test::Settings& more, uint32_t sa
 
 }  // namespace
 
-TEST_CASE("in a closed room of one albedo light is even up to its creases") {
+TEST_CASE("in a closed room of one albedo light is even up to the creases") {
   scene::Scene s;
   s.name = "closed room";
   const double a = 0.5;
@@ -76,7 +76,7 @@ TEST_CASE("in a closed room of one albedo light is even up to its creases") {
   CHECK(test::mean(r.image.components[1]) == Approx(a * a).epsilon(0.005));
   CHECK(test::mean(r.image.components[2]) == Approx(a * a * a / (1 - a)).epsilon(0.01));
   CHECK(test::mean(lost.image.components[1]) < 0.97 * a * a);
-  // Row by row: some rows are all crease.
+  // Row by row: some rows are entirely crease.
   for (uint32_t y = 0; y < 40; ++y) {
     double row = 0;
     for (uint32_t x = 0; x < 40; ++x) row += double(r.image.components[1][y * 40 + x].y) / 40;
@@ -85,7 +85,7 @@ TEST_CASE("in a closed room of one albedo light is even up to its creases") {
   }
 }
 
-TEST_CASE("even light on a floor is even up to its border, and on what is narrower than a disc") {
+TEST_CASE("even light on a floor is even up to its border, and on a strip narrower than a disc") {
   scene::Scene s = sun_from_above();
   test::add_quad(s, {-0.2f, 0, 0.2f}, {0.4f, 0, 0}, {0, 0, -0.4f}, 0);
   const auto rim = [](const vec2& at, float pixel) {
@@ -108,7 +108,7 @@ TEST_CASE("mats, seams and flipped halves of a floor are no brighter than the re
   const auto middle = [](const vec2& at, float pixel) {
     return std::abs(at.x) < 2 * pixel && std::abs(at.y) < 0.2f;
   };
-  // Two halves that meet in the middle, of which one is wound the other way round.
+  // Two halves that meet in the middle, with opposite winding.
   scene::Scene s = sun_from_above();
   test::add_quad(s, {-0.4f, 0, 0.4f}, {0.4f, 0, 0}, {0, 0, -0.8f}, 0);
   test::add_quad(s, {0, 0, -0.4f}, {0.4f, 0, 0}, {0, 0, 0.8f}, 0);

@@ -1,7 +1,7 @@
 // links: session
-// Is what is told of the error of a picture of photons its true error? Pictures of many seeds, each with
-// rounds of its own, are held against a long reference: a tile's interval of 90 %, of noise and blur
-// together, must hold the truth in 85 of 100 tiles at least.
+// Calibration of the error estimate of photon pictures: pictures of many seeds, each with its own passes, are
+// compared with a long reference. The 90 % interval of a tile, noise and blur together, must contain the
+// reference in at least 85 of 100 tiles.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstdio>
@@ -18,12 +18,12 @@ using test::Shot, test::shot_of;
 struct Case {
   const char* scene;
   uint32_t width, height;
-  test::Settings of_photons, of_reference;  // what differs
+  test::Settings of_photons, of_reference;  // settings that differ
   uint32_t rounds, shots;
 };
 
 struct Figures {
-  size_t asked = 0, by_noise = 0, by_sum = 0, heavy = 0;
+  size_t tested = 0, by_noise = 0, by_sum = 0, heavy = 0;
   double estimated_noise = 0, estimated_bias = 0, estimated = 0, truth = 0;
 };
 
@@ -38,7 +38,7 @@ void count(Figures& f, const Shot& shot, const Shot& reference) {
   for (size_t t = 0; t < shot.tiles.size(); ++t) {
     film::TileError a = shot.tiles[t];
     const film::TileError& r = reference.tiles[t];
-    // Where no light of the kind arrives there is nothing to tell.
+    // Tiles without light of this component have no estimate.
     if (r.luminance < 1e-3 * mean) continue;
     if (a.heavy_tailed) {
       ++f.heavy;
@@ -46,7 +46,7 @@ void count(Figures& f, const Shot& shot, const Shot& reference) {
     }
     a = test::with_noise_of(a, r);
     const double off = std::abs(a.luminance - r.luminance);
-    ++f.asked;
+    ++f.tested;
     f.by_sum += off <= a.half_width_90();
     a.records.interpolation = 0;
     f.by_noise += off <= a.half_width_90();
@@ -55,15 +55,16 @@ void count(Figures& f, const Shot& shot, const Shot& reference) {
 
 }  // namespace
 
-TEST_CASE("the error told of a picture of photons is the true one") {
-  // All scenes, or one by its name: minutes. Without, the one that is soonest done. A radius in place of all.
+TEST_CASE("the estimated error of a picture of photons is its true error") {
+  // LUCERNA_CALIBRATION selects all scenes or one by name, which takes minutes. Default: the fastest one.
+  // LUCERNA_CALIBRATION_RADIUS replaces all radii by one.
   const char* const wanted = std::getenv("LUCERNA_CALIBRATION");
   const char* const at = std::getenv("LUCERNA_CALIBRATION_RADIUS");
   const std::string only = wanted ? wanted : "cornell";
   const std::vector<std::string> radii =
       at ? std::vector<std::string>{at} : std::vector<std::string>{"1.5", "3", "6"};
-  // Diffuse light is path traced, for paths are soon done with it; caustics of a small lamp are not, so that
-  // photons of many rounds with a small radius are what those with a large one are held against.
+  // The reference of diffuse light is path traced, which is fast. Caustics of a small lamp are slow by paths,
+  // so photons of many passes with a small radius are the reference of those with a large one.
   const test::Settings caustic{{"components.caustic", "photons"}, {"photons.efficiency", "false"}};
   const test::Settings diffuse{{"components.secondary", "photons"},
                                {"components.tertiary", "photons"},
@@ -85,7 +86,7 @@ TEST_CASE("the error told of a picture of photons is the true one") {
     session::Renderer renderer(test::renderer_options(false));
     renderer.set_size(c.width, c.height);
     renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + c.scene + "/" + c.scene + ".gltf");
-    // What does not come by photons would hide their part under its noise.
+    // Components without photons would hide the photons' error under their noise.
     test::Settings settings{{"sampling.tile", "8"},
                             {"sampling.mode", "uniform"},
                             {"components.primary", "off"},
@@ -108,17 +109,17 @@ TEST_CASE("the error told of a picture of photons is the true one") {
         test::set(renderer, settings);
         count(f, shot_of(renderer), reference);
       }
-      const double share = 100 / double(std::max<size_t>(1, f.asked)), n = c.shots;
+      const double share = 100 / double(std::max<size_t>(1, f.tested)), n = c.shots;
       std::printf(
           "%-8s radius %-3s covered: noise %.1f %%, with bias %.1f %% of %zu tiles (%zu heavy-tailed); rms "
-          "told "
+          "estimated "
           "%.4f (noise %.4f, bias %.4f), true %.4f\n",
-          c.scene, radius.c_str(), share * double(f.by_noise), share * double(f.by_sum), f.asked, f.heavy,
+          c.scene, radius.c_str(), share * double(f.by_noise), share * double(f.by_sum), f.tested, f.heavy,
           f.estimated / n, f.estimated_noise / n, f.estimated_bias / n, f.truth / n);
       std::fflush(stdout);
       INFO(c.scene << " radius " << radius);
-      // 85 %, and two standard errors of as many independent tiles.
-      const double tiles = double(f.asked), chance = 2 * std::sqrt(0.9 * 0.1 * tiles);
+      // 85 %, minus two standard errors for this number of independent tiles.
+      const double tiles = double(f.tested), chance = 2 * std::sqrt(0.9 * 0.1 * tiles);
       CHECK(double(f.by_sum) > 0.85 * tiles - chance);
       CHECK(f.by_noise < f.by_sum);
       CHECK(f.estimated > 0.8 * f.truth);

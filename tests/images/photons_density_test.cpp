@@ -1,6 +1,6 @@
 // links: session
-// Photons as a person looks at them: density and irradiance as heat maps with their scale, and the disc under
-// the pointer with its photons.
+// Views of photons: density and irradiance as heat maps with a scale, and the disc under the pointer with its
+// photons.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -41,13 +41,13 @@ double mean(const std::vector<float>& values) {
 
 }  // namespace
 
-TEST_CASE("the density of photons is that which the round has left, and their irradiance the sun's") {
+TEST_CASE("the density map equals the pass's photons per area, and irradiance equals the sun's") {
   Shown s;
   const std::vector<uint8_t> plain = s.r.picture(false);
   test::set(s.r, {{"overlay.photon_density", "photons"}});
   const std::vector<uint8_t> shown = s.r.picture(false);
   CHECK(plain != shown);
-  // All photons of the round lie evenly on the floor of four square metres.
+  // All photons of the pass are distributed evenly over the floor of four square metres.
   const double density = double(s.photons->map().figures().photons) / 4;
   CHECK(mean(s.photons->inspector().densities()) == Approx(density).epsilon(0.03));
   auto report = s.report();
@@ -64,8 +64,8 @@ TEST_CASE("the density of photons is that which the round has left, and their ir
   CHECK(s.report()->legends.empty());
 }
 
-TEST_CASE("through glass and in mirrors the irradiance of what lies behind is shown") {
-  // A small slab right below the eye, through which all of the floor is seen.
+TEST_CASE("through glass and in mirrors the irradiance of the surface behind is shown") {
+  // A small slab directly below the camera, through which the entire floor is seen.
   scene::Scene glass = test::turned_sun(vec3(1));
   glass.materials.push_back({});
   glass.materials[2].metallic = 0, glass.materials[2].transmission = 1, glass.materials[2].roughness = 0,
@@ -91,20 +91,20 @@ TEST_CASE("through glass and in mirrors the irradiance of what lies behind is sh
   }
 }
 
-TEST_CASE("how fast photons are sent, stored, sorted and gathered is told") {
+TEST_CASE("rates of sending, storing, sorting and gathering photons are reported") {
   Shown s;
   const auto own = s.r.solver_statistics().at("photons");
   const auto& rates = own.at("per_second");
   for (const char* what : {"emitted", "stored", "sorted", "looked_up", "gathered"}) CHECK(rates.at(what) > 0);
-  // So many lie in a disc as its area says.
+  // The number of photons in a disc follows its area. The radius grows with the distance from the camera, 0.9
+  // m above the floor's middle.
   const auto& at = s.photons->map();
-  // The radius grows with the distance from the eye, 0.9 m above the floor's middle.
   const double up = std::tan(0.4), right = 1.2 * up;
   const double radius = double(at.lookup().slope) * 0.9 * std::sqrt(1 + (up * up + right * right) / 3);
   const double expected = double(at.figures().photons) / 4 * double(k_pi) * radius * radius;
   CHECK(double(rates.at("gathered_a_lookup")) == Approx(expected).epsilon(0.1));
   CHECK(double(rates.at("gathered")) == Approx(double(rates.at("looked_up")) * expected).epsilon(0.1));
-  // The same in the panel, with what is aimed, and their seconds for benches.
+  // The panel shows the same plus aiming, and benches read the seconds.
   const std::shared_ptr<const solvers::Report> report = s.report();
   REQUIRE(!report->sections.empty());
   std::set<std::string> rows;
@@ -116,7 +116,7 @@ TEST_CASE("how fast photons are sent, stored, sorted and gathered is told") {
   CHECK(s.r.figure("seconds of sorting photons") > 0);
 }
 
-TEST_CASE("under the pointer are the disc and its photons, with what each brings") {
+TEST_CASE("the view at the pointer shows the disc and its photons, with their contributions") {
   Shown s;
   test::set(s.r, {{"overlay.photon_density", "irradiance"}});
   const std::vector<uint8_t> without = s.r.picture(false);
@@ -129,7 +129,7 @@ TEST_CASE("under the pointer are the disc and its photons, with what each brings
   CHECK(found.at.normal.y > 0.999f);
   CHECK(found.at.area == Approx(1));
   CHECK(found.photons.size() == std::min(found.at.count, shared::k_photons_inspected));
-  // So many lie in the disc as its area says.
+  // The number of photons in the disc follows its area.
   const double expected =
       double(s.photons->map().figures().photons) / 4 * double(k_pi * found.at.radius * found.at.radius);
   CHECK(double(found.at.count) == Approx(expected).epsilon(0.2));
@@ -146,23 +146,23 @@ TEST_CASE("under the pointer are the disc and its photons, with what each brings
   REQUIRE(report->card);
   CHECK(report->looked_at);
   CHECK(report->card->lines.size() > 5);
-  // Beside the scene there is nothing to tell of; and no photons are no reason to fail.
+  // Without a surface under the pointer nothing is drawn, and zero photons are not an error.
   s.photons->look_at(std::nullopt);
   CHECK(s.r.picture(false) == without);
 }
 
-TEST_CASE("importance is shown where lookups take place, and is even where these are") {
+TEST_CASE("importance is shown where lookups take place, and is even where lookups are") {
   Shown s;
   const std::vector<uint8_t> plain = s.r.picture(false);
-  // Without importons nobody has noted any.
+  // Without importons there is no importance.
   test::set(s.r, {{"overlay.photon_density", "importance"}});
   s.r.picture(false);
   test::set(s.r, {{"photons.importons", "true"}});
   test::finish(s.r);
-  s.photons = &dynamic_cast<photons::PhotonSolver&>(*s.r.solver("photons"));  // which is another one now
+  s.photons = &dynamic_cast<photons::PhotonSolver&>(*s.r.solver("photons"));  // a new one
   CHECK(s.r.picture(false) != plain);
-  // A camera that looks straight down sees a plane in even steps, so that as many lookups lie in each cell,
-  // but for what the pilot's chance does.
+  // A camera that looks straight down sees a plane in even steps, so every cell has as many lookups, up to
+  // noise of the pilot.
   const std::vector<float> found = s.photons->inspector().densities();
   const double middle = mean(found);
   CHECK(middle > 0);
@@ -172,17 +172,17 @@ TEST_CASE("importance is shown where lookups take place, and is even where these
   CHECK(s.report()->legends[0].title.find("hangs") != std::string::npos);
 }
 
-TEST_CASE("light paths and what they are aimed at are drawn, and change nothing") {
+TEST_CASE("drawing light paths and aim targets does not change the picture") {
   Shown s;
   const std::vector<uint8_t> plain = s.r.picture(false);
   const uint64_t rays = s.r.stats().rays;
   test::set(s.r, {{"overlay.photon_paths", "true"}});
   const std::vector<uint8_t> paths = s.r.picture(false);
   CHECK(paths != plain);
-  CHECK(s.r.picture(false) == paths);  // it stands still
+  CHECK(s.r.picture(false) == paths);  // the view does not change
   test::set(s.r, {{"overlay.photon_paths_of", "1"}});
   CHECK(s.r.picture(false) != plain);
-  test::set(s.r, {{"overlay.photon_paths_of", "2"}});  // there is none
+  test::set(s.r, {{"overlay.photon_paths_of", "2"}});  // there is no such light
   CHECK(s.r.picture(false) == plain);
   test::set(s.r, {{"overlay.photon_paths", "false"}, {"overlay.photon_aim", "true"}});
   CHECK(s.r.picture(false) != plain);

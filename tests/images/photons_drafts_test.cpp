@@ -1,6 +1,6 @@
 // links: session
-// What the window shows of light that photons are to bring, before there are any: drafts trace it, and leave
-// the pilot as it is.
+// Previews of light computed by photons, before photons exist: preview samples path trace it, and do not
+// influence the pilot.
 #include <catch2/catch.hpp>
 
 #include "solvers/photons/solver.h"
@@ -12,14 +12,14 @@ using test::Settings;
 
 namespace {
 
-/// A room whose lamps shine at the ceiling alone, so that all else is lit by that.
+/// A room whose lamps light the ceiling only, so everything else is lit by the ceiling.
 scene::Scene lit_from_above() {
   scene::Scene s = test::block_room();
   s.lights[0].kind = scene::LightKind::spot;
   s.lights[0].direction = {0, 1, 0};
   s.lights[0].outer_cone = 0.9f, s.lights[0].inner_cone = 0.7f;
   s.lights[0].intensity = vec3(20);
-  // Another one, so that the pilot shares paths out by what either brings.
+  // A second lamp, so the pilot distributes paths by the lamps' contributions.
   s.lights.push_back(s.lights[0]);
   s.lights[1].position = {-1.2f, 1.8f, -1.2f}, s.lights[1].intensity = vec3(4, 8, 4);
   return s;
@@ -53,7 +53,7 @@ const Settings k_records{{"components.secondary", "cache"}, {"components.tertiar
 
 }  // namespace
 
-TEST_CASE("before there are photons drafts show the light that they will bring") {
+TEST_CASE("before photons exist preview samples show the same light") {
   for (const Settings& how : {k_all, k_gather, k_records}) {
     Bed bed(how, true);
     for (int i = 0; i < 8; ++i) bed.r.draw_draft();
@@ -64,16 +64,16 @@ TEST_CASE("before there are photons drafts show the light that they will bring")
     const double finally = bed.shown();
     INFO(how.size() << ": early " << early << ", finally " << finally);
     CHECK(finally > 0.05);
-    // Few samples of a small picture, each of which is encoded: what is bright by chance counts for less.
+    // A few samples of a small picture, each encoded: bright outliers count for less.
     CHECK(early == Approx(finally).epsilon(0.15));
   }
 }
 
-TEST_CASE("the picture does not depend on drafts, to the bit") {
+TEST_CASE("the picture does not depend on preview samples, bit for bit") {
   for (const Settings& how : {k_all, k_gather, k_records}) {
     Bed batch(how, false), window(how, true);
     const film::Image right = test::finish(batch.r);
-    // Before any photons a few drafts between any two steps, so that there are some while the pilot notes.
+    // Before any photons a few preview samples between any two steps, also while the pilot records.
     for (int i = 0; !window.r.done() && i < 100000; ++i) {
       for (int k = 0; k < (window.r.samples() == 0 ? 6 : 0); ++k) window.r.draw_draft();
       window.r.step();

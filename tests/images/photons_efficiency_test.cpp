@@ -1,6 +1,6 @@
 // links: session
-// Caustics in those parts of the picture by photons where these are worth their time, in others by paths from
-// the eye: what the pilot says of both ways' noise is so, and no mean changes.
+// Caustics by photons in the parts of the picture where they are more efficient, by path tracing elsewhere:
+// the pilot's estimates of both methods' noise are correct, and the mean does not change.
 #include <catch2/catch.hpp>
 
 #include "solvers/photons/solver.h"
@@ -14,9 +14,9 @@ namespace {
 constexpr uint32_t k_size = 32;
 constexpr float k_small_lamp = 2000;
 
-/// A floor of 4 m x 2 m under an open sky that is black, seen from above, with a black wall across its
-/// middle. At either end a mirror stands, in which a lamp on the wall shines: to the left a wide panel, to
-/// the right a small and bright one.
+/// A floor of 4 m x 2 m under a black environment, seen from above, with a black wall across its middle. At
+/// either end is a mirror that reflects a lamp on the wall: on the left a wide panel, on the right a small
+/// bright one.
 scene::Scene two_lamps(float roughness = 0) {
   scene::Scene s;
   s.name = "two lamps";
@@ -30,8 +30,8 @@ scene::Scene two_lamps(float roughness = 0) {
   test::add_quad(s, {-2, 0, 1}, {4, 0, 0}, {0, 0, -2}, 0);
   test::add_quad(s, {-1.9f, 0, 0.9f}, {0, 0, -1.8f}, {0, 1, 0}, 1);           // faces +x
   test::add_quad(s, {1.9f, 0, -0.9f}, {0, 0, 1.8f}, {0, 1, 0}, 1);            // faces -x
-  test::add_quad(s, {-0.05f, 0.05f, -0.9f}, {0, 0, 1.8f}, {0, 0.9f, 0}, 2);   // shines to -x
-  test::add_quad(s, {0.05f, 0.5f, 0.02f}, {0, 0, -0.04f}, {0, 0.04f, 0}, 3);  // shines to +x
+  test::add_quad(s, {-0.05f, 0.05f, -0.9f}, {0, 0, 1.8f}, {0, 0.9f, 0}, 2);   // emits to -x
+  test::add_quad(s, {0.05f, 0.5f, 0.02f}, {0, 0, -0.04f}, {0, 0.04f, 0}, 3);  // emits to +x
   test::add_quad(s, {0, 0, -3}, {0, 0, 6}, {0, 3.5f, 0}, 4);
   s.cameras = {test::looking_down({0, 4, 0}, 0.9f)};
   s.environment.given = true;
@@ -65,16 +65,17 @@ const test::Settings k_by_photons = with(k_caustics, {{"components.caustic", "ph
 
 }  // namespace
 
-/// So few photons that the wide lamp's light has less noise by paths.
+/// Few enough photons that the wide lamp's light has less noise by path tracing.
 const test::Settings k_few{{"photons.per_round", "4"}};
 
-TEST_CASE("each part of the picture has the better way, and the same light", "[photons_worth]") {
+TEST_CASE("each part of the picture uses the more efficient method, with the same light",
+          "[photons_efficiency]") {
   const scene::Scene scene = two_lamps();
   const Rendered both = render(scene, with(k_by_photons, k_few), 2048);
   CHECK(both.by_photons > 0.2);
   CHECK(both.by_photons < 0.9);
   CHECK(both.regions.gain > 1);
-  // Against many photons everywhere: blurred by less than 1 %.
+  // Compared with many photons everywhere: blurred by less than 1 %.
   const Rendered photons = render(scene, with(k_by_photons, {{"photons.efficiency", "false"}}), 256);
   CHECK(photons.by_photons == 1);
   for (const auto& [first, end] : {std::pair{2u, 10u}, {10u, 22u}, {22u, 30u}}) {
@@ -85,7 +86,7 @@ TEST_CASE("each part of the picture has the better way, and the same light", "[p
       CHECK(std::abs(a.value[c] - b.value[c]) < 4 * std::hypot(a.noise[c], b.noise[c]) + 0.01 * b.value[c]);
     }
   }
-  // The wide lamp's light has less noise than by as few photons; the small one's has theirs.
+  // The wide lamp's light has less noise than with this number of photons; the small lamp's has the same.
   const Rendered few =
       render(scene, with(with(k_by_photons, k_few), {{"photons.efficiency", "false"}}), 2048);
   const auto noise = [](const film::Image& image, uint32_t first, uint32_t end) {
@@ -101,8 +102,8 @@ TEST_CASE("each part of the picture has the better way, and the same light", "[p
   CHECK(noise(both.image, 4, 9) < 0.6 * noise(few.image, 4, 9));
 }
 
-TEST_CASE("where photons are nowhere worth it none are sent, and the picture is the path traced one",
-          "[photons_worth]") {
+TEST_CASE("where photons are nowhere more efficient none are traced, and the picture is path traced",
+          "[photons_efficiency]") {
   scene::Scene scene = two_lamps();
   scene.materials[3].emission = vec3(0);  // the wide lamp alone
   const Rendered delegated = render(scene, with(k_by_photons, k_few), 8), path = render(scene, k_caustics, 8);
@@ -112,7 +113,7 @@ TEST_CASE("where photons are nowhere worth it none are sent, and the picture is 
   CHECK(test::mean(delegated.image.components[3]) > 0);
 }
 
-TEST_CASE("regions are shown, and the same for the same scene, view and settings", "[photons_worth]") {
+TEST_CASE("regions are shown, and depend on scene, view and settings only", "[photons_efficiency]") {
   const scene::Scene scene = two_lamps();
   session::Renderer r(test::renderer_options());
   r.settings().set("path.batch", test::k_batch);
@@ -123,14 +124,14 @@ TEST_CASE("regions are shown, and the same for the same scene, view and settings
   test::set(r, settings);
   const film::Image once = test::finish(r);
   const std::vector<uint8_t> plain = r.picture(false);
-  test::set(r, {{"overlay.photon_density", "worth"}});
+  test::set(r, {{"overlay.photon_density", "caustics"}});
   CHECK(r.picture(false) != plain);
   const auto& photons = dynamic_cast<photons::PhotonSolver&>(*r.solver("photons"));
   const std::vector<float> shown = photons.inspector().densities();
   const auto at = [&](uint32_t x) { return shown[(k_size / 2) * k_size + x]; };
   CHECK(at(26) == 1);
   CHECK(at(5) == 0);
-  // Photons everywhere in between, a size in between; paths in flight.
+  // In between: photons everywhere, another size, and paths in flight.
   test::set(r, {{"photons.efficiency", "false"}});
   CHECK_FALSE(test::identical(once, test::finish(r)));
   test::set(r, {{"photons.efficiency", "true"}});
@@ -145,11 +146,11 @@ TEST_CASE("regions are shown, and the same for the same scene, view and settings
   CHECK(test::identical(once, again.image));
 }
 
-TEST_CASE("the pilot knows the noise of either way", "[photons_worth]") {
+TEST_CASE("the pilot's noise estimates are correct for both methods", "[photons_efficiency]") {
   const test::Settings photons =
       with(k_by_photons, {{"photons.per_round", "64"}, {"photons.alpha", "1"}, {"photons.radius", "0.8"}});
-  // Of one sample, over pixels of the middle rows from `x` on, from halves of few samples: all less one half
-  // is half of what the halves differ by, whose variance is that of the mean of all.
+  // Variance of one sample, over pixels of the middle rows from column `x`, from the halves of few samples:
+  // the whole minus one half is half of the halves' difference, whose variance is that of the mean.
   constexpr uint32_t k_rows = 20, k_columns = 6, k_samples = 32;
   const auto measured = [&](const film::Image& image, uint32_t x) {
     double sum = 0;
@@ -177,17 +178,15 @@ TEST_CASE("the pilot knows the noise of either way", "[photons_worth]") {
         }
       mean.mean /= n, mean.photons /= n, mean.paths /= n;
       CAPTURE(roughness, x, mean.mean, mean.paths, measured(path, x), mean.photons, measured(counted, x));
-      // Samples are stratified, so that they have somewhat less noise than if they knew nothing of each
-      // other.
+      // Samples are stratified, so they have slightly less noise than independent ones.
       const double photon_ratio = measured(counted, x) / mean.photons;
       CHECK(photon_ratio > 0.4);
       CHECK(photon_ratio < 1.5);
       if (roughness == 0 && x == 22) {
-        // Hardly a path meets the small lamp: 0.6 times its radiance with so small a probability.
+        // Almost no path hits the small lamp: 0.6 times its radiance with a small probability.
         CHECK(mean.paths == Approx(0.6 * double(k_small_lamp) * mean.mean).epsilon(0.05));
       } else {
-        // Which lamp a light sample is of is not drawn as where a light path begins, nor is the heuristic the
-        // same.
+        // Light samples and light paths choose lamps by different probabilities, and the heuristics differ.
         const double path_ratio = measured(path, x) / mean.paths;
         CHECK(path_ratio > 0.3);
         CHECK(path_ratio < 4);

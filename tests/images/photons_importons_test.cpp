@@ -1,6 +1,6 @@
 // links: session
-// Photons are stored where somebody looks: fewer, and no mean is another, neither straight nor in a mirror
-// nor by final gathering.
+// With importons photons are stored only where lookups read them: fewer photons, the same means for directly
+// visible surfaces, mirrors and final gathering.
 #include <catch2/catch.hpp>
 
 #include "support/render.h"
@@ -34,7 +34,7 @@ void check_same(const scene::Scene& scene, const test::Settings& settings, doubl
   const Rendered some = render(scene, settings, true), all = render(scene, settings, false);
   CHECK(all.spared == 0);
   CHECK(some.spared > least_spared * all.photons);
-  // Only photons are left out: with those that were spared they are as many as without.
+  // Only photons are skipped: stored plus skipped ones equal the number without importons.
   CHECK(some.photons + some.spared == Approx(all.photons).epsilon(1e-9));
   for (int c = 1; c < 4; ++c) {
     double a = 0, b = 0, odd_a = 0, odd_b = 0;
@@ -47,12 +47,12 @@ void check_same(const scene::Scene& scene, const test::Settings& settings, doubl
       b += at(all.image, false), odd_b += at(all.image, true);
     }
     INFO("component " << c << ": " << a << ", all stored " << b);
-    // Rounds send the same paths, so that what differs is roulette alone.
+    // Passes trace the same paths, so only roulette differs.
     CHECK(std::abs(a - b) <= 0.005 * b + 4 * std::hypot(a - odd_a, b - odd_b));
   }
 }
 
-/// A room that is long, of which the camera sees one end.
+/// A long room, of which the camera sees one end.
 scene::Scene long_room(bool mirror) {
   scene::Scene s;
   s.name = "long room";
@@ -79,10 +79,10 @@ const test::Settings k_all{{"components.secondary", "photons"},
 
 }  // namespace
 
-TEST_CASE("where nobody looks few photons are stored, and the picture's means stay") {
+TEST_CASE("few photons are stored outside the view, and the picture's means stay") {
   check_same(long_room(false), k_all, 0.3);
 }
-TEST_CASE("what a mirror shows is looked at") { check_same(long_room(true), k_all, 0.05); }
-TEST_CASE("what final gathering reads is looked at") {
+TEST_CASE("surfaces seen in a mirror keep their photons") { check_same(long_room(true), k_all, 0.05); }
+TEST_CASE("surfaces read by final gathering keep their photons") {
   check_same(long_room(false), {{"components.tertiary", "photons"}, {"photons.efficiency", "false"}}, 0.0);
 }

@@ -1,6 +1,6 @@
 // links: session
-// Photons where they outgrow the device's largest buffer: fewer light paths, the same light, and word of it.
-// Light tracing, where all of its sums would.
+// Photons that exceed the device's largest buffer: fewer light paths, the same light, and a message. Light
+// tracing whose sums exceed it.
 #include "support/caustics.h"
 #include "support/device_name.h"
 
@@ -9,7 +9,7 @@ using test::mean_of, test::MeanOf;
 
 namespace {
 
-constexpr uint64_t k_limit = 9 << 20;  // bytes of a buffer: more than what the kernels themselves need
+constexpr uint64_t k_limit = 9 << 20;  // bytes of a buffer: more than the kernels themselves need
 
 struct Rendered {
   film::Image image;
@@ -43,7 +43,7 @@ Rendered render(const test::Settings& settings, uint64_t most_storage_buffer) {
 
 }  // namespace
 
-TEST_CASE("photons that do not fit into a buffer are fewer, and their light is the same") {
+TEST_CASE("photons that do not fit into a buffer are reduced, and their light is the same") {
   for (const test::Settings& settings : {test::Settings{{"components.tertiary", "photons"}},
                                          test::Settings{{"components.tertiary", "photons"},
                                                         {"photons.irradiance_map", "off"},
@@ -63,8 +63,8 @@ TEST_CASE("photons that do not fit into a buffer are fewer, and their light is t
   }
 }
 
-TEST_CASE("light tracing of more pixels than a buffer holds is the same") {
-  // A pixel takes 12 bytes of sums for each color, and 16 of the round's picture.
+TEST_CASE("light tracing of more pixels than a buffer holds gives the same picture") {
+  // A pixel takes 12 bytes of sums per colour, and 16 of the pass's picture.
   constexpr uint32_t k_width = 900, k_height = 700;
   static_assert(16 * k_width * k_height > k_limit);
   film::Image images[2];

@@ -1,6 +1,6 @@
 // links: session
-// Photons on a coarse mesh with the normals of a round thing: what lies on a neighbouring facet is flux over
-// that facet's area, so lookups divide by the cosine to that facet.
+// Photons on a coarse mesh with the normals of a smooth shape: the density on a neighbouring facet is flux
+// over that facet's area, so lookups divide by the cosine to that facet.
 #include <catch2/catch.hpp>
 
 #include "support/render.h"

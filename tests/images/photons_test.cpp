@@ -1,6 +1,6 @@
 // links: session
-// Photons through the real program: their light against closed forms and against path tracing, what they must
-// not see, that the picture is one of settings and seed alone, and what there is when there is little.
+// Photons through the whole renderer: their light compared with closed forms and with path tracing, surfaces
+// they must not reach, dependence on settings and seed only, and edge cases with little light.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
@@ -19,7 +19,7 @@ const test::Settings k_all{{"components.secondary", "photons"},
                            {"components.caustic", "photons"},
                            {"photons.efficiency", "false"}};
 
-/// The inside of a box that shines, all of one albedo and without gloss.
+/// The inside of an emissive box of a single albedo without gloss.
 scene::Scene closed_room(const vec3& albedo) {
   scene::Scene s;
   s.name = "closed room";
@@ -29,7 +29,7 @@ scene::Scene closed_room(const vec3& albedo) {
   return s;
 }
 
-/// A room of four metres with a lamp under its ceiling and a ball of glass on its floor.
+/// A room of four metres with a lamp under its ceiling and a glass ball on its floor.
 scene::Scene glass_room(float lamp = 0.5f) {
   scene::Scene s;
   s.name = "glass room", s.file = "glass.gltf";
@@ -39,7 +39,7 @@ scene::Scene glass_room(float lamp = 0.5f) {
   test::add_box(s, {-2, 0, -2}, {2, 2.5f, 2});
   test::add_quad(s, {-lamp, 2.45f, -lamp}, {2 * lamp, 0, 0}, {0, 0, 2 * lamp}, 1);
   test::add_ball(s, {0.3f, 0.6f, 0}, 0.55f, 2);
-  // A mat whose shading normals lean away from its plane.
+  // A mat whose shading normals deviate from its plane.
   test::add_quad(s, {-1.9f, 0.01f, 1.9f}, {3.8f, 0, 0}, {0, 0, -3.8f}, 0);
   s.meshes.back().primitives[0].normals.assign(4, glm::normalize(vec3(0.5f, 0.8f, -0.3f)));
   scene::Camera front;
@@ -51,7 +51,7 @@ scene::Scene glass_room(float lamp = 0.5f) {
 
 }  // namespace
 
-TEST_CASE("a beam of even light on a plane has the irradiance that it brings there") {
+TEST_CASE("a beam of even light on a plane has the expected irradiance") {
   const test::Result r = test::render(
       turned_sun(),
       {{"components.caustic", "photons"}, {"photons.efficiency", "false"}, {"photons.per_round", "200000"}},
@@ -65,13 +65,13 @@ TEST_CASE("a beam of even light on a plane has the irradiance that it brings the
   }
   const MeanOf all = mean_of(r.image, 3);
   for (int c = 0; c < 3; ++c) CHECK(all.value[c] == Approx(radiance[c]).epsilon(0.01));
-  // Paths from the eye never meet it.
+  // Camera paths never hit this light.
   const test::Result path = test::render(turned_sun(), {}, 16, 32);
   CHECK(test::mean(path.image.components[3]) == 0);
 }
 
-TEST_CASE("light that is refracted into water has there the irradiance that comes through") {
-  // The sun stands overhead, the camera is under water: whoever scaled flux as radiance would be off by 1.77.
+TEST_CASE("light refracted into water has the irradiance of the transmitted light") {
+  // The sun is overhead, the camera under water: scaling flux like radiance would be off by 1.77.
   scene::Scene s;
   s.name = "pool";
   s.materials = {test::diffuse({0.8f, 0.5f, 0.2f}), {}};
@@ -87,7 +87,7 @@ TEST_CASE("light that is refracted into water has there the irradiance that come
       {"components.caustic", "photons"}, {"photons.efficiency", "false"}, {"photons.per_round", "100000"}};
   const double through = 1 - std::pow(0.33 / 2.33, 2);
   const MeanOf flat = mean_of(test::render(s, settings, 8, 32).image, 3);
-  // Shading normals that lean are those that paths weigh light by.
+  // Shading normals weight photons like paths.
   const vec3 leaning = glm::normalize(vec3(0.5f, 0.8f, -0.3f));
   s.meshes[0].primitives[0].normals.assign(4, leaning);
   const MeanOf leant = mean_of(test::render(s, settings, 8, 32).image, 3);
@@ -113,7 +113,7 @@ TEST_CASE("flux is conserved in a closed room of one albedo") {
       INFO("channel " << c << ", " << way);
       const double a = double(albedo[c]);
       CHECK(secondary.value[c] == Approx(a * a).epsilon(0.01));
-      // Final gathering sees the dark rims of the map's edges: r / a room's width of its light.
+      // Final gathering sees the dark borders of the map: a share of radius over room width.
       CHECK(tertiary.value[c] == Approx(a * a * a / (1 - a)).epsilon(final_gather ? 0.03 : 0.01));
     }
     for (const vec3& v : r.image.components[3]) CHECK(v == vec3(0));
@@ -131,7 +131,7 @@ const test::Result& by_paths() {
   return path;
 }
 
-/// That a choice of solvers makes the picture that path tracing makes.
+/// Checks that a choice of solvers gives the picture of path tracing.
 void check_choice(const test::Settings& choice) {
   const test::Result& path = by_paths();
   const scene::Scene room = glass_room();
@@ -148,7 +148,7 @@ void check_choice(const test::Settings& choice) {
     REQUIRE(truth.value.y > 1e-3);
     INFO(name << ": " << here.value.y << " +- " << here.noise.y << ", path " << truth.value.y << " +- "
               << truth.noise.y);
-    // Blur moves light across edges and loses some of it there: 3 % of this small picture's.
+    // Blur moves light across edges, and loses some there: 3 % in this small picture.
     CHECK(std::abs(here.value.y - truth.value.y) <
           4.5 * std::hypot(here.noise.y, truth.noise.y) + (own ? 0.03 : 0.0) * truth.value.y);
     CHECK(r.bias_known[size_t(c)] == !own);
@@ -157,51 +157,53 @@ void check_choice(const test::Settings& choice) {
 
 }  // namespace
 
-TEST_CASE("caustics of photons beside paths make the picture of path tracing") {
+TEST_CASE("caustics of photons with path tracing give the picture of path tracing") {
   check_choice({{"components.caustic", "photons"}, {"photons.efficiency", "false"}});
 }
-TEST_CASE("photons for all that they can make the picture of path tracing") { check_choice(k_all); }
-TEST_CASE("final gathering from photons makes the picture of path tracing") {
+TEST_CASE("photons for every component they can compute give the picture of path tracing") {
+  check_choice(k_all);
+}
+TEST_CASE("final gathering from photons gives the picture of path tracing") {
   check_choice({{"components.tertiary", "photons"}, {"photons.efficiency", "false"}});
 }
-TEST_CASE("secondary light of photons beside tertiary light of paths makes the picture of path tracing") {
+TEST_CASE("secondary light of photons with tertiary light of paths gives the picture of path tracing") {
   check_choice({{"components.secondary", "photons"}, {"photons.efficiency", "false"}});
 }
-TEST_CASE("caustics of photons beside cached light make the picture of path tracing") {
+TEST_CASE("caustics of photons with cached light give the picture of path tracing") {
   check_choice({{"components.secondary", "cache"},
                 {"components.tertiary", "cache"},
                 {"components.caustic", "photons"},
                 {"photons.efficiency", "false"}});
 }
-TEST_CASE("photons at the first surface and records at the second make the picture of path tracing") {
+TEST_CASE("photons at the first surface and records at the second give the picture of path tracing") {
   check_choice({{"components.secondary", "photons"},
                 {"components.tertiary", "cache"},
                 {"photons.efficiency", "false"}});
 }
 
-TEST_CASE("records whose rays end in photons make the picture of path tracing") {
+TEST_CASE("records whose rays end in photons give the picture of path tracing") {
   check_choice({{"components.secondary", "cache"}, {"components.tertiary", "photons"}});
   check_choice({{"components.secondary", "cache"},
                 {"components.tertiary", "photons"},
                 {"photons.irradiance_map", "off"}});
 }
-TEST_CASE("records whose rays end in photons beside caustics of photons make the picture of path tracing") {
+TEST_CASE("records whose rays end in photons, with caustics of photons, give the picture of path tracing") {
   check_choice({{"components.secondary", "cache"},
                 {"components.tertiary", "photons"},
                 {"components.caustic", "photons"},
                 {"photons.efficiency", "false"}});
 }
 
-TEST_CASE("tertiary light from a map of irradiance makes the picture of path tracing") {
+TEST_CASE("tertiary light from an irradiance map gives the picture of path tracing") {
   const test::Settings settings{
       {"components.tertiary", "photons"}, {"photons.irradiance_map", "all"}, {"photons.efficiency", "false"}};
   check_choice(settings);
   check_choice(with(settings, {{"components.secondary", "cache"}}));
-  // Beside caustics, which are looked up among the round's photons at the first surface.
+  // With caustics, which are looked up in the pass's photons at the first surface.
   check_choice(with(settings, {{"components.caustic", "photons"}}));
 }
 
-TEST_CASE("a map of irradiance is read where it is asked for, is the same to the bit, and follows the lamp") {
+TEST_CASE("an irradiance map is read where requested, is reproducible bit for bit, and follows the lamp") {
   scene::Scene room = glass_room();
   const test::Settings settings{
       {"components.tertiary", "photons"}, {"photons.irradiance_map", "all"}, {"photons.efficiency", "false"}};
@@ -211,7 +213,7 @@ TEST_CASE("a map of irradiance is read where it is asked for, is the same to the
   CHECK(test::identical(a.image, test::render(base, &room).image));
   base.settings["photons.irradiance_map"] = "off";
   CHECK_FALSE(test::identical(a.image.components[2], test::render(base, &room).image.components[2]));
-  // Where light is looked up at the first surface there is nothing to be known beforehand.
+  // Lookups at the first surface need no map in advance.
   base.settings["components.secondary"] = "photons";
   const test::Result looked_up = test::render(base, &room);
   base.settings["photons.irradiance_map"] = "all";
@@ -238,7 +240,7 @@ TEST_CASE("records whose rays end in photons follow the lamp") {
   test::set(r, with(settings, {{"samples", "4"}}));
   const film::Image first = test::finish(r);
   const auto tertiary = [](const film::Image& image) { return test::mean(image.components[2]); };
-  // A lamp of twice the light, as a scene of its own and as an edit of this one.
+  // A lamp of twice the power, as a separate scene and as an edit of this one.
   room.materials[1].emission *= 2.0f;
   r.set_scene(std::make_shared<scene::Scene>(room));
   const film::Image bright = test::finish(r);
@@ -247,11 +249,11 @@ TEST_CASE("records whose rays end in photons follow the lamp") {
       .width = 24, .height = 24, .samples = 4, .settings = settings, .validated = false};
   const test::Result fresh = test::render(from_scratch, &room);
   CHECK(tertiary(bright) == Approx(tertiary(fresh.image)).epsilon(0.1));
-  // Twice the same is the same to the bit.
+  // A second run is identical bit for bit.
   CHECK(test::identical(fresh.image, test::render(from_scratch, &room).image));
 }
 
-TEST_CASE("solvers that photons do not touch make the same picture to the bit") {
+TEST_CASE("solvers without photons give the same picture bit for bit") {
   const scene::Scene room = glass_room();
   const test::Result path = test::render({.samples = 8}, &room);
   const test::Result r = test::render(
@@ -262,8 +264,8 @@ TEST_CASE("solvers that photons do not touch make the same picture to the bit") 
 }
 
 TEST_CASE("photons behind a wall of a millimetre change nothing") {
-  // Two rooms; the lamp is in the left one, the camera in the right one, which is larger, so that of the
-  // surfaces only those of the wall lie near each other.
+  // Two rooms; the lamp is in the left one, the camera in the right one, which is larger, so only the
+  // surfaces of the dividing wall are close to each other.
   scene::Scene s;
   s.name = "two rooms";
   s.materials = {test::diffuse(vec3(0.8f))};
@@ -279,13 +281,13 @@ TEST_CASE("photons behind a wall of a millimetre change nothing") {
   const test::Result r = test::render(s, k_all, 4, 32);
   for (const auto& component : r.image.components)
     for (const vec3& v : component) REQUIRE(v == vec3(0));
-  // On the lamp's side the same wall is lit.
+  // The lamp's side of the same wall is lit.
   s.cameras[0].to_world[3] = vec4(-0.5f, 1, 0, 1);
   const test::Result lit = test::render(s, k_all, 4, 32);
   CHECK(test::mean(lit.image.components[1]) > 0.01);
 }
 
-TEST_CASE("the picture does not depend on batches or on a second run, and adaptive sampling gives the same") {
+TEST_CASE("the picture does not depend on batches, a second run or adaptive sampling") {
   const scene::Scene room = glass_room();
   const test::Render base{
       .width = 40, .height = 36, .samples = 6, .settings = with(k_all, {{"photons.per_round", "5000"}})};
@@ -306,7 +308,7 @@ TEST_CASE("the picture does not depend on batches or on a second run, and adapti
   CHECK_FALSE(test::identical(a.image, test::render(other, &room).image));
 }
 
-TEST_CASE("adaptive sampling of tiles that are apart reads each sample's own round") {
+TEST_CASE("adaptive sampling of separate tiles reads the photons of each sample's own pass") {
   const scene::Scene room = glass_room();
   session::Renderer r(test::renderer_options(false));
   r.set_size(48, 48);
@@ -317,7 +319,7 @@ TEST_CASE("adaptive sampling of tiles that are apart reads each sample's own rou
                                                {"sampling.target_error", "0.4"}});
   test::set(r, settings);
   test::finish(r);
-  // Another target: tiles that were done go on, beside others that have more samples.
+  // Another target: finished tiles continue, beside others that have more samples.
   test::set(r, {{"sampling.target_error", "0.0001"}});
   const film::Image image = test::finish(r);
   const test::Result whole =
@@ -325,7 +327,7 @@ TEST_CASE("adaptive sampling of tiles that are apart reads each sample's own rou
   CHECK(test::identical(image, whole.image));
 }
 
-TEST_CASE("without anything that focuses light no photons are sent for caustics, and nothing is paid") {
+TEST_CASE("without surfaces that focus light no photons are traced for caustics, and nothing is spent") {
   const scene::Scene room = test::block_room();
   const test::Result path = test::render(room, {}, 8, 32);
   session::Renderer r(test::renderer_options());
@@ -339,13 +341,13 @@ TEST_CASE("without anything that focuses light no photons are sent for caustics,
   CHECK(r.stats().rays <= path.stats.rays);
 }
 
-TEST_CASE("no lamp, a lamp in a closed shell, few photons and absurd radii have clear outcomes") {
+TEST_CASE("no lamp, an enclosed lamp, few photons and extreme radii give defined results") {
   scene::Scene dark = glass_room();
   dark.materials[1].emission = vec3(0);
   const test::Result none = test::render(dark, k_all, 2, 16);
   for (const auto& component : none.image.components)
     for (const vec3& v : component) REQUIRE(v == vec3(0));
-  // Its lamp is outside of the room.
+  // Its lamp is outside the room.
   scene::Scene shut = dark;
   shut.lights = {{.name = "lamp", .intensity = vec3(5), .position = {5, 1, 0}}};
   const test::Result outside = test::render(shut, k_all, 2, 16);
@@ -365,7 +367,7 @@ TEST_CASE("no lamp, a lamp in a closed shell, few photons and absurd radii have 
   }
 }
 
-TEST_CASE("very many photons in one place are looked at in part, and their light stays the same") {
+TEST_CASE("of very many photons in one place a part is read, and the light stays the same") {
   // All of a narrow beam falls on a few pixels.
   scene::Scene s = turned_sun();
   s.lights[0].kind = scene::LightKind::spot;
@@ -385,7 +387,7 @@ TEST_CASE("very many photons in one place are looked at in part, and their light
   CHECK(many == Approx(few).epsilon(0.01));
 }
 
-TEST_CASE("photons are drawn over the picture, and told of") {
+TEST_CASE("photons are drawn over the picture and reported") {
   session::Renderer r(test::renderer_options());
   r.set_size(32, 32);
   r.set_scene(std::make_shared<scene::Scene>(glass_room()));

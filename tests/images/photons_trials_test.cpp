@@ -1,6 +1,6 @@
 // links: session
-// Secondary and tertiary light of the whole picture by photons, or by paths from the eye where these have
-// far less noise for their time.
+// Secondary and tertiary light of the whole picture by photons, or by path tracing where that is far more
+// efficient.
 #include <catch2/catch.hpp>
 
 #include "solvers/photons/solver.h"
@@ -18,7 +18,7 @@ test::Settings photons_for(std::initializer_list<const char*> components, const 
   for (const char* c : components) s[std::string("components.") + c] = "photons";
   return s;
 }
-/// So few photons that paths are better, and so many that these are.
+/// Few enough photons that paths are more efficient, and enough that photons are.
 constexpr const char *k_few = "64", *k_many = "300000";
 
 struct Session {
@@ -40,7 +40,7 @@ struct Session {
 
 }  // namespace
 
-TEST_CASE("where photons are far from worth it paths bring the light, and the picture is theirs to the bit",
+TEST_CASE("where path tracing is far more efficient it computes the light: its picture, bit for bit",
           "[photons_trials]") {
   const scene::Scene room = test::block_room();
   const film::Image path = Session(room, {{"components.caustic", "off"}}).image();
@@ -52,13 +52,13 @@ TEST_CASE("where photons are far from worth it paths bring the light, and the pi
   Session secondary(room, photons_for({"secondary"}, k_few));
   CHECK(test::identical(secondary.image(), path));
   CHECK(secondary.solver().delegated_components() == k_secondary);
-  // Where paths gather, a map of so few photons is known nowhere, and both ways are the same.
+  // Paths that gather find no valid irradiance with so few photons, so both ways are the same.
   Session tertiary(room, photons_for({"tertiary"}, k_few));
   tertiary.image();
   CHECK(tertiary.solver().delegated_components() == 0);
 }
 
-TEST_CASE("where photons are worth it they bring the light", "[photons_trials]") {
+TEST_CASE("where photons are more efficient they compute the light", "[photons_trials]") {
   const scene::Scene room = test::block_room();
   for (const test::Settings& how :
        {photons_for({"secondary", "tertiary"}, k_many), photons_for({"tertiary"}, k_many)}) {
@@ -69,7 +69,7 @@ TEST_CASE("where photons are worth it they bring the light", "[photons_trials]")
   }
 }
 
-TEST_CASE("the choice is the same however work is cut, and is made anew when light changes",
+TEST_CASE("the choice does not depend on work items, and is made again when light changes",
           "[photons_trials]") {
   const scene::Scene room = test::block_room();
   const test::Settings few = photons_for({"secondary", "tertiary"}, k_few);
@@ -84,14 +84,14 @@ TEST_CASE("the choice is the same however work is cut, and is made anew when lig
   CHECK_FALSE(test::identical(first.components[1], photons.components[1]));
   test::set(s.r, {{"photons.efficiency", "true"}});
   CHECK(test::identical(first, s.image()));
-  // Many photons: another answer; and few again.
+  // Many photons change the choice; few restore it.
   test::set(s.r, {{"photons.per_round", k_many}});
   s.image();
   CHECK(s.solver().delegated_components() == 0);
   test::set(s.r, {{"photons.per_round", k_few}});
   CHECK(test::identical(first, s.image()));
-  // A lamp twice as bright gives the same choice and twice the light; another camera the picture of a fresh
-  // start.
+  // A lamp twice as bright gives the same choice and twice the light; the picture equals that of a new
+  // session.
   scene::Scene bright = room;
   bright.lights[0].intensity *= 2.0f;
   s.r.set_light(0, bright.lights[0]);
@@ -101,8 +101,8 @@ TEST_CASE("the choice is the same however work is cut, and is made anew when lig
   CHECK(test::identical(twice, Session(bright, few).image()));
 }
 
-TEST_CASE("beside caustics of photons the choice is that of the other light alone", "[photons_trials]") {
-  // A block of mirrors.
+TEST_CASE("with caustics of photons the choice depends on the other light only", "[photons_trials]") {
+  // A mirrored block.
   scene::Scene s = test::block_room(true);
   s.materials[0].double_sided = true, s.environment = {}, s.environment.given = true;
   s.materials[1] = {}, s.materials[1].metallic = 1, s.materials[1].roughness = 0;
@@ -112,24 +112,24 @@ TEST_CASE("beside caustics of photons the choice is that of the other light alon
   Session few(s, with(all, {{"photons.per_round", k_few}}), 64);
   const film::Image left = few.image();
   CHECK(few.solver().delegated_components() == (k_secondary | k_tertiary));
-  // Caustics are of photons still: paths do not find what a mirror makes of a point.
+  // Photons still compute caustics: paths cannot find the mirror's caustic of a point lamp.
   CHECK(test::mean(left.components[3]) > 0);
   CHECK(test::mean(Session(s, {}, 64).image().components[3]) == 0);
 }
 
-TEST_CASE("cancelled trials are tried again", "[photons_trials]") {
+TEST_CASE("cancelled trials are repeated", "[photons_trials]") {
   const scene::Scene room = test::block_room();
   const test::Settings few = photons_for({"secondary", "tertiary"}, k_few);
   const film::Image whole = Session(room, few).image();
   Session s(room, few);
-  uint32_t asked = 0;
-  for (uint32_t step = 0; !s.r.done() && step < 100000; ++step) s.r.step([&] { return ++asked % 41 == 0; });
+  uint32_t calls = 0;
+  for (uint32_t step = 0; !s.r.done() && step < 100000; ++step) s.r.step([&] { return ++calls % 41 == 0; });
   CHECK(test::identical(whole, s.r.image()));
 }
 
 namespace {
 
-/// A room with a block of mirrors: part of what its lamp, a point, sends is found by no path from the eye.
+/// A room with a mirrored block: camera paths cannot find part of the light of its point lamp.
 scene::Scene mirror_room() {
   scene::Scene s = test::block_room(true);
   s.materials[0].double_sided = true, s.environment = {}, s.environment.given = true;
@@ -149,7 +149,7 @@ void check_same_light(const film::Image& a, const film::Image& b, size_t compone
 
 }  // namespace
 
-TEST_CASE("where paths are chosen photons compute what these cannot find", "[photons_trials]") {
+TEST_CASE("where paths are chosen photons compute the light that paths cannot find", "[photons_trials]") {
   const scene::Scene room = mirror_room();
   const test::Settings all{{"components.secondary", "photons"},
                            {"components.tertiary", "photons"},
@@ -160,11 +160,12 @@ TEST_CASE("where paths are chosen photons compute what these cannot find", "[pho
   const film::Image image = chosen.image();
   REQUIRE(chosen.solver().delegated_components() == (k_secondary | k_tertiary));
   const film::Image paths = Session(room, {}, 64).image();
-  // Part of the tertiary light is beyond paths, and all of the caustics.
+  // Paths miss part of the tertiary light and all caustics.
   CHECK(test::mean(paths.components[2]) < 0.96 * test::mean(truth.components[2]));
   CHECK(test::mean(paths.components[3]) == 0);
   for (const size_t c : {1u, 2u, 3u}) check_same_light(image, truth, c, 0.02);
-  // Alone, beside path traced secondary light: by maps of irradiance, and where these know nothing.
+  // Only tertiary light, with path traced secondary light: from irradiance maps, and where the maps have no
+  // value.
   for (const char* nearest : {"8", "1024"}) {
     Session gathers(room,
                     {{"components.tertiary", "photons"},
@@ -176,7 +177,8 @@ TEST_CASE("where paths are chosen photons compute what these cannot find", "[pho
   }
 }
 
-TEST_CASE("records whose rays find no irradiance have the light that paths cannot find", "[photons_trials]") {
+TEST_CASE("records whose rays find no irradiance include the light that paths cannot find",
+          "[photons_trials]") {
   scene::Scene room = mirror_room();
   const auto compare = [&](const char* nearest) {
     const test::Settings all{{"components.secondary", "photons"},
@@ -194,12 +196,12 @@ TEST_CASE("records whose rays find no irradiance have the light that paths canno
     check_same_light(records.image(), truth, 2, 0.04);
   };
   compare("8");
-  // What lets light through is never known.
+  // The map never has values on transmitting surfaces.
   room.materials[0].diffuse_transmission = 0.1f;
   compare("8");
 }
 
-TEST_CASE("a house on a wide ground has its light, and photons do not report darkness as exact",
+TEST_CASE("a house on wide ground has its light, and photons do not report darkness as exact",
           "[photons_trials]") {
   // Four metres of walls around a block, under a sun; the ground is two kilometres wide. The camera sees a
   // wall in the shade, which the ground lights.
@@ -220,15 +222,15 @@ TEST_CASE("a house on a wide ground has its light, and photons do not report dar
   Session chosen(s, photons, 64);
   const film::Image image = chosen.image();
   for (const size_t c : {1u, 2u}) check_same_light(image, paths, c, 0);
-  // Where photons have to bring it many arrive, though a path that is not aimed finds the house by chance of
-  // one in 100,000.
+  // With photons forced many arrive, although an unaimed path finds the house with a probability of one in
+  // 100,000.
   Session forced(s, with(photons, {{"photons.efficiency", "false"}}), 1);
   forced.image();
   CHECK(forced.solver().map().figures().photons > 50);
 }
 
-TEST_CASE("light that no photon has brought is unknown, and holds the picture", "[photons_trials]") {
-  // So few light paths that none comes by; a wide ground on which they are lost.
+TEST_CASE("light without photons is unknown, and keeps the picture unfinished", "[photons_trials]") {
+  // So few light paths that none arrives; wide ground where they are lost.
   scene::Scene s = test::block_room();
   test::add_quad(s, {-3000, -1, 3000}, {6000, 0, 0}, {0, 0, -6000});
   s.lights = {{.name = "sun", .kind = scene::LightKind::directional, .intensity = vec3(3)}};
@@ -246,7 +248,7 @@ TEST_CASE("light that no photon has brought is unknown, and holds the picture", 
   CHECK(blind.r.image_error().relative_sum() >= 1);
   REQUIRE(blind.r.adaptive());
   CHECK(blind.r.adaptive()->count(schedule::TileState::done) == 0);
-  // By paths the same darkness is known: the room is closed.
+  // With paths the same darkness is known to be exact: the room is closed.
   Session paths(s, {}, 8);
   paths.image();
   CHECK(paths.r.image_error().relative_sum() == 0);

@@ -1,6 +1,6 @@
 // links: session
-// The window's picture of a mirror, and through glass, while there are few samples: what is seen there has
-// sharp borders.
+// The window's preview of a mirror, and through glass, with few samples: objects seen there have sharp
+// borders.
 #include <catch2/catch.hpp>
 
 #include "support/render.h"
@@ -12,8 +12,8 @@ namespace {
 
 constexpr uint32_t k_size = 64;
 
-/// Before the camera a mirror or glass, and in what it shows a wall that is dark on the left and bright on
-/// the right, in the light of a wide panel that is seen by neither.
+/// In front of the camera a mirror or glass that shows a wall, dark on the left and bright on the right, lit
+/// by a wide panel outside the view.
 scene::Scene room(const scene::Material& before, bool mirror) {
   scene::Scene s;
   s.name = "room";
@@ -32,7 +32,7 @@ scene::Scene room(const scene::Material& before, bool mirror) {
   return s;
 }
 
-/// Of the picture with two samples: columns beside the wall's border and far from it, of 0 to 255.
+/// The picture with two samples: columns next to the wall's border and far from it, from 0 to 255.
 struct Columns {
   double dark, before, behind, bright;
 };
@@ -65,13 +65,13 @@ void check_sharp(const Columns& c) {
 
 }  // namespace
 
-TEST_CASE("a mirror's picture has the borders of what it shows from the first samples on") {
+TEST_CASE("objects in a mirror have sharp borders from the first samples on") {
   scene::Material mirror = test::diffuse(vec3(0.9f));
   mirror.metallic = 1, mirror.roughness = 0;
   check_sharp(columns(room(mirror, true)));
 }
 
-TEST_CASE("what is behind glass has its borders from the first samples on") {
+TEST_CASE("objects behind glass have sharp borders from the first samples on") {
   scene::Material glass = test::diffuse(vec3(0.95f));
   glass.roughness = 0, glass.specular = 1, glass.transmission = 1;
   for (const float thickness : {0.0f, 0.02f}) {

@@ -1,5 +1,5 @@
 // links: session
-// What a person sets stays while the scene stays, and goes with it.
+// User settings stay while the scene stays, and are replaced with it.
 #include <catch2/catch.hpp>
 
 #include <algorithm>
@@ -39,12 +39,12 @@ TEST_CASE("another tracer keeps edits and camera; another scene starts with its 
   CHECK(r.step());
 
   r.load(file("cornell"));
-  CHECK(r.settings().real("film.ev") == own);  // both scenes ask for the same exposure
+  CHECK(r.settings().real("film.ev") == own);  // both scenes set the same exposure
   CHECK(r.enabled_components() == 15);
   CHECK(r.tracer_name() == "compute-bvh");
   CHECK(r.step());
 
-  // What cannot be opened changes nothing.
+  // A file that cannot be opened changes nothing.
   r.settings().set("film.ev", "-2");
   CHECK_THROWS_AS(r.load("/no/such.gltf"), Error);
   CHECK(r.settings().real("film.ev") == -2);
@@ -53,7 +53,7 @@ TEST_CASE("another tracer keeps edits and camera; another scene starts with its 
   CHECK(r.device().validation_messages() == 0);
 }
 
-TEST_CASE("a new target lets an adaptive image go on; in uniform sampling it only asks") {
+TEST_CASE("a new target continues an adaptive image; in uniform sampling it only changes the question") {
   session::Renderer r(test::renderer_options(true));
   r.set_size(64, 48);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
@@ -90,7 +90,7 @@ TEST_CASE("a new target lets an adaptive image go on; in uniform sampling it onl
   CHECK(r.device().validation_messages() == 0);
 }
 
-TEST_CASE("another mode of sampling keeps the samples there are, and each is the one that it always was") {
+TEST_CASE("another sampling mode keeps existing samples, and each sample stays the same") {
   session::Renderer r(test::renderer_options(true));
   r.settings().set("path.batch", "1024");
   r.set_size(40, 24);
@@ -104,7 +104,7 @@ TEST_CASE("another mode of sampling keeps the samples there are, and each is the
   }
   const film::Image unswitched = r.image();
   r.restart();
-  // In the middle of a pass: some blocks have more samples than others.
+  // During a pass: some blocks have more samples than others.
   set("sampling.min_samples", "16");
   set("sampling.max_samples", "32");
   set("sampling.target_error", "0.0001");
@@ -125,7 +125,7 @@ TEST_CASE("another mode of sampling keeps the samples there are, and each is the
   CHECK(r.samples() == 32);
   const film::Image switched = r.image();
   CHECK(switched.samples == unswitched.samples);
-  // The same samples, added in other portions: equal but for rounding.
+  // The same samples, added in other portions: equal up to rounding.
   double most = 0, light = 0;
   for (int c = 0; c < film::k_components; ++c)
     for (size_t i = 0; i < unswitched.samples.size(); ++i) {
@@ -134,14 +134,14 @@ TEST_CASE("another mode of sampling keeps the samples there are, and each is the
       light = std::max(light, double(unswitched.components[c][i].y));
     }
   CHECK(most < 1e-4 * light);
-  // Back to uniform sampling with more: all pixels come to as many.
+  // Back to uniform sampling with more: every pixel reaches the same number.
   set("samples", "40");
   set("sampling.mode", "uniform");
   while (r.step()) {
   }
   const film::Image more = r.image();
   for (const uint32_t n : more.samples) CHECK(n == 40);
-  // Fewer are wanted than there are: none is forgotten, so that none is taken twice.
+  // The target is below the present number: no sample is discarded, so none is repeated.
   set("samples", "8");
   CHECK(r.done());
   CHECK(r.samples() == 40);
@@ -150,7 +150,7 @@ TEST_CASE("another mode of sampling keeps the samples there are, and each is the
   while (r.step()) {
   }
   set("sampling.mode", "uniform");
-  set("samples", "50");  // less than another pass as large as the last
+  set("samples", "50");  // less than another pass of the previous size
   while (r.step()) {
   }
   const film::Image longest = r.image();
@@ -168,7 +168,7 @@ TEST_CASE("another mode of sampling keeps the samples there are, and each is the
   CHECK(r.device().validation_messages() == 0);
 }
 
-TEST_CASE("tiles that are finished in the dark go on when more exposure shows their noise") {
+TEST_CASE("tiles that are finished in the dark continue when a higher exposure shows their noise") {
   session::Renderer r(test::renderer_options());
   r.set_size(40, 24);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
@@ -186,7 +186,7 @@ TEST_CASE("tiles that are finished in the dark go on when more exposure shows th
   CHECK(r.done());
   CHECK(r.restarts() == begun);
   CHECK(*std::max_element(bright.samples.begin(), bright.samples.end()) == 64);
-  // Less exposure asks for nothing.
+  // A lower exposure needs no samples.
   const uint64_t paths = r.stats().paths;
   test::set(r, {{"film.ev", "-12"}});
   test::finish(r);
@@ -194,13 +194,13 @@ TEST_CASE("tiles that are finished in the dark go on when more exposure shows th
   CHECK(r.stats().paths == paths);
 }
 
-TEST_CASE("the heat map of cost shares the whole device time out") {
+TEST_CASE("the heat map of cost distributes the total device time over the pixels") {
   session::Renderer r(test::renderer_options(true));
   r.set_size(96, 64);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
   r.settings().set("samples", "16");
   r.settings().set("film.layer", "cost");
-  r.settings().set("lights.sampling", "power");  // pilots are no pixel's
+  r.settings().set("lights.sampling", "power");  // pilot rays belong to no pixel
   r.apply_settings();
   while (r.step()) {
   }
@@ -208,7 +208,7 @@ TEST_CASE("the heat map of cost shares the whole device time out") {
   const std::vector<uint8_t> shown = r.picture(false);
   double total = 0, stages = 0, least = 1e9, most = 0;
   for (size_t i = 0; i < shown.size(); i += 4) {
-    // Which place of the ramp that is.
+    // The place on the ramp.
     float best = 1e9f, place = 0;
     for (int k = 0; k <= 1000; ++k) {
       const vec3 d = shared::ramp_color(scale.ramp, 0.001f * float(k)) -
@@ -224,8 +224,8 @@ TEST_CASE("the heat map of cost shares the whole device time out") {
   CHECK(r.device().validation_messages() == 0);
 }
 
-TEST_CASE("a scene's warnings are of the settings that it is loaded with, not of those before") {
-  const std::string atrium = std::string(LUCERNA_SOURCE_DIR) + "/scenes/atrium/atrium.gltf";  // has both
+TEST_CASE("a scene's warnings refer to its own settings, not to earlier ones") {
+  const std::string atrium = std::string(LUCERNA_SOURCE_DIR) + "/scenes/atrium/atrium.gltf";  // uses both
   const auto lamps_behind_glass = [](const test::Complaints& said) {
     return std::count_if(said.lines.begin(), said.lines.end(), [](const std::string& line) {
       return line.find("light is incomplete") != std::string::npos;

@@ -1,6 +1,6 @@
 // links: session
-// Does the error as seen that the two halves of a picture estimate agree with how far pictures of independent
-// seeds are apart?
+// Compares the error as seen that the two halves of a picture estimate with the difference of pictures of
+// independent seeds.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -60,10 +60,10 @@ Layers mean_of(const std::vector<Layers>& pictures) {
 
 }  // namespace
 
-TEST_CASE("The error as seen is the squared difference of independent seeds") {
+TEST_CASE("the estimated error as seen is the squared difference of independent seeds") {
   struct Case {
     const char *scene, *ev;
-    bool clipped;  ///< the lamp is white: of layers the sum alone is known then
+    bool clipped;  ///< the lamp is white: only the sum of the layers is known
   };
   for (const Case& c :
        {Case{"cornell", "-4", false}, Case{"cornell", "1", true}, Case{"atrium", "0", false}}) {
@@ -111,8 +111,8 @@ TEST_CASE("The error as seen is the squared difference of independent seeds") {
         continue;
       }
       INFO(c.scene << ", EV " << c.ev << ", layer " << k);
-      // 3.3 sigma (p = 0.001), and for the scale, which is the noisy picture's own, 3 %; 10 % where the
-      // pixels at a lamp's edge are clipped in one half and not in the other.
+      // 3.3 sigma (p = 0.001), plus 3 % for the scale, which is that of the noisy picture; 10 % where the
+      // pixels at a lamp's edge are clipped in only one half.
       CHECK(std::abs(estimated - found[k]) < 3.3 * sigma + (c.clipped ? 0.1 : 0.03) * found[k]);
     }
   }

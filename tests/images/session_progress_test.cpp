@@ -1,6 +1,6 @@
 // links: session
-// What a person is told while light is prepared: how far that is, what path tracing would take instead, and
-// whether the picture that is shown meanwhile is to be made anew.
+// Progress while light is prepared: the completed share, the time that path tracing would take, and whether
+// the displayed picture must be updated.
 #include <catch2/catch.hpp>
 
 #include "images/cache_support.h"
@@ -19,7 +19,7 @@ const Settings k_cached = test::dense_records({{"components.secondary", "cache"}
                                                {"samples", "2"},
                                                {"path.batch", "8192"}});
 
-/// The window's renderer of a room whose light is cached, at its beginning.
+/// The window's renderer of a room with cached light, at its start.
 struct Window {
   session::Renderer r;
   explicit Window(uint32_t size, const Settings& settings = k_cached)
@@ -43,10 +43,10 @@ struct Window {
 
 }  // namespace
 
-TEST_CASE("while a cache is built or relit it is told how far that is") {
+TEST_CASE("progress is reported while a cache is built or relit") {
   Window window(48);
   double least = 1, most = 0;
-  CHECK_FALSE(window.progress());  // nothing is known yet
+  CHECK_FALSE(window.progress());  // no estimate yet
   for (int i = 0; i < 10000 && window.r.preparing(); ++i) {
     window.r.step();
     if (const auto p = window.progress()) {
@@ -59,7 +59,7 @@ TEST_CASE("while a cache is built or relit it is told how far that is") {
   CHECK(most > 0.5);
   CHECK(most < 1);
   CHECK_FALSE(window.progress());
-  // Relit, it is told by the rays that records had.
+  // During relighting progress is measured in the records' rays.
   scene::Light lamp = window.r.scene()->lights[0];
   lamp.position.x += 0.2f;
   window.r.set_light(0, lamp);
@@ -73,24 +73,25 @@ TEST_CASE("while a cache is built or relit it is told how far that is") {
   CHECK(reported > 0);
 }
 
-TEST_CASE("drafts tell what path tracing would take before there is any light to be looked up") {
+TEST_CASE("preview samples estimate the time of path tracing before any lookup is possible") {
   Window window(64);
   CHECK_FALSE(window.r.path_pace());
   for (int i = 0; i < 12 && !window.r.path_pace(); ++i) window.r.draw_draft();
   const auto pace = window.r.path_pace();
   REQUIRE(pace);
   CHECK(pace->seconds > 0);
-  // The noise of one sample is that of a path traced picture.
+  // The noise of one sample of a path-traced picture.
   Settings paths = k_cached;
   paths["components.secondary"] = paths["components.tertiary"] = "path";
-  paths["samples"] = "16", paths["lights.sampling"] = "power";  // drafts come before lights are learned
+  paths["samples"] = "16", paths["lights.sampling"] = "power";  // preview samples precede learned lights
   Window traced(64, paths);
   test::finish(traced.r);
   const double noise = traced.r.image_error().seen(0) * 4;
-  INFO("noise of one sample " << noise << ", told " << pace->noise);
+  INFO("noise of one sample " << noise << ", estimated " << pace->noise);
   CHECK(pace->noise == Approx(noise).epsilon(0.35));
   CHECK(pace->seconds_to(pace->noise / 10) == Approx(100 * pace->seconds));
-  // Of a larger picture as much more; of another light nothing is known, and records have light by then.
+  // A larger picture takes proportionally more. After a change of light there is no estimate, and records
+  // have light by then.
   window.r.set_size(64, 128);
   REQUIRE(window.r.path_pace());
   CHECK(window.r.path_pace()->seconds == Approx(2 * pace->seconds));
@@ -102,21 +103,21 @@ TEST_CASE("drafts tell what path tracing would take before there is any light to
   CHECK_FALSE(window.r.path_pace());
 }
 
-TEST_CASE("a preview that nothing has changed is the same, and is known to be") {
+TEST_CASE("an unchanged preview is recognized as unchanged") {
   Window window(48);
-  CHECK_FALSE(window.r.shows_the_same());  // nothing was shown
+  CHECK_FALSE(window.r.shows_the_same());  // no preview was shown
   window.r.draw_draft();
   const auto shown = [&] { return window.r.shown_picture(true); };
   const std::vector<uint8_t> first = shown();
   CHECK(window.r.shows_the_same());
-  window.r.step();  // builds records, which nobody has looked up yet
+  window.r.step();  // builds records that no lookup has read yet
   CHECK(window.r.shows_the_same());
   CHECK(shown() == first);
   while (!window.r.draw_draft()) window.r.step();
   CHECK_FALSE(window.r.shows_the_same());
   shown();
   CHECK(window.r.shows_the_same());
-  // What is drawn over it may change whenever records do.
+  // Overlays may change whenever records do.
   test::set(window.r, {{"overlay.records", "true"}});
   shown();
   CHECK_FALSE(window.r.shows_the_same());
@@ -126,7 +127,7 @@ TEST_CASE("a preview that nothing has changed is the same, and is known to be") 
   window.r.inspect(vec2(0.5f));
   CHECK_FALSE(window.r.shows_the_same());
   window.r.inspect({});
-  // Samples are new; the finished picture is filtered once, and stays so.
+  // New samples change it; the finished picture is filtered once, and then stays.
   for (int i = 0; i < 10000 && window.r.samples() == 0; ++i) window.r.step();
   CHECK_FALSE(window.r.shows_the_same());
   test::finish(window.r);

@@ -1,6 +1,6 @@
 // links: session
-// The real session, driven from another thread as a window drives it: loads that are given up, edits in any
-// moment, files that are asked for, and an end at any time. Clean under the thread sanitizer (preset tsan).
+// The real session, driven from another thread as by a window: cancelled loads, edits at any time, requested
+// files, and shutdown at any time. Clean under the thread sanitizer (preset tsan).
 #include "session/session.h"
 #include "support/device_name.h"
 
@@ -24,7 +24,7 @@ std::string gltf(const std::string& name) {
   return std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + name + "/" + name + ".gltf";
 }
 
-/// Counts what is logged while it lives.
+/// Counts log messages during its lifetime.
 struct Heard {
   std::atomic<int> errors{0}, given_up{0}, loaded{0};
   int token = log::add_listener([this](log::Level level, const std::string& text) {
@@ -35,7 +35,7 @@ struct Heard {
   ~Heard() { log::remove_listener(token); }
 };
 
-/// Until a snapshot is so, however long.
+/// Waits without limit until a snapshot satisfies the condition.
 template <class Condition>
 std::shared_ptr<const Snapshot> until(const Session& session, const Condition& holds) {
   for (;; std::this_thread::sleep_for(std::chrono::milliseconds(2)))
@@ -48,11 +48,11 @@ void settle(const Session& session) {
 
 }  // namespace
 
-TEST_CASE("a load that was given up stays so, whatever is loaded after it") {
+TEST_CASE("a cancelled load stays cancelled, whatever is loaded after it") {
   Heard heard;
   Session session({.device = test::device_name()});
   session.set_size(32, 24);
-  // The first is under way or still to begin; the second takes nothing back of that it was given up.
+  // The first load is running or still queued; the second does not undo its cancellation.
   for (int round = 0; round < 3; ++round) {
     session.load(gltf("hall"));
     if (round == 1) until(session, [](const Snapshot& s) { return s.progress >= 0; });
@@ -67,7 +67,7 @@ TEST_CASE("a load that was given up stays so, whatever is loaded after it") {
   CHECK(session.snapshot()->scene_id == 3);
 }
 
-TEST_CASE("a command for a scene that is gone is left out, and what is refused is listed") {
+TEST_CASE("commands for a replaced scene are skipped, and refusals are listed") {
   Heard heard;
   Session session({.device = test::device_name()});
   session.set_size(32, 24);
@@ -94,7 +94,7 @@ TEST_CASE("a command for a scene that is gone is left out, and what is refused i
   CHECK(session.settings().integer("samples") == 77);
   CHECK(heard.errors == 0);
 
-  // What cannot be rendered is refused, and the picture before goes on.
+  // A camera that cannot be rendered is refused, and the previous picture continues.
   camera.to_world[3].x = 1e19f;
   session.set_camera(camera);
   session.set_environment(std::numeric_limits<float>::infinity(), 0);
@@ -108,7 +108,7 @@ TEST_CASE("a command for a scene that is gone is left out, and what is refused i
   CHECK(snapshot->width == 32);
 }
 
-TEST_CASE("a picture is named as that of the scene that it shows, also while another one is being loaded") {
+TEST_CASE("a picture names the scene that it shows, also while another scene is loading") {
   Session session({.device = test::device_name()});
   session.set_size(32, 24);
   session.load(gltf("cornell"));
@@ -132,7 +132,7 @@ TEST_CASE("a picture is named as that of the scene that it shows, also while ano
   CHECK(session.snapshot()->scene_id == 2);
 }
 
-TEST_CASE("files that are asked for are written, also when the session ends at once") {
+TEST_CASE("requested files are written, also when the session ends immediately") {
   const test::Folder folder;
   const auto file = [&](const char* name) { return folder.path / name; };
   session::Saved picture, last, nowhere, cache;
@@ -155,7 +155,7 @@ TEST_CASE("files that are asked for are written, also when the session ends at o
   CHECK(std::filesystem::exists(file("b.png")));
 }
 
-TEST_CASE("a picture is measured as soon as there is one, also right after an edit") {
+TEST_CASE("a picture is measured as soon as it exists, also directly after an edit") {
   Heard heard;
   Session session({.device = test::device_name()});
   session.set_size(32, 24);
@@ -168,12 +168,12 @@ TEST_CASE("a picture is measured as soon as there is one, also right after an ed
   CHECK(heard.errors == 0);
 }
 
-TEST_CASE("a session without a device tells those who wait for files") {
+TEST_CASE("a session without a device reports failure to callers that wait for files") {
   Session session({.device = "no such device"});
   CHECK_THROWS(session.save("/tmp/lucerna-never.exr").get());
 }
 
-TEST_CASE("edits from another thread at any moment, pictures looked at meanwhile, and an end in mid-work") {
+TEST_CASE("edits from another thread at any time, concurrent reads of pictures, and shutdown during work") {
   Heard heard;
   std::mt19937 random(5);
   const auto below = [&](int n) { return std::uniform_int_distribution<int>(0, n - 1)(random); };

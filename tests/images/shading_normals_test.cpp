@@ -1,5 +1,5 @@
 // links: session
-// Light that leaning shading normals scatter is the same by paths from the eye and from the lights.
+// Light scattered by tilted shading normals is the same by paths from the camera and from the lights.
 #include <catch2/catch.hpp>
 
 #include "support/caustics.h"
@@ -9,7 +9,7 @@ using namespace lucerna;
 
 namespace {
 
-/// A wall of rough metal, whose normals lean by up to `degrees`, lights the floor before it.
+/// A wall of rough metal, whose normals are tilted by up to `degrees`, lights the floor in front of it.
 scene::Scene metal_wall(float degrees) {
   scene::Scene s = test::mapped_room(degrees);
   s.materials[2].metallic = 1, s.materials[2].roughness = 0.4f,
@@ -25,7 +25,7 @@ double light_of(const scene::Scene& s, const test::Settings& settings, int compo
 
 }  // namespace
 
-TEST_CASE("caustics of rough metal with leaning normals, from the lights and from the eye") {
+TEST_CASE("caustics of rough metal with tilted normals, from the lights and from the camera") {
   for (const float degrees : {22.0f, 50.0f}) {
     const scene::Scene s = metal_wall(degrees);
     test::Settings settings{
@@ -33,7 +33,7 @@ TEST_CASE("caustics of rough metal with leaning normals, from the lights and fro
     const double paths = light_of(s, settings, 3, 2048);
     settings["components.caustic"] = "light", settings["light.per_round"] = "200000";
     const double light = light_of(s, settings, 3, 32);
-    // Discs so small that blur takes less than a hundredth of the light at the wall's foot.
+    // Discs so small that blur removes less than a hundredth of the light at the foot of the wall.
     settings["components.caustic"] = "photons", settings["photons.efficiency"] = "false";
     settings["photons.per_round"] = "200000", settings["photons.radius"] = "0.3";
     const double photons = light_of(s, settings, 3, 32);

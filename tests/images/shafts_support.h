@@ -1,5 +1,5 @@
 #pragma once
-// Every kind of surface, each in a shaft of its own.
+// Every kind of surface, each in a separate shaft.
 #include <functional>
 #include <random>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace lucerna::test::shafts {
 
-/// A surface, and what it needs of textures and vertices.
+/// A surface with the textures and vertex data that it needs.
 struct Kind {
   std::string name;
   scene::Material material;
@@ -29,7 +29,7 @@ inline void add_pictures(scene::Scene& s) {
         for (const int c : {128 + int(random() % 80) - 40, 128 + int(random() % 80) - 40, 240, 255})
           image.bytes.push_back(uint8_t(c));
       else
-        // Of data halves are nothing and all, as masks are.
+        // Data is nothing in one half and everything in the other, as masks are.
         for (int c = 0; c < 4; ++c)
           image.bytes.push_back(i == k_data      ? (left ? 0 : 255)
                                 : c == 3 && left ? 40
@@ -112,7 +112,7 @@ inline std::vector<Kind> kinds() {
     k.material.specular = 1, k.material.roughness = 0.3f, k.material.specular_texture.texture = k_data;
     k.material.specular_color_texture.texture = k_colors;
   });
-  // Where the texture lets nothing through these are coats.
+  // Where the texture transmits nothing these are coats.
   add("pane by texture", glass(0, 0),
       [](Kind& k) { k.material.transmission_texture.texture = k_data, k.material.base_color = vec4(0.02f); });
   add("glass by texture", glass(0.3f, 1),
@@ -121,7 +121,7 @@ inline std::vector<Kind> kinds() {
     k.material.diffuse_transmission = 1, k.material.diffuse_transmission_texture.texture = k_data;
     k.material.diffuse_transmission_color_texture.texture = k_colors;
   });
-  // White, so that light samples are the same with and without it.
+  // White, so light samples are the same with and without it.
   add("light by texture", plain,
       [](Kind& k) { k.material.emission = vec3(1), k.material.emission_texture.texture = k_white; });
   return list;
@@ -129,8 +129,8 @@ inline std::vector<Kind> kinds() {
 
 inline constexpr uint32_t k_across = 6, k_pixels = 8;
 
-/// Shafts with grey walls, seen from above; in each a surface, and under it a floor that leaves gaps. Of the
-/// kinds that are not `shown`, and in the shafts that are left, the first.
+/// Shafts with grey walls, seen from above; each contains a surface and below it a floor with gaps. Kinds
+/// that are not `shown` are replaced by the first, and so are unused shafts.
 inline scene::Scene shafts_with(const std::vector<Kind>& kinds, const std::vector<bool>& shown, bool lamps) {
   scene::Scene s;
   s.name = "shafts", s.file = "shafts.gltf";

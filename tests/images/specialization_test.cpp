@@ -1,8 +1,8 @@
 // links: session
-// What a scene does not need is compiled out of its kernels. That may change no picture: a surface looks the
-// same whatever else is in the scene. Every kind of surface, in a shaft of its own, is rendered in scenes
-// that lack other kinds, so that each meets each kernel variant's lack, and in one that has them all;
-// likewise every kind of light.
+// Features that a scene does not use are compiled out of its kernels, which must not change the picture: a
+// surface looks the same whatever else the scene contains. Every kind of surface, in a separate shaft, is
+// rendered in scenes that lack other kinds, so each is rendered by every kernel variant that lacks an
+// unneeded feature, and in a scene with all of them; likewise every kind of light.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -25,7 +25,7 @@ session::Renderer& renderer() {
 film::Image picture(const scene::Scene& s, uint32_t samples, uint32_t size) {
   renderer().set_size(size, size);
   renderer().set_scene(std::make_shared<scene::Scene>(s));
-  // What is learned of lights hangs on what else there is.
+  // What is learned about lights depends on the rest of the scene.
   test::set(renderer(), {{"samples", std::to_string(samples)}, {"lights.sampling", "power"}});
   return test::finish(renderer());
 }
@@ -77,7 +77,7 @@ std::vector<std::vector<bool>> selections(const std::vector<std::set<std::string
 
 }  // namespace
 
-TEST_CASE("a surface looks the same whatever other kinds of surface there are") {
+TEST_CASE("a surface looks the same whatever other kinds of surface the scene has") {
   const std::vector<Kind> all = kinds();
   REQUIRE(all.size() <= k_across * k_across);
   std::set<std::string> ever;
@@ -105,8 +105,8 @@ TEST_CASE("a surface looks the same whatever other kinds of surface there are") 
                        d = luminance(test::sum_at(some, pixel)) - a;
           sum += a, difference += d, squares += d * d;
         }
-        // The same numbers are drawn, so that only rounding can tell the pictures apart, and sends one path
-        // in a million elsewhere.
+        // The same random numbers are drawn, so pictures differ by rounding only, which changes one path in a
+        // million.
         INFO(all[i].name << (lamps ? ", lamps" : ", sky") << ": off by " << difference / sum);
         CHECK(std::sqrt(squares) < 1e-3 * sum);
       }
@@ -114,7 +114,7 @@ TEST_CASE("a surface looks the same whatever other kinds of surface there are") 
   }
 }
 
-TEST_CASE("lights in a closed room light it the same whatever lights there are outside") {
+TEST_CASE("lights in a closed room give the same light whatever lights are outside") {
   const auto room = [](bool point, int outside) {
     scene::Scene s = test::PanelRoom(vec3(0), !point, 0.1f).s;
     add_pictures(s);
@@ -162,6 +162,4 @@ TEST_CASE("lights in a closed room light it the same whatever lights there are o
   }
 }
 
-TEST_CASE("the validation layers had nothing to say") {
-  CHECK(renderer().device().validation_messages() == 0);
-}
+TEST_CASE("there were no validation messages") { CHECK(renderer().device().validation_messages() == 0); }

@@ -1,6 +1,6 @@
 // links: session
-// KHR_materials_specular on what transmits: panes and solids show what is behind them as bright as their
-// faces leave it.
+// KHR_materials_specular on transmitting surfaces: panes and solids show the scene behind them with the
+// brightness that their faces transmit.
 #include <catch2/catch.hpp>
 
 #include "support/render.h"
@@ -31,7 +31,8 @@ TEST_CASE("panes and solids reflect by their specular factor, and transmit the r
         double seen = 0;
         for (size_t i = 0; i < r.image.samples.size(); ++i)
           seen += double(luminance(test::sum_at(r.image, i))) / 256;
-        // The light behind is black to what comes back: of two faces of reflectance R, (1 - R) / (1 + R).
+        // The light source reflects nothing back: for two faces of reflectance R the transmittance is (1 - R)
+        // / (1 + R).
         const double face = 0.04 * double(factor);
         INFO((solid ? "solid" : "thin") << ", factor " << factor << ", roughness " << roughness);
         CHECK(seen == Approx((1 - face) / (1 + face)).margin(roughness > 0 ? 0.01 : 0.004));

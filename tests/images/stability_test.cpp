@@ -1,7 +1,7 @@
 // links: session
-// Hard cases stay finite and right: extreme lights, materials, sizes and places make no NaN, no infinity and
-// no crash, and the light that the mathematics says: what absorbs nothing vanishes in an even world, and a
-// picture does not know its scale.
+// Extreme inputs stay finite and correct: extreme lights, materials, sizes and positions give no NaN, no
+// infinity and no crash. The light is that of the closed form: a non-absorbing object vanishes in an even
+// environment, and a picture is independent of scale.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -22,7 +22,7 @@ scene::Primitive quad(vec3 corner, vec3 u, vec3 v, scene::Id material) {
   return p;
 }
 
-/// A floor, a box of `material` on it, a small lamp and a camera, everything `size` metres large and moved to
+/// A floor, a box of `material` on it, a small lamp and a camera, all of size `size` metres and moved to
 /// `place`.
 scene::Scene make_scene(const scene::Material& material, float size, vec3 place, float radiance) {
   scene::Scene s;
@@ -59,7 +59,7 @@ scene::Scene make_scene(const scene::Material& material, float size, vec3 place,
   return s;
 }
 
-/// The box alone in a world of radiance 1.
+/// The box alone in an environment of radiance 1.
 scene::Scene box_alone(const scene::Material& material) {
   scene::Scene s = make_scene(material, 1, vec3(0), 1);
   s.meshes[0].primitives = {s.meshes[0].primitives.begin() + 1, s.meshes[0].primitives.end() - 1};
@@ -151,19 +151,20 @@ TEST_CASE("materials at the ends of their ranges") {
     INFO(name);
     CHECK(lit.finite);
     CHECK(lit.dropped == 0);
-    // The box alone in a world of radiance 1: none of these absorbs light but by its attenuation.
+    // The box alone in an environment of radiance 1: none of these materials absorbs light except by
+    // attenuation.
     material.attenuation_distance = k_infinity;
     const Outcome o = render(box_alone(material), {{"path.max_depth", "1024"}});
     INFO("mean " << o.mean << " +- " << o.error);
     CHECK(o.finite);
     CHECK(o.dropped == 0);
-    // In a solid of ior 10 light meets the surface some hundred times before it leaves, and each time loses
-    // what the albedo tables round.
+    // In a solid of ior 10 light hits the surface about a hundred times before it leaves, and each hit loses
+    // the rounding error of the albedo tables.
     CHECK(std::abs(o.mean - 1) < 4 * o.error + (material.ior > 5 ? 0.15 : 1e-3));
   }
 }
 
-TEST_CASE("rough glass that refracts nothing, or almost nothing, loses nothing") {
+TEST_CASE("rough glass with an ior of 1, or almost 1, loses no light") {
   for (const float ior : {1.0f, 1.0005f, 1.002f, 1.01f}) {
     INFO("ior " << ior);
     scene::Material m = glass(0.4f, ior, 1);
@@ -172,14 +173,14 @@ TEST_CASE("rough glass that refracts nothing, or almost nothing, loses nothing")
   }
 }
 
-TEST_CASE("sizes, places and brightness over many orders of magnitude") {
+TEST_CASE("sizes, positions and brightness over many orders of magnitude") {
   struct Case {
     const char* name;
     float size;
     vec3 place;
     float radiance;
   };
-  // Far away means 10^4 sizes: beyond that float has no digits left for the geometry.
+  // Far away means 10^4 sizes: beyond that, float positions cannot represent the geometry.
   const auto picture = [](float size, vec3 place, float radiance) {
     scene::Material m = glass(0.2f, 1.5f, size);
     m.attenuation_distance *= size;
@@ -189,8 +190,7 @@ TEST_CASE("sizes, places and brightness over many orders of magnitude") {
     return o;
   };
   const Outcome usual = picture(1, vec3(0), 1);
-  // Numbers are drawn as in the usual case, so that what differs is a path here and there that rounding sends
-  // elsewhere.
+  // The same random numbers are drawn, so only single paths differ, which rounding changes.
   for (const Case& c : {Case{"a micrometre", 1e-6f, vec3(0), 10}, Case{"a planet", 1e7f, vec3(0), 10},
                         Case{"far away", 1, vec3(1e4f, -1e4f, 1e4f), 10}, Case{"blinding", 1, vec3(0), 1e30f},
                         Case{"almost dark", 1, vec3(0), 1e-30f}}) {
@@ -206,7 +206,7 @@ TEST_CASE("light that is too bright for float is dropped and counted, never writ
   scene::Scene s = make_scene(metal(0.3f), 1, vec3(0), 1);
   scene::Light l;
   l.intensity = vec3(1e38f);
-  l.position = vec3(0, 0.4f, 0.41f);  // close before the side that the camera sees
+  l.position = vec3(0, 0.4f, 0.41f);  // close to the side that the camera sees
   s.lights = {l};
   const Outcome p = render(s);
   CHECK(p.finite);

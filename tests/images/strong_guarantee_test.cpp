@@ -1,7 +1,7 @@
 // links: session
-// Whatever fails while a scene, settings, lights, a size or shaders are being taken into use – no memory at
-// any point, a shader that does not compile – leaves scene, settings, picture and records as they were, and
-// the picture goes on to what it would have been.
+// If applying a scene, settings, lights, a size or shaders fails – no memory at any point, a shader that does
+// not compile – scene, settings, picture and records stay as they were, and the picture continues as if
+// nothing had happened.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -30,7 +30,7 @@ struct Bed {
   test::CacheRenderer shown{test::block_room(true), 16};
   Bed() {
     shown.set(k_base);
-    // In the middle of a picture, with records.
+    // During a picture, with records.
     while (shown.r.samples() < 2) REQUIRE(shown.r.step());
   }
 };
@@ -84,7 +84,7 @@ const std::vector<Action>& actions() {
 
 }  // namespace
 
-TEST_CASE("where memory runs out at any point everything stays as it was") {
+TEST_CASE("if memory runs out at any point the state is unchanged") {
   Bed undisturbed;
   const film::Image wanted = undisturbed.shown.finish();
   const uint32_t records = undisturbed.shown.status().records;
@@ -98,7 +98,7 @@ TEST_CASE("where memory runs out at any point everything stays as it was") {
     const uint64_t restarts = r.restarts();
     bool failed = true;
     size_t failures = 0;
-    // Ever later points, until it comes through.
+    // Ever later points, until the change succeeds.
     for (uint64_t allowed = 0; failed && allowed < 4000; allowed += 1 + allowed / 6) {
       INFO("after " << allowed << " allocations");
       r.device().limit_allocations(allowed);
@@ -118,7 +118,7 @@ TEST_CASE("where memory runs out at any point everything stays as it was") {
       REQUIRE(test::cache(r));
       CHECK(test::cache(r)->ready());
       CHECK(bed.shown.status().records == records);
-      // A look at it does not hurt either.
+      // Reading the picture does not fail either.
       CHECK(r.picture(false).size() == 16 * 16 * 4);
     }
     CHECK_FALSE(failed);
@@ -126,7 +126,7 @@ TEST_CASE("where memory runs out at any point everything stays as it was") {
   }
 }
 
-TEST_CASE("after a failure the picture goes on, bit for bit") {
+TEST_CASE("after a failure the picture continues, bit for bit") {
   Bed undisturbed;
   const film::Image wanted = undisturbed.shown.finish();
   for (const uint64_t allowed : {0, 1, 2, 4}) {
@@ -167,7 +167,7 @@ TEST_CASE("shaders that do not compile leave the kernels in use") {
       std::ofstream(file) << text << "\nvoid broken() { nonsense; }\n";
       const auto scene = r.scene();
       CHECK_THROWS_WITH(r.reload_shaders(), Catch::Contains("nonsense"));
-      // Edits that need new kernels are refused too, and change nothing; those of the film no edit needs.
+      // Edits that need new kernels are refused too, and change nothing. No edit needs film kernels.
       if (!std::string_view(broken).starts_with("film/")) {
         scene::Material m = scene->materials[0];
         m.metallic = 1, m.roughness = 0.3f, m.emission = vec3(0.1f);
@@ -181,7 +181,7 @@ TEST_CASE("shaders that do not compile leave the kernels in use") {
     return test::finish(r);
   };
   {
-    // The window's preview has kernels too, which are made again with the others.
+    // The window's preview has kernels too, which are reloaded with the others.
     session::RendererOptions options = test::renderer_options();
     options.shaders = shaders, options.interactive = true;
     session::Renderer r(options);

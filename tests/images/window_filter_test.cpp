@@ -1,5 +1,6 @@
 // links: session film_io
-// The window's picture is filtered between samples: what it shows then, and when that is given up.
+// The window filters its picture between samples: what it shows then, and when the filtered picture is
+// discarded.
 #include <catch2/catch.hpp>
 
 #include "images/cache_support.h"
@@ -37,7 +38,7 @@ double mean_square(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b)
 
 }  // namespace
 
-TEST_CASE("the window shows its picture filtered, from some samples on and when it is done") {
+TEST_CASE("the window shows a filtered picture from some samples on and when it is finished") {
   Window truth("1024", false);
   test::set(truth.r, {{"seed", "9"}});
   test::finish(truth.r);
@@ -45,7 +46,7 @@ TEST_CASE("the window shows its picture filtered, from some samples on and when 
 
   Window window("16");
   session::Renderer& r = window.r;
-  // Up to its first filtered picture, which no edit and no person has called for.
+  // Up to the first filtered picture, without an edit or a request.
   for (int i = 0; i < 10000 && !r.filter_news(); ++i) REQUIRE(r.step());
   CHECK(r.samples() >= 8);
   CHECK(r.samples() < 16);
@@ -60,7 +61,7 @@ TEST_CASE("the window shows its picture filtered, from some samples on and when 
   const std::vector<uint8_t> shown = r.shown_picture(false), samples = r.picture(false);
   CHECK(shown != first);
   CHECK(mean_square(shown, converged) < mean_square(samples, converged) / 2);
-  CHECK(r.preview_shares().error.value_or(0) > 0);
+  CHECK(r.preview_shares().error.value_or(film::ShownError{}).median > 0);
 
   // As shown, or the samples: by name.
   const test::Folder f;
@@ -69,7 +70,7 @@ TEST_CASE("the window shows its picture filtered, from some samples on and when 
   CHECK(film::read_metadata(f / "shown.png").count("filter") == 1);
   CHECK(film::read_metadata(f / "samples.png").count("filter") == 0);
   CHECK(r.shown_picture(false) == shown);
-  // Other light: nothing of it is left, and the same light again is the same picture.
+  // Other light discards it, and the previous light gives the same picture again.
   scene::Light lamp = r.scene()->lights[0];
   const scene::Light before = lamp;
   lamp.position.x += 0.2f;
@@ -78,13 +79,13 @@ TEST_CASE("the window shows its picture filtered, from some samples on and when 
   r.set_light(0, before);
   test::finish(r);
   CHECK(r.shown_picture(false) == shown);
-  // Where no filter is wanted, none is.
+  // With the filter off, no filtering.
   test::set(r, {{"preview.filter", "off"}});
   CHECK(r.shown_picture(false) == samples);
   CHECK_FALSE(r.filter_due());
 }
 
-TEST_CASE("in batch nothing is filtered that was not called for") {
+TEST_CASE("in batch mode only requested filtering runs") {
   Window batch("16", false);
   test::finish(batch.r);
   CHECK_FALSE(batch.r.filter_due());

@@ -1,6 +1,6 @@
 // links: upload
-// What the surface model owes to physics: reciprocity, no energy out of nothing, and none lost where nothing
-// absorbs.
+// Physical properties of the surface model: reciprocity, no energy gain, and no energy loss without
+// absorption.
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
 
@@ -14,7 +14,7 @@ namespace {
 
 float uniform(std::mt19937& random) { return static_cast<float>(random() >> 8) * 0x1p-24f; }
 vec3 color(std::mt19937& random) { return {uniform(random), uniform(random), uniform(random)}; }
-/// Often at one of its ends, where terms vanish.
+/// Often exactly 0 or 1, where terms vanish.
 float factor(std::mt19937& random) {
   const float u = 1.6f * uniform(random) - 0.3f;
   return std::clamp(u, 0.f, 1.f);
@@ -37,8 +37,8 @@ Material any_material(std::mt19937& random, float least_roughness) {
   return m;
 }
 
-/// What becomes of light that comes from everywhere with the same radiance over n^2: each channel's share
-/// that leaves towards wo. Roughness must not be that of a smooth surface.
+/// Reflectance under light of the same radiance over n^2 from everywhere: the share of each channel that
+/// leaves towards wo. Roughness must not be that of a smooth surface.
 std::array<double, 3> albedo(const Sphere& sphere, const Material& m) {
   const Integrals up = sphere.over(true), down = sphere.over(false);
   const double scale = m.solid ? double(m.eta()) * m.eta() : 1;
@@ -47,7 +47,7 @@ std::array<double, 3> albedo(const Sphere& sphere, const Material& m) {
   return a;
 }
 
-/// Materials and views for a furnace: the first half of one kind alone (metal, glass), then mixtures.
+/// Materials and views for a furnace: the first half pure metal or glass, then mixtures.
 struct Furnace {
   std::vector<Material> materials;
   std::vector<View> views;
@@ -76,12 +76,12 @@ std::string describe(const Material& m, const vec3& wo) {
       m.inside ? ", from inside" : "", m.diffuse_transmission, wo.z);
 }
 
-/// The tables of missing energy are interpolated: that much may be missing or too much.
+/// The tables of missing energy are interpolated: this much may be missing or in excess.
 constexpr double k_table_error = 5e-3;
 
 }  // namespace
 
-TEST_CASE("reciprocity: f is the same both ways, over n^2 of the side that light goes to") {
+TEST_CASE("reciprocity: f is the same in both directions, over n^2 of the side that light goes to") {
   std::mt19937 random(7);
   std::vector<Material> materials;
   std::vector<Question> there, back;
@@ -94,8 +94,8 @@ TEST_CASE("reciprocity: f is the same both ways, over n^2 of the side that light
     for (int k = 0; k < 160; ++k) {
       const vec3 wo = direction(0.02 + 0.98 * uniform(random), 6.2831853 * uniform(random));
       vec3 wi = direction(2 * uniform(random) - 1, 6.2831853 * uniform(random));
-      // Half of them where the lobes are: around the mirrored direction, what passes a thin wall, the
-      // refracted one.
+      // Half of the directions where the lobes are: around the reflected direction, the transmitted one of a
+      // thin wall, the refracted one.
       if (k % 2 == 0) {
         const float eta = m.solid && k % 4 == 0 ? m.eta() : 1, cosine = wo.z;
         const float bent = std::sqrt(std::max(0.f, 1 - (1 - cosine * cosine) / (eta * eta)));
@@ -112,7 +112,7 @@ TEST_CASE("reciprocity: f is the same both ways, over n^2 of the side that light
     }
   }
   Probe probe(materials);
-  const auto a = probe.ask(there), b = probe.ask(back);
+  const auto a = probe.evaluate(there), b = probe.evaluate(back);
   size_t bad = 0, improper = 0, bright[2] = {0, 0};
   std::string worst;
   for (size_t i = 0; i < a.size(); ++i) {
@@ -120,9 +120,9 @@ TEST_CASE("reciprocity: f is the same both ways, over n^2 of the side that light
     const float ci = std::abs(there[i].wi.z), co = there[i].wo.z;
     const bool through = there[i].wi.z < 0;
     const float n2 = m.solid && through ? m.eta() * m.eta() : 1;  // of wi's side over wo's
-    // What single precision leaves: less at grazing angles, less still where light grazes the facet that
-    // bends it (1 - sin^2 of Snell's law loses its digits), and of the complement, which divides what is
-    // missing of an albedo near 1 by a mean as small, an absolute part.
+    // Tolerance of single precision: larger at grazing angles, and where light grazes the facet that refracts
+    // it (1 - sin^2 of Snell's law cancels). The complement divides the missing part of an albedo near 1 by a
+    // mean of the same size, which adds an absolute error.
     float relative = 1e-4f + 2e-5f / std::min(ci, co);
     if (m.solid && through) {
       const vec3 h = glm::normalize(there[i].wo + m.eta() * there[i].wi);
@@ -143,12 +143,12 @@ TEST_CASE("reciprocity: f is the same both ways, over n^2 of the side that light
   INFO(worst << " (the first of " << bad << " of " << a.size() << ")");
   CHECK(bad == 0);
   CHECK(improper == 0);
-  // There was something to compare.
+  // Enough values were compared.
   CHECK(bright[0] > 10000);
   CHECK(bright[1] > 10000);
 }
 
-TEST_CASE("white furnace: where nothing absorbs, all that comes goes") {
+TEST_CASE("white furnace: without absorption all incident light leaves") {
   Furnace f = furnace(8, 240, 0.08f);
   whiten(f);
   Probe probe(f.materials);
@@ -160,7 +160,7 @@ TEST_CASE("white furnace: where nothing absorbs, all that comes goes") {
   }
 }
 
-TEST_CASE("white furnace by draws, smooth and nearly smooth") {
+TEST_CASE("white furnace by sampling, smooth and nearly smooth") {
   Furnace f = furnace(9, 96, 0);
   whiten(f);
   for (size_t i = 0; i < f.materials.size(); ++i)
@@ -178,8 +178,8 @@ TEST_CASE("white furnace by draws, smooth and nearly smooth") {
   CHECK(jury.verdict() == "");
 }
 
-TEST_CASE("glass reflects as much of F as its specular factor and colour say") {
-  // Nearly smooth, so that what leaves on either side is what facets along the surface make of it.
+TEST_CASE("glass reflects the share of F given by its specular factor and colour") {
+  // Nearly smooth, so reflection and transmission are those of facets in the plane of the surface.
   std::vector<Material> materials;
   std::vector<View> views;
   for (const uint32_t solid : {0u, 1u})
@@ -210,7 +210,7 @@ TEST_CASE("glass reflects as much of F as its specular factor and colour say") {
   }
 }
 
-TEST_CASE("no material gives more than it gets") {
+TEST_CASE("no material gains energy") {
   const Furnace f = furnace(10, 160, 0.08f);
   Probe probe(f.materials);
   const auto spheres = integrate(probe, f.views, 1e-5);
@@ -226,22 +226,22 @@ TEST_CASE("no material gives more than it gets") {
   CHECK(brightest > 0.9);
 }
 
-TEST_CASE("a black surface without specular takes all") {
+TEST_CASE("a black surface without specular absorbs everything") {
   Material m;
   m.base = m.diffuse_transmission_color = vec3(0), m.specular = 0;
   Probe probe({m});
   const vec3 wo = direction(0.5, 1);
   size_t bad = 0;
   for (const Draw& d : probe.draw(0, wo, 4096, 1)) bad += d.weight != vec3(0);
-  for (const Value& v : probe.ask({{0, wo, direction(0.3, 2)}, {0, wo, direction(-0.3, 2)}}))
+  for (const Value& v : probe.evaluate({{0, wo, direction(0.3, 2)}, {0, wo, direction(-0.3, 2)}}))
     bad += v.diffuse != vec3(0) || v.glossy != vec3(0);
   CHECK(bad == 0);
 }
 
 TEST_CASE("the complement has the energy of all further bounces") {
   // A reflector with the same F = s for all angles: single scattering gives s E, and the bounce of order n
-  // what is left of s^n after (1 - E)(1 - E_avg)^(n-2) E_avg, a geometric series. E itself is that of a very
-  // dark reflector.
+  // gives s^n (1 - E)(1 - E_avg)^(n-2) E_avg, a geometric series. E itself is measured with a very dark
+  // reflector.
   constexpr double k_dark = 1e-3;
   constexpr int k_cosines = 24;
   for (const float roughness : {0.4f, 1.f}) {
@@ -256,7 +256,7 @@ TEST_CASE("the complement has the energy of all further bounces") {
         views.push_back({m, direction(std::sqrt((i + 0.5) / k_cosines), 0.5)});
     Probe probe(materials);
     const auto spheres = integrate(probe, views, 3e-8);
-    double average = 0;  // cosine-weighted: the views are spread evenly over cosine^2
+    double average = 0;  // cosine-weighted: the views are uniform in cosine^2
     for (int i = 0; i < k_cosines; ++i) average += spheres[i].over(true)[4] / k_dark / k_cosines;
     for (size_t i = k_cosines; i < views.size(); ++i) {
       const double s = materials[views[i].material].specular,
@@ -268,4 +268,4 @@ TEST_CASE("the complement has the energy of all further bounces") {
   }
 }
 
-TEST_CASE("the validation layers had nothing to say") { CHECK(device().validation_messages() == 0); }
+TEST_CASE("there were no validation messages") { CHECK(device().validation_messages() == 0); }

@@ -1,6 +1,6 @@
 // links: upload
-// What the surface model is made of: the cosine lobe and the visible normals of GGX against their densities;
-// and that leaving out what a scene does not need changes nothing for what it has.
+// The parts of the surface model: the cosine lobe and the visible normals of GGX compared with their
+// densities; variants without unused features give the same results.
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t k_draws = 1 << 16;
 
-/// Draws of a subject that loses none, against its density.
+/// Compares draws of a subject, none of which is lost, with its density.
 void judge(Subject subject, const std::vector<Material>& materials, const std::vector<float>& cosines) {
   Probe probe(materials, surface_effects(false), subject);
   std::vector<View> views;
@@ -45,7 +45,7 @@ void judge(Subject subject, const std::vector<Material>& materials, const std::v
 
 }  // namespace
 
-TEST_CASE("the cosine lobe, and the disk it is lifted from: chi^2") {
+TEST_CASE("the cosine lobe, and the disk that it is projected from: chi^2") {
   judge(Subject::cosine, {{}}, {1, 0.5f});
 }
 
@@ -55,7 +55,7 @@ TEST_CASE("visible normals from nearly smooth to fully rough, from above to graz
   judge(Subject::visible_normals, materials, {1, 0.7f, 0.3f, 0.05f, 0.01f});
 }
 
-TEST_CASE("a leaner variant of the shader gives what the full one gives") {
+TEST_CASE("a smaller variant of the shader gives the results of the full one") {
   struct Variant {
     const char* name;
     gpu::Defines defines;
@@ -87,7 +87,7 @@ TEST_CASE("a leaner variant of the shader gives what the full one gives") {
       const auto a = full.draw(0, wo, 4096, 9), b = lean.draw(0, wo, 4096, 9);
       std::vector<Question> questions;
       for (const Draw& d : a) questions.push_back({0, wo, d.wi});
-      const auto va = full.ask(questions), vb = lean.ask(questions);
+      const auto va = full.evaluate(questions), vb = lean.evaluate(questions);
       size_t draws = 0, values = 0;
       const auto differ = [](const vec3& x, const vec3& y) {
         return !(glm::length(x - y) <= 1e-4f * (glm::length(x) + 1e-3f));
@@ -99,8 +99,8 @@ TEST_CASE("a leaner variant of the shader gives what the full one gives") {
                   differ(vec3(va[i].pdf), vec3(vb[i].pdf));
       }
       CHECK(values == 0);
-      CHECK(draws <= 4);  // a choice between lobes may fall the other way by rounding
+      CHECK(draws <= 4);  // a choice between lobes may change by rounding
     }
 }
 
-TEST_CASE("the validation layers had nothing to say") { CHECK(device().validation_messages() == 0); }
+TEST_CASE("there were no validation messages") { CHECK(device().validation_messages() == 0); }

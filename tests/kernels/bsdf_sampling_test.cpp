@@ -1,6 +1,6 @@
 // links: upload
-// What bsdf_sample() draws against what bsdf_eval() says, through the real shader: every lobe and mixture,
-// seen from above to grazing, glass from both sides.
+// bsdf_sample() compared with bsdf_eval(), through the real shader: every lobe and mixture, from above to
+// grazing, glass from both sides.
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr float k_cosines[] = {0.98f, 0.6f, 0.2f, 0.03f};
 constexpr uint32_t k_draws = 1 << 16;
-constexpr double k_bin = 1.0 / 128;  ///< most probability that a bin of a histogram holds
+constexpr double k_bin = 1.0 / 128;  ///< maximum probability of a bin of the histogram
 
 struct Named {
   std::string name;
@@ -58,7 +58,7 @@ std::vector<Named> materials() {
   return list;
 }
 
-/// Where a draw goes: label, side.
+/// The outcome of a draw: label, side.
 enum Way : size_t { k_ways = 8 };
 size_t way(uint32_t event, bool transmitted) { return 2 * event + transmitted; }
 
@@ -101,7 +101,7 @@ const std::vector<Outcome>& outcomes() {
       o.sphere = std::move(spheres[i]);
       const int bins = o.sphere.number_bins(k_bin);
       o.draws = probe().draw(o.index, o.wo, k_draws, static_cast<uint32_t>(i));
-      // One bin more: what is not drawn by density.
+      // One more bin for outcomes without a density.
       std::vector<double> observed(bins + 1, 0.0), expected;
       for (const double p : o.sphere.probabilities()) expected.push_back(p * k_draws);
       expected.push_back((1 - o.sphere.pdf()) * k_draws);
@@ -111,7 +111,7 @@ const std::vector<Outcome>& outcomes() {
         observed[delta || lost ? bins : o.sphere.bin_of(d.wi)] += 1;
         for (int c = 0; c < 3; ++c) o.weights[way(d.event, d.transmitted)][c].add(d.weight[c]);
       }
-      // Of every other way the draw brings 0.
+      // For every other outcome the draw contributes 0.
       for (auto& rgb : o.weights)
         for (Mean& mean : rgb) mean.count = k_draws;
       o.histogram = chi_square(observed, expected);
@@ -123,7 +123,7 @@ const std::vector<Outcome>& outcomes() {
   return all;
 }
 
-/// Reflectance between two media by the angles on both sides (Fresnel's equations as in a textbook).
+/// Reflectance between two media by the angles on both sides (Fresnel's textbook equations).
 double fresnel(double cosine, double eta) {
   const double i = std::acos(cosine), sine = std::sin(i) / eta;
   if (sine >= 1) return 1;
@@ -133,7 +133,7 @@ double fresnel(double cosine, double eta) {
   return 0.5 * (s * s + p * p);
 }
 
-/// Mean weight of a smooth surface's deltas, by way and channel.
+/// Mean weight of a smooth surface's deltas, by outcome and channel.
 std::array<std::array<double, 3>, k_ways> smooth_weights(const Material& m, double cosine) {
   std::array<std::array<double, 3>, k_ways> w{};
   const double dielectric = (1.0 - m.metallic) * (1.0 - m.transmission),
@@ -156,13 +156,13 @@ std::array<std::array<double, 3>, k_ways> smooth_weights(const Material& m, doub
 
 }  // namespace
 
-TEST_CASE("draws are distributed as the density says: chi^2, the lost and the deltas as a bin of their own") {
+TEST_CASE("draws follow the density: chi^2, with lost draws and deltas as a separate bin") {
   Jury jury;
   for (const Outcome& o : outcomes()) jury.add(o.name, o.histogram.p);
   CHECK(jury.verdict() == "");
 }
 
-TEST_CASE("the density integrates to 1 less what is lost, and less the deltas") {
+TEST_CASE("the density integrates to 1 minus lost draws and deltas") {
   Jury jury;
   for (const Outcome& o : outcomes()) {
     INFO(o.name << ": density " << o.sphere.pdf() << ", lost " << o.lost << ", deltas " << o.delta);
@@ -195,7 +195,7 @@ TEST_CASE("the mean weight of each label, side and channel is the integral of th
   CHECK(jury.verdict() == "");
 }
 
-TEST_CASE("a draw says of itself what is true of it") {
+TEST_CASE("a draw's label, side and density are correct") {
   for (const Outcome& o : outcomes()) {
     INFO(o.name);
     const Material& m = o.material;
@@ -204,10 +204,10 @@ TEST_CASE("a draw says of itself what is true of it") {
     const vec3 mirrored(-o.wo.x, -o.wo.y, o.wo.z);
     const float bent = std::sqrt(std::max(0.f, 1 - (1 - o.wo.z * o.wo.z) / (eta * eta)));
     const vec3 refracted(-o.wo.x / eta, -o.wo.y / eta, -bent);
-    // The densities again, as evaluation gives them in the drawn directions.
+    // The densities again, evaluated in the drawn directions.
     std::vector<Question> questions;
     for (const Draw& d : o.draws) questions.push_back({o.index, o.wo, d.wi});
-    const std::vector<Value> values = probe().ask(questions);
+    const std::vector<Value> values = probe().evaluate(questions);
     size_t bad_length = 0, bad_side = 0, bad_scale = 0, bad_pdf = 0, bad_delta = 0, bad_weight = 0;
     for (size_t i = 0; i < o.draws.size(); ++i) {
       const Draw& d = o.draws[i];
@@ -234,4 +234,4 @@ TEST_CASE("a draw says of itself what is true of it") {
   }
 }
 
-TEST_CASE("the validation layers had nothing to say") { CHECK(device().validation_messages() == 0); }
+TEST_CASE("there were no validation messages") { CHECK(device().validation_messages() == 0); }

@@ -1,6 +1,6 @@
 #pragma once
-// The surface model of shaders/lib/bsdf.glsl as tests see it: asked through a kernel, integrated over
-// directions by adaptive quadrature, and drawn from.
+// The surface model of shaders/lib/bsdf.glsl for tests: evaluated by a kernel, integrated over directions by
+// adaptive quadrature, and sampled.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace lucerna::test {
 
-/// SurfaceParameters of the shader, as they lie in the kernel's buffer.
+/// SurfaceParameters of the shader, with the layout of the kernel's buffer.
 struct Material {
   vec3 base{0.8f, 0.6f, 0.3f};
   float metallic = 0, roughness = 0.5f, ior = 1.5f, specular = 1;
@@ -28,7 +28,7 @@ struct Material {
   float eta() const { return solid && inside ? 1 / ior : ior; }
 };
 
-/// The glasses that there are tables for; glass_row is the place in this list.
+/// The glasses that have tables; glass_row is the index in this list.
 inline constexpr float k_glasses[] = {1.5f, 2.4f};
 
 struct Question {
@@ -49,7 +49,7 @@ struct Draw {
 enum Event : uint32_t { k_diffuse, k_glossy, k_specular, k_null };
 enum class Subject { bsdf, visible_normals, cosine };
 
-/// #defines with every effect of the surface model on, or off but for those named.
+/// #defines with every effect of the surface model on, or off except for those named.
 inline gpu::Defines surface_effects(bool all, std::initializer_list<const char*> on = {}) {
   gpu::Defines defines;
   for (const char* name : {"LUCERNA_SPECULAR", "LUCERNA_SOLID_GLASS", "LUCERNA_THIN_GLASS",
@@ -64,7 +64,7 @@ inline gpu::Device& device() {
   return instance;
 }
 
-/// Asks a list of materials. One variant of the shader each.
+/// Evaluates a list of materials with one variant of the shader.
 class Probe {
  public:
   explicit Probe(std::vector<Material> materials, gpu::Defines defines = surface_effects(true),
@@ -77,8 +77,8 @@ class Probe {
     resources_.set("bsdf_table", tables());
   }
 
-  std::vector<Value> ask(const std::vector<Question>& questions) {
-    if (!ask_) ask_ = kernel("0");
+  std::vector<Value> evaluate(const std::vector<Question>& questions) {
+    if (!evaluate_) evaluate_ = kernel("0");
     std::vector<Value> values;
     values.reserve(questions.size());
     for (size_t first = 0; first < questions.size(); first += k_batch) {
@@ -86,7 +86,7 @@ class Probe {
       reserve(questions_, "Questions", n * sizeof(Question));
       reserve(answers_, "Values", n * sizeof(Value));
       questions_.write(std::span(questions).subspan(first, n));
-      run(ask_, {static_cast<uint32_t>(n), 0, 0, vec3(0)});
+      run(evaluate_, {static_cast<uint32_t>(n), 0, 0, vec3(0)});
       values.resize(first + n);
       answers_.read(&values[first], n * sizeof(Value));
     }
@@ -137,7 +137,7 @@ class Probe {
   gpu::Defines defines_;
   gpu::Buffer materials_, questions_, answers_, draws_;
   gpu::Resources resources_;
-  gpu::Kernel ask_, draw_;
+  gpu::Kernel evaluate_, draw_;
   gpu::Stream stream_{device()};
 };
 
@@ -146,11 +146,11 @@ inline vec3 direction(double cosine, double phi) {
   return vec3(s * std::cos(phi), s * std::sin(phi), cosine);
 }
 
-/// What is integrated over directions: density, diffuse rgb, glossy rgb.
+/// Integrals over directions: density, diffuse rgb, glossy rgb.
 using Integrals = std::array<double, 7>;
 
 /// All directions as a tree of cells: rectangles in (height, azimuth), height = 1 - z from 0 at the upper
-/// pole to 2 at the lower. Cells are as small as the integrals need, and as the histogram wants them.
+/// pole to 2 at the lower. Cells are as small as the integrals and the histogram require.
 class Sphere {
  public:
   struct Cell {
@@ -160,8 +160,8 @@ class Sphere {
   };
   static constexpr double k_tau = 6.283185307179586;
   static constexpr int k_sectors = 4;
-  /// The roots' rings; below the equator mirrored. They become narrower towards the poles, where lobes may be
-  /// no wider than alpha^2.
+  /// The roots' rings, mirrored below the equator. They become narrower towards the poles, where lobes can be
+  /// as narrow as alpha^2.
   static constexpr std::array<double, 13> k_edges{0,      0x1p-18, 0x1p-16, 0x1p-14, 0x1p-12, 0x1p-10, 0x1p-8,
                                                   0x1p-6, 0x1p-4,  0.25,    0.5,     0.75,    1};
   static constexpr int k_rings = 12, k_roots = 2 * k_rings * k_sectors;
@@ -211,7 +211,7 @@ class Sphere {
     for (int r = 1; r < k_rings && cap >= k_edges[r]; ++r) ++ring;
     return ring * k_sectors + std::min(int(at.p / k_tau * k_sectors), k_sectors - 1);
   }
-  /// Which of its children a point of the cell is in.
+  /// The child of the cell that contains the point.
   int quarter(int cell, const Point& at) const {
     const Cell& c = cells[cell];
     return (at.h >= 0.5 * (c.h0 + c.h1) ? 2 : 0) + (at.p >= 0.5 * (c.p0 + c.p1) ? 1 : 0);
@@ -267,17 +267,17 @@ struct View {
   vec3 wo;
 };
 
-/// Integrates for every view at once, level by level: each cell by 3x3 Gauss points, against the sum of its
-/// four quarters, which are quartered again until the difference is below `tolerance` (absolute, for each
-/// integral and cell; the sum of the quarters is two orders of magnitude better than that) and no cell holds
-/// more than `most` of the density. A few draws show where narrow lobes are, which no coarse points would
-/// find; they decide only where the quadrature looks closer.
+/// Integrates for all views at once, level by level: each cell by 3x3 Gauss points is compared with the sum
+/// of its four quarters, which are subdivided until the difference is below `tolerance` (absolute, for each
+/// integral and cell; the sum of the quarters is two orders of magnitude more accurate) and no cell contains
+/// more than `most` of the density. A few draws locate narrow lobes that coarse points would miss; they only
+/// decide where cells are subdivided.
 inline std::vector<Sphere> integrate(Probe& probe, const std::vector<View>& views, double tolerance = 4e-6,
                                      double most = 1) {
   constexpr double k_node[] = {-0.7745966692414834, 0, 0.7745966692414834};
   constexpr double k_weight[] = {5.0 / 18, 8.0 / 18, 5.0 / 18};
   constexpr int k_most_levels = 16;
-  constexpr uint32_t k_guides = 1024, k_most_guides = 8;  // ... that one group of quarters may hold
+  constexpr uint32_t k_guides = 1024, k_most_guides = 8;  // maximum per group of quarters
   struct Place {
     uint32_t view;
     int cell;
@@ -305,7 +305,7 @@ inline std::vector<Sphere> integrate(Probe& probe, const std::vector<View>& view
                                vec3(s * std::cos(p), s * std::sin(p), 1 - h)});
         }
     }
-    const std::vector<Value> values = probe.ask(questions);
+    const std::vector<Value> values = probe.evaluate(questions);
     for (size_t i = 0; i < open.size(); ++i) {
       Sphere::Cell& c = spheres[open[i].view].cells[open[i].cell];
       const double area = (c.h1 - c.h0) * (c.p1 - c.p0);
@@ -316,11 +316,11 @@ inline std::vector<Sphere> integrate(Probe& probe, const std::vector<View>& view
         for (int a = 0; a < 3; ++a) c.value[1 + a] += w * v.diffuse[a], c.value[4 + a] += w * v.glossy[a];
       }
     }
-    // Groups of four quarters (or, at first, of four roots) lie together.
+    // Groups of four quarters (at first four roots) are contiguous.
     std::vector<Place> next;
     for (size_t i = 0; i < open.size(); i += 4) {
       Sphere& sphere = spheres[open[i].view];
-      // The wide cells at least three times, so that no lobe slips through between the points.
+      // Wide cells are subdivided at least three times, so no lobe is missed between the points.
       const Sphere::Cell& first = sphere.cells[open[i].cell];
       bool refine = level < (first.h0 >= 0.25 && first.h1 <= 1.75 ? 3 : 2);
       size_t guides = 0;

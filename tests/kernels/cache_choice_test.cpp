@@ -1,6 +1,6 @@
 // links: irradiance_cache
-// Which of the candidates get a record: the device chooses as a plain program on the host does, bit for bit;
-// all are covered, few are chosen.
+// Which candidates become records: the device chooses like a plain program on the host, bit for bit; all
+// candidates are covered, few are chosen.
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -37,7 +37,7 @@ uint64_t code(const vec3& p, const vec3& origin, int exponent) {
   return key;
 }
 
-/// What Placement does, one candidate after the other.
+/// The same as Placement, one candidate after the other.
 Choice choose_plainly(const std::vector<Place>& points, const ChoiceOptions& o) {
   Choice all;
   if (points.empty()) return all;
@@ -119,7 +119,7 @@ struct Bench {
 
 }  // namespace
 
-TEST_CASE("the device chooses as the host does") {
+TEST_CASE("the device chooses the same candidates as the host") {
   Bench bench;
   std::mt19937 random(11);
   for (const size_t count : {size_t{1}, size_t{2}, size_t{239}, size_t{240}, size_t{241}, size_t{3000}})
@@ -142,7 +142,7 @@ TEST_CASE("the device chooses as the host does") {
       }
 }
 
-TEST_CASE("every point that asked is near a chosen one that faces as it does") {
+TEST_CASE("every candidate is near a chosen one of the same orientation") {
   Bench bench;
   const std::vector<Place> points = test::box_points(20000, 0, 0.25f);
   const std::vector<Place> chosen = bench.choose(points, {.seed = 3});
@@ -152,25 +152,25 @@ TEST_CASE("every point that asked is near a chosen one that faces as it does") {
     float nearest = 1e9f;
     for (const Place& c : chosen)
       if (dot(p.normal, c.normal) > 0.98f) nearest = std::min(nearest, distance(p.position, c.position));
-    // What stood for it in a cluster that was cut for its number may be gone for another.
+    // A cluster that exceeded its maximum may have dropped the candidate's representative.
     REQUIRE(nearest <= 2 * 0.25f);
     uncovered += nearest > 0.25f;
   }
   CHECK(uncovered < points.size() / 50);
-  // 94 square metres; discs of that radius packed as densely as chance packs them, twice that across
-  // clusters' borders.
+  // 94 square metres; discs of that radius packed as densely as random packing allows, twice that across the
+  // borders of clusters.
   CHECK(chosen.size() > 94 / (3.14159 * 0.25 * 0.25));
   CHECK(chosen.size() < 6 * 94 / (3.14159 * 0.25 * 0.25));
   CHECK_FALSE(same(chosen, bench.choose(points, {.seed = 4})));
 }
 
-TEST_CASE("too few places are shared out over the clusters") {
+TEST_CASE("too few record slots are distributed over the clusters") {
   Bench bench;
   const std::vector<Place> points = test::box_points(20000, 0, 0.1f);
   const std::vector<Place> few = bench.choose(points, {.most = 200});
   CHECK(few.size() <= 200);
   CHECK(few.size() > 150);
-  // All over the box, not in a corner of it.
+  // All over the box, not in one corner.
   for (int axis = 0; axis < 3; ++axis) {
     float lo = 1e9f, hi = -1e9f;
     for (const Place& p : few) lo = std::min(lo, p.position[axis]), hi = std::max(hi, p.position[axis]);
@@ -179,14 +179,14 @@ TEST_CASE("too few places are shared out over the clusters") {
   }
   CHECK(bench.choose({}, {}).empty());
   CHECK(bench.choose(points, {.most = 0}).empty());
-  // One place, asked for by many: chosen once for each way that it faces.
+  // One place with many candidates: chosen once per orientation.
   std::vector<Place> one(50);
   for (size_t i = 0; i < one.size(); ++i) one[i].normal = vec3(0, i % 2 ? 1 : -1, 0), one[i].reach = 0.1f;
   CHECK(bench.choose(one, {}).size() == 2);
 }
 
-TEST_CASE("candidates are collected block by block, whatever number of blocks is looked along at once") {
-  // Slots are sample by sample, in each block by block: what `number` says of one is its place among all.
+TEST_CASE("candidates are collected block by block, whatever number of blocks is probed at once") {
+  // Slots are ordered by sample and block: `number` is a slot's position among all.
   constexpr uint32_t k_samples = 3, k_blocks = 4;
   const auto order = [&](uint32_t at_once) {
     Bench bench;
@@ -212,7 +212,8 @@ TEST_CASE("candidates are collected block by block, whatever number of blocks is
   for (const uint32_t at_once : {1u, 2u, 4u}) CHECK(order(at_once) == expected);
 }
 
-TEST_CASE("candidates are collected in the order of their slots, those seen straight if they are to be") {
+TEST_CASE(
+    "candidates are collected in the order of their slots, including directly visible ones if requested") {
   Bench bench;
   std::vector<vec4> slots(2 * 200, vec4(0));
   std::mt19937 random(3);
@@ -232,10 +233,10 @@ TEST_CASE("candidates are collected in the order of their slots, those seen stra
   for (const bool screen_too : {true, false}) {
     bench.placement.clear();
     for (int twice = 0; twice < 2; ++twice) {
-      const auto asked = bench.placement.collect(bench.stream, buffer, 200, 1, screen_too, reach);
-      REQUIRE(asked.size() == 4);
+      const auto collected = bench.placement.collect(bench.stream, buffer, 200, 1, screen_too, reach);
+      REQUIRE(collected.size() == 4);
       for (uint32_t k = 0; k < 3; ++k)
-        for (uint32_t block = 0; block < 4; ++block) CHECK(asked[block][k] == by_origin[block][k]);
+        for (uint32_t block = 0; block < 4; ++block) CHECK(collected[block][k] == by_origin[block][k]);
     }
     const uint32_t each = in_all[1] + in_all[2] + (screen_too ? in_all[0] : 0);
     REQUIRE(bench.placement.size() == 2 * each);
@@ -244,7 +245,7 @@ TEST_CASE("candidates are collected in the order of their slots, those seen stra
     CHECK(bench.placement.clusters() == 0);
     bench.placement.choose(bench.stream, {});
     CHECK(bench.placement.clusters() == bench.placement.choice().cluster.back() + 1);
-    // Twice along a line: sorted, each place comes twice.
+    // Twice along a line: when sorted, each place occurs twice.
     const Choice all = bench.placement.choice();
     uint32_t at = 0;
     for (uint32_t i = 0; i < 200; ++i) {

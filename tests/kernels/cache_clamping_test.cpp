@@ -1,5 +1,5 @@
 // links: irradiance_cache
-// Radii clamped by what other records know to be near, against the same done plainly on the host.
+// Radii clamped by the nearest distances of other records, compared with the same on the host.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -20,7 +20,7 @@ namespace {
 
 constexpr float k_normal_tolerance = 0.06f, k_off_plane = 0.03f, k_least = 0.01f;
 
-/// Where record i serves, as lookup.glsl has it.
+/// True if record i covers the place, as in lookup.glsl.
 bool serves(const Disc& i, const Place& at) {
   const vec3 away = at.position - i.place.position;
   const vec3 unit = away / i.radius;
@@ -53,7 +53,7 @@ struct Bed : test::RecordBed {
   }
 };
 
-/// Discs on two floors and a slope; every other one knows of nothing.
+/// Discs on two floors and a slope; every other one has seen nothing near.
 std::vector<Disc> many(uint32_t count, float stretch) {
   std::mt19937 random(5);
   std::uniform_real_distribution<float> any(0, 1);
@@ -74,18 +74,18 @@ std::vector<Disc> many(uint32_t count, float stretch) {
 
 }  // namespace
 
-TEST_CASE("one that has met a narrow thing tells those that would serve across it") {
+TEST_CASE("a record that saw a near object clamps the records that would reach across it") {
   Bed bed(8, Metric::split_sphere);
   const vec3 up(0, 1, 0);
   std::vector<Disc> discs{
-      {{vec3(0, 0, 0), up}, 1.0f, 5.0f},                              // told by the next
-      {{vec3(0.3f, 0, 0), up}, 0.2f, 0.1f},                           // whose own is less than that allows
-      {{vec3(0, 0, 0.5f), up}, 0.4f, 5.0f},                           // does not reach so far
-      {{vec3(0, -0.5f, 0), up}, 0.7f, 5.0f},                          // another floor
-      {{vec3(0.2f, 0, 0.1f), normalize(vec3(1, 1, 0))}, 0.7f, 5.0f},  // another slope
-      {{vec3(5, 0, 0), up}, 1.0f, std::numeric_limits<float>::infinity()},  // alone under the sky
-      {{vec3(8, 0, 0), up}, 0.3f, 0.001f},                                  // at least the least
-      {{vec3(9, 0, 0), up}, 0.005f, 0.001f},                                // ... and never more than it was
+      {{vec3(0, 0, 0), up}, 1.0f, 5.0f},      // clamped by the next
+      {{vec3(0.3f, 0, 0), up}, 0.2f, 0.1f},   // its own radius is smaller than that limit
+      {{vec3(0, 0, 0.5f), up}, 0.4f, 5.0f},   // does not reach that far
+      {{vec3(0, -0.5f, 0), up}, 0.7f, 5.0f},  // another floor
+      {{vec3(0.2f, 0, 0.1f), normalize(vec3(1, 1, 0))}, 0.7f, 5.0f},        // another slope
+      {{vec3(5, 0, 0), up}, 1.0f, std::numeric_limits<float>::infinity()},  // alone, nothing near
+      {{vec3(8, 0, 0), up}, 0.3f, 0.001f},                                  // at least the minimum
+      {{vec3(9, 0, 0), up}, 0.005f, 0.001f},                                // never above its previous radius
   };
   const std::vector<Record> all = bed.clamp(discs, 1);
   const float expected[] = {0.4f, 0.1f, 0.4f, 0.7f, 0.7f, 1.0f, 0.01f, 0.005f};
@@ -95,7 +95,7 @@ TEST_CASE("one that has met a narrow thing tells those that would serve across i
   }
 }
 
-TEST_CASE("radii are clamped as on the host, of circles and of ellipses, twice in a row") {
+TEST_CASE("radii of circles and ellipses are clamped as on the host, twice in a row") {
   for (const Metric metric : {Metric::split_sphere, Metric::hessian}) {
     const float stretch = metric == Metric::hessian ? 1.6f : 1.0f;
     for (const float near : {1.0f, 0.5f}) {
@@ -114,7 +114,7 @@ TEST_CASE("radii are clamped as on the host, of circles and of ellipses, twice i
         }
         INFO("stretch " << stretch << ", near " << near << ", time " << time << ": " << clamped
                         << " clamped, " << wrong << " wrong");
-        CHECK(wrong <= 3);  // at the very border of where another serves
+        CHECK(wrong <= 3);  // exactly at the border of another record
         if (time == 0) CHECK(clamped > 1000);
         discs = after;
       }

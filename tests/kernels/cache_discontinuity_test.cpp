@@ -1,6 +1,6 @@
 // links: irradiance_cache
-// The screen-space stage of the irradiance cache: what counts as detail, its pyramid against the host, and
-// whether dithering draws as many points as their probabilities say.
+// The screen-space stage of the irradiance cache: the measure of detail, its pyramid compared with the host,
+// and the number of points that dithering draws compared with their probabilities.
 #include <cmath>
 #include <random>
 
@@ -14,7 +14,7 @@ using Of = Discontinuity::Of;
 
 namespace {
 
-/// A camera at the origin that looks along -z, and what it sees.
+/// A camera at the origin that looks along -z, and the surfaces it sees.
 struct View {
   uint32_t width, height;
   bool parallel = false;
@@ -40,7 +40,7 @@ struct View {
     const vec2 ndc = (vec2(float(x), float(y)) + 0.5f) / vec2(float(width), float(height)) * 2.0f - 1.0f;
     return {ndc.x * half() * float(width) / float(height), -ndc.y * half()};
   }
-  /// The plane n x = d at a pixel.
+  /// Places the plane n x = d at a pixel.
   void plane(uint32_t x, uint32_t y, const vec3& n, float d) {
     const vec3 origin = parallel ? vec3(shift(x, y), 0) : vec3(0);
     const vec3 along = parallel ? vec3(0, 0, -1) : vec3(shift(x, y), -1);
@@ -55,7 +55,7 @@ struct View {
   }
 };
 
-/// detail.comp by hand.
+/// detail.comp on the host.
 float change(const View& v, uint32_t p, uint32_t q, uint32_t level, Of of, const DiscontinuityOptions& o,
              float least) {
   const vec4 &a = v.surfaces[2 * p], &b = v.surfaces[2 * q];
@@ -127,7 +127,7 @@ struct Bench {
   }
 };
 
-/// Everything that there is: walls at all angles, steps, holes, light that comes and goes.
+/// Every kind of content: walls at all angles, steps, holes, changes of light.
 View scramble(uint32_t width, uint32_t height, bool parallel = false) {
   View v(width, height, parallel);
   std::mt19937 random(7);
@@ -145,7 +145,7 @@ View scramble(uint32_t width, uint32_t height, bool parallel = false) {
 
 }  // namespace
 
-TEST_CASE("a flat wall has no detail at any level, however slanted") {
+TEST_CASE("a flat wall has no detail at any level, whatever its slope") {
   Bench bench;
   for (const bool parallel : {false, true})
     for (const vec3 n : {vec3(0, 0, 1), vec3(0.9f, 0, 0.3f), vec3(0.5f, -0.8f, 0.33f)}) {
@@ -156,8 +156,8 @@ TEST_CASE("a flat wall has no detail at any level, however slanted") {
       for (uint32_t k = 0; k < bench.screen.levels(); ++k)
         for (const float d : bench.screen.level(k)) REQUIRE(d < 2e-4f);
       for (const uint32_t level : bench.dither(Of::geometry, {}, 1)) REQUIRE(level == bench.screen.levels());
-      // But some are wanted of a wall as of anything else: one in a square of that side. Of so many points
-      // drawn by themselves the number would be within 5 deviations in all but one of 10^6 runs.
+      // Some points are placed on a wall anyway: one per square of that side. For this number of independent
+      // points the total is within 5 deviations in all but one of 10^6 runs.
       constexpr float k_side = 0.3f;
       const auto width = [&](uint32_t i) { return v.pixel() * (parallel ? 1 : v.surfaces[2 * i].w); };
       double expected = 0;
@@ -169,7 +169,7 @@ TEST_CASE("a flat wall has no detail at any level, however slanted") {
       for (uint32_t i = 0; i < taken.size(); ++i) {
         if (taken[i] == bench.screen.levels()) continue;
         ++drawn;
-        // The finest cells that are as wide as the square.
+        // The finest cells that are at least as wide as the square.
         const float cell = width(i) * float(1u << taken[i]);
         REQUIRE(cell >= 0.999f * k_side);
         REQUIRE((taken[i] == 0 || cell <= 2.001f * k_side));
@@ -180,9 +180,9 @@ TEST_CASE("a flat wall has no detail at any level, however slanted") {
     }
 }
 
-TEST_CASE("a step counts for its height in cells, an edge for its turn") {
+TEST_CASE("a step counts by its height in cells, an edge by its angle") {
   Bench bench;
-  // Seen straight, nearer on the left of column 32.
+  // Seen from the front, nearer on the left of column 32.
   constexpr float k_step = 0.01f;
   View v(64, 32);
   v.each([&](uint32_t x, uint32_t y) { v.plane(x, y, vec3(0, 0, 1), x < 32 ? -3 : -3 - k_step); });
@@ -194,11 +194,11 @@ TEST_CASE("a step counts for its height in cells, an edge for its turn") {
   for (uint32_t y = 0; y < 32; ++y)
     for (uint32_t x = 0; x < 64; ++x)
       CHECK(fine[y * 64 + x] == Approx(x == 31 || x == 32 ? expected : 0).margin(1e-4));
-  // Half as high in cells twice as wide, and half of their pixels are at it.
+  // Half as high relative to cells twice as wide, and half of their pixels are at the step.
   for (uint32_t x = 0; x < 32; ++x)
     CHECK(next[5 * 32 + x] == Approx(x == 15 || x == 16 ? expected / 2 + expected / 2 : 0).margin(1e-4));
 
-  // Two walls that meet: the same at every level, until it is full.
+  // Two walls that meet: the same at every level, up to the maximum.
   const float turn = 0.05f;
   View edge(64, 32);
   edge.each([&](uint32_t x, uint32_t y) {
@@ -212,7 +212,7 @@ TEST_CASE("a step counts for its height in cells, an edge for its turn") {
   CHECK(bench.screen.level(0)[30] < 1e-4f);
 }
 
-TEST_CASE("irradiance counts where it differs on one surface, and only there") {
+TEST_CASE("irradiance counts where it changes on one surface, and only there") {
   Bench bench;
   const DiscontinuityOptions o{.irradiance_weight = 1.5f, .irradiance_noise = 0.1f};
   View v(16, 16);
@@ -220,7 +220,7 @@ TEST_CASE("irradiance counts where it differs on one surface, and only there") {
     v.plane(x, y, y < 8 ? vec3(0, 0, 1) : normalize(vec3(0, 1, 1)), -3);
     v.lit[y * 16 + x] = vec3(x < 4 ? -1.0f : x < 10 ? 2.0f : 3.0f, 0.5f, 0);
   });
-  // Another light below the edge is another surface's.
+  // Another light below the edge belongs to another surface.
   for (uint32_t i = 8 * 16; i < 16 * 16; ++i) v.lit[i].x = v.lit[i].x > 0 ? 0.05f : -1.0f;
   bench.measure(v, Of::irradiance, o, 0.2f);
   const std::vector<float> fine = bench.screen.level(0);
@@ -232,7 +232,7 @@ TEST_CASE("irradiance counts where it differs on one surface, and only there") {
     }
 }
 
-TEST_CASE("the pyramid is that of the host, on pictures of any size") {
+TEST_CASE("the pyramid equals that of the host, for pictures of any size") {
   Bench bench;
   for (const auto& [width, height] :
        {std::pair{1u, 1u}, {2u, 1u}, {1u, 5u}, {37u, 23u}, {64u, 64u}, {65u, 33u}})
@@ -257,12 +257,12 @@ TEST_CASE("the pyramid is that of the host, on pictures of any size") {
       }
 }
 
-TEST_CASE("points are drawn as often as their probabilities say") {
+TEST_CASE("points are drawn with their probabilities") {
   Bench bench;
   const DiscontinuityOptions o{
       .density = 0.3f, .falloff = 0.4f, .depth_weight = 0.05f, .normal_weight = 0.2f};
   View v = scramble(37, 23);
-  for (vec3& l : v.lit) l = vec3(-1, INFINITY, 0);  // nothing is served
+  for (vec3& l : v.lit) l = vec3(-1, INFINITY, 0);  // no pixel has records
   bench.measure(v, Of::geometry, o);
   const uint32_t levels = bench.screen.levels();
   std::vector<std::vector<float>> probability(levels, std::vector<float>(37 * 23, 0));
@@ -281,8 +281,8 @@ TEST_CASE("points are drawn as often as their probabilities say") {
     for (uint32_t i = 0; i < taken.size(); ++i)
       if (taken[i] < levels) ++count[taken[i]][i];
   }
-  // Seeds are independent: each point and level is binomial. 3,000 of them or so: 5.5 standard deviations
-  // come once in 10^4 such tests.
+  // Seeds are independent: each point and level is binomial. With about 3,000 of them 5.5 standard deviations
+  // occur once in 10^4 such tests.
   double squares = 0, n = 0;
   for (uint32_t k = 0; k < levels; ++k)
     for (uint32_t i = 0; i < 37 * 23; ++i) {
@@ -299,9 +299,9 @@ TEST_CASE("points are drawn as often as their probabilities say") {
   CHECK(squares / n == Approx(1).margin(0.15));
 }
 
-TEST_CASE("thresholds are spread over blocks, follow the seed, and leave alone what records serve") {
+TEST_CASE("thresholds are distributed over blocks, follow the seed, and skip pixels with records") {
   Bench bench;
-  // Detail is full everywhere: no two neighbours face alike.
+  // Maximum detail everywhere: no two neighbours have the same orientation.
   View v(64, 64);
   v.each([&](uint32_t x, uint32_t y) {
     v.plane(x, y, (x + y) % 2 ? vec3(0, 0, 1) : normalize(vec3(1, 0, 1)), -3);
@@ -324,9 +324,9 @@ TEST_CASE("thresholds are spread over blocks, follow the seed, and leave alone w
   for (const uint32_t n : corners) CHECK(std::abs(int(n) - 512) < 5 * 16);
   CHECK(bench.dither(Of::geometry, o, 3) == taken);
   CHECK(bench.dither(Of::geometry, o, 4) != taken);
-  // Levels finer than what a record covers at least do not draw.
+  // Levels finer than the minimum radius of a record draw no points,
   for (const uint32_t level : bench.dither(Of::geometry, o, 3, {.least_width = 3})) REQUIRE(level >= 2);
-  // ... nor, here, those of cells narrower than a metre: level 4 is 0.75 m wide where the wall is 3 m away.
+  // nor, here, levels with cells narrower than a metre: level 4 is 0.75 m wide where the wall is 3 m away.
   const std::vector<uint32_t> wide =
       bench.dither(Of::geometry, {.density = 0.5f, .falloff = 1}, 3, {.finest = 1});
   for (uint32_t i = 0; i < wide.size(); ++i)
@@ -334,7 +334,8 @@ TEST_CASE("thresholds are spread over blocks, follow the seed, and leave alone w
       REQUIRE(v.pixel() * v.surfaces[2 * i].w * float(1u << wide[i]) >= 0.999f);
   CHECK(std::count(wide.begin(), wide.end(), bench.screen.levels()) == 0);
 
-  // Served: geometry asks no more, irradiance where the nearest record is farther than half a cell.
+  // With records geometry draws no points; irradiance does where the nearest record is farther than half a
+  // cell.
   for (uint32_t i = 0; i < 64 * 64; ++i) v.lit[i] = vec3(i % 3 ? 1 : -1, i % 2 ? 1e-6f : 1e6f, 0);
   bench.measure(v, Of::geometry, o);
   const std::vector<uint32_t> geometry = bench.dither(Of::geometry, o, 3),

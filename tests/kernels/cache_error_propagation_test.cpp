@@ -1,6 +1,6 @@
 // links: irradiance_cache film
-// How records' errors are propagated into the picture: the kernels against the same sums taken here, for a
-// few records with known errors, and what of them tiles come to.
+// Propagation of records' errors into the picture: the kernels compared with the same sums on the host, for a
+// few records with known errors, and the resulting errors of tiles.
 #include <cmath>
 
 #include "film/error.h"
@@ -12,7 +12,7 @@ using shared::k_record_lanes;
 
 namespace {
 
-/// As shaders/irradiance_cache/error_propagation.glsl has it.
+/// As in shaders/irradiance_cache/error_propagation.glsl.
 double sign_of(uint32_t record, uint32_t lane) {
   uint32_t x = record + 0x9e3779b9u;
   x = (x ^ x >> 16) * 0x7feb352du;
@@ -21,12 +21,12 @@ double sign_of(uint32_t record, uint32_t lane) {
   return x >> lane & 1 ? -1 : 1;
 }
 
-/// A grey throughput: a power of 2, which eight bits hold exactly.
+/// A grey throughput: a power of 2, which eight bits represent exactly.
 uint32_t packed(double power_of_2) {
   return 0x00ffffffu | uint32_t(127 + std::lround(std::log2(power_of_2))) << 24;
 }
 
-/// On the floor, facing up; a metre wide.
+/// On the floor, facing up; radius one metre.
 test::RecordDisc disc(float x, float light, float error) {
   test::RecordDisc d{.place = {}, .radius = 1};
   d.place.position = vec3(x, 0, 0), d.place.normal = vec3(0, 1, 0);
@@ -36,10 +36,10 @@ test::RecordDisc disc(float x, float light, float error) {
 
 struct Note {
   float x = 0;
-  double throughput = 0;  ///< 0: nothing
+  double throughput = 0;  ///< 0: none
 };
 
-/// What the kernels make of paths that read records so: `notes` by path and pixel of a picture of 16 x 8.
+/// The kernels' result for paths that read records; `notes` by path and pixel of a picture of 16 x 8.
 struct ErrorSums {
   std::vector<vec2> pixels;
   std::vector<BlockRecords> blocks;
@@ -106,16 +106,15 @@ ErrorSums propagate(test::RecordBed& bed, const std::vector<test::RecordDisc>& d
   return out;
 }
 
-/// Of a disc of a metre at 0 and one at 1, at x between them.
+/// Weight of the right one of two discs of one metre at 0 and 1, for x between them.
 double share_of_right(double x) { return x; }
 
 }  // namespace
 
-TEST_CASE("a record's error reaches the pixels that read it by the weight that it has there") {
+TEST_CASE("a record's error reaches the pixels that read it, with its weight there") {
   test::RecordBed bed;
   const std::vector<test::RecordDisc> discs{disc(0, 2, 0.5f), disc(1, 4, 0.25f)};
-  // All pixels read at x = 1/4 with a throughput of 1/2 for what is there; one half of the second block reads
-  // nothing.
+  // All pixels read at x = 1/4 with a throughput of 1/2; half of the second block reads nothing.
   std::vector<Note> notes(128, Note{0.25f, 0.5});
   for (size_t i = 96; i < 128; ++i) notes[i] = {};
   const ErrorSums got = propagate(bed, discs, {notes, notes}, {});
@@ -124,8 +123,7 @@ TEST_CASE("a record's error reaches the pixels that read it by the weight that i
   for (uint32_t k = 0; k < k_record_lanes; ++k)
     variance += std::pow(a * sign_of(0, k) + b * sign_of(1, k), 2) / k_record_lanes;
   CHECK(variance == Approx(a * a + b * b).margin(2 * a * b));
-  // The pixels of a block are in Morton order: those that read nothing are the lower half of the second
-  // block.
+  // The pixels of a block are in Morton order: the lower half of the second block reads nothing.
   for (uint32_t y = 0; y < 8; ++y)
     for (uint32_t x = 0; x < 16; ++x) {
       INFO(x << ' ' << y);
@@ -138,37 +136,37 @@ TEST_CASE("a record's error reaches the pixels that read it by the weight that i
       CHECK(got.blocks[1].noise[path * k_record_lanes + lane] == Approx(32 * each).epsilon(1e-4));
     }
   CHECK(got.blocks[0].pixels == 64);
-  // Pixels that read the same records err together: a tile of 64 is off by as much as one of them.
+  // Pixels that read the same records have the same error: a tile of 64 has the error of one of them.
   const film::RecordsError one = film::records_error({got.blocks.data(), 1});
   CHECK(one.noise == Approx(std::sqrt(variance)).epsilon(1e-4));
   const film::RecordsError both = film::records_error(got.blocks);
   CHECK(both.noise == Approx(0.75 * std::sqrt(variance)).epsilon(1e-4));
   CHECK(both.degrees == k_record_lanes);
-  // The same bits again.
+  // A second run is identical bit for bit.
   const ErrorSums again = propagate(bed, discs, {notes, notes}, {});
   CHECK(std::memcmp(again.blocks.data(), got.blocks.data(), got.blocks.size() * sizeof(BlockRecords)) == 0);
   CHECK(again.pixels == got.pixels);
 }
 
-TEST_CASE("pixels that read different records err apart") {
+TEST_CASE("pixels that read different records have independent errors") {
   test::RecordBed bed;
-  // 64 records in a row, out of each other's reach; each pixel of the first block reads its own.
+  // 64 separate records in a row; each pixel of the first block reads its own.
   std::vector<test::RecordDisc> discs;
   std::vector<Note> notes(128);
   for (uint32_t i = 0; i < 64; ++i)
     discs.push_back(disc(4.0f * float(i), 1, 0.5f)), notes[i] = {4.0f * float(i), 1};
   const ErrorSums got = propagate(bed, discs, {notes, notes}, {});
   CHECK(got.pixels[0].x == Approx(0.25));
-  // 16 lanes tell a variance to a third.
+  // 16 lanes estimate a variance to a third.
   const film::RecordsError tile = film::records_error({got.blocks.data(), 1});
   CHECK(tile.noise > 0.5 / 8 * 0.5);
   CHECK(tile.noise < 0.5 / 8 * 1.5);
 }
 
-TEST_CASE("paths' own noise is not taken for the records'") {
+TEST_CASE("the paths' own noise is not counted as the records' error") {
   test::RecordBed bed;
-  // One path of a pixel reads one record, the other another that is as noisy: in the mean over paths half of
-  // each, of which the product knows nothing but what they have in common, which is nothing.
+  // One path of a pixel reads one record, the other path another of the same noise: the mean contains half of
+  // each, and the product measures only what they share, which is nothing.
   const std::vector<test::RecordDisc> discs{disc(0, 1, 0.5f), disc(8, 1, 0.5f)};
   const std::vector<Note> one(128, Note{0, 1}), other(128, Note{8, 1});
   const ErrorSums got = propagate(bed, discs, {one, other}, {});
@@ -179,7 +177,7 @@ TEST_CASE("paths' own noise is not taken for the records'") {
   CHECK(std::abs(product) < 0.25);
 }
 
-TEST_CASE("what records have read counts as what the picture reads") {
+TEST_CASE("light that records read from records counts like light that the picture reads") {
   test::RecordBed bed;
   const std::vector<test::RecordDisc> discs{disc(0, 1, 0.5f), disc(8, 1, 1)};
   const std::vector<Note> first(128, Note{0, 1}), beyond(128, Note{8, 0.25});
@@ -190,7 +188,7 @@ TEST_CASE("what records have read counts as what the picture reads") {
   CHECK(got.pixels[0].x == Approx(variance).epsilon(1e-4));
 }
 
-TEST_CASE("one pixel may stand for several of the film") {
+TEST_CASE("one pixel can stand for several of the film") {
   test::RecordBed bed;
   const std::vector<test::RecordDisc> discs{disc(0, 1, 0.5f)};
   const std::vector<Note> notes(64, Note{0, 1});
@@ -200,10 +198,9 @@ TEST_CASE("one pixel may stand for several of the film") {
   CHECK(film::records_error(got.blocks).noise == Approx(0.5));
 }
 
-TEST_CASE(
-    "interpolation: what is left when the noise of records is taken off what those around say of each") {
+TEST_CASE("interpolation error: the residual of neighbouring records without their noise") {
   test::RecordBed bed;
-  // Light that bends, 4 + x^2, told without slopes by records that have no noise.
+  // Curved light, 4 + x^2, stored without gradients by records without noise.
   std::vector<test::RecordDisc> discs;
   constexpr float k_apart = 0.75f;
   for (int i = 0; i < 16; ++i) {
@@ -217,8 +214,7 @@ TEST_CASE(
   const double read = (4 + 2 * 0.25 * (4 + k_apart * k_apart)) / 1.5;
   CHECK(calm.pixels[0].y == Approx(std::pow(read - 4, 2)).epsilon(1e-3));
   CHECK(film::records_error(calm.blocks).interpolation == Approx(read - 4).epsilon(1e-3));
-  // Flat light of noisy records is off by nothing: their noise is told, and none of it is taken for more than
-  // it is.
+  // Constant light from noisy records has no interpolation error: only the records' noise is reported.
   for (size_t i = 0; i < discs.size(); ++i)
     discs[i].light = vec3(float(4 + 0.5 * sign_of(uint32_t(i), 3))), discs[i].error = 0.5f;
   const ErrorSums noisy = propagate(bed, discs, {notes, notes}, {});

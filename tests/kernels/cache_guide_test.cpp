@@ -1,6 +1,6 @@
 // links: irradiance_cache
-// Where paths that gather along edges look for light: what is drawn has the density that is told, wherever
-// the vertex's normal differs from the record's.
+// Guided directions of paths that gather along edges: draws follow the stated density, wherever the vertex's
+// normal differs from the record's.
 #include <array>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -31,7 +31,7 @@ std::array<vec3, 2> basis(const vec3& n) {
   return {vec3(1 + s * n.x * n.x * a, s * c, -s * n.x), vec3(c, s + n.y * n.y * a, -n.y)};
 }
 
-/// The guide's cell in which a direction lies, in the frame that a vertex turns it by.
+/// The guide's cell of a direction, in the frame that the vertex rotates it to.
 size_t cell_of(const vec3& direction, const vec3& normal, const vec3& record_normal) {
   const vec3 t = basis(record_normal)[0];
   const vec3 tangent = normalize(t - dot(t, normal) * normal), bitangent = cross(normal, tangent);
@@ -49,7 +49,7 @@ struct Bed {
   gpu::Stream stream{silent.device};
   gpu::Kernel kernel{silent.device, compiler, test::shader("guide_probe.comp")};
 
-  /// Of record 1 of two, with those cells and that normal; the other's are others.
+  /// Draws from record 1 of two, with those cells and that normal; the other record's differ.
   std::vector<vec4> draw(const Cells& cells, const vec3& record_normal, const vec3& normal,
                          const std::vector<vec2>& points, uint32_t record = 1) {
     const size_t lights = size_t{k_part_count} * k_part_texels;
@@ -93,7 +93,7 @@ std::vector<vec2> random_points() {
 
 }  // namespace
 
-TEST_CASE("directions that a guide gives have the density that it tells, which integrates to 1") {
+TEST_CASE("guided directions follow their stated density, which integrates to 1") {
   Bed bed;
   Cells lamp{}, any{}, full{};
   lamp[77] = k_guide_most;
@@ -129,7 +129,7 @@ TEST_CASE("directions that a guide gives have the density that it tells, which i
   CHECK(jury.verdict() == "");
 }
 
-TEST_CASE("a guide that knows nothing leaves the cosine's distribution as it is") {
+TEST_CASE("an empty guide keeps the cosine distribution") {
   Bed bed;
   const vec3 up(0, 0, 1);
   const std::vector<vec2> points = random_points();

@@ -1,6 +1,6 @@
 // links: irradiance_cache scene_io bvh_embree
-// A record under a sky of which one half shines: irradiance and rotational gradient have a closed form, for
-// any normal, and nothing depends on the place.
+// A record under an environment of which one half emits: irradiance and rotational gradient have a closed
+// form for any normal, and do not depend on the position.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -12,8 +12,8 @@ using irradiance_cache::Record;
 
 namespace {
 
-/// The mean of a figure over records, within 3.9 standard errors (1e-4, two-sided) and what the sky's texels
-/// blur, `slack`.
+/// Checks the mean of a figure over records, within 3.9 standard errors (1e-4, two-sided) plus `slack` for
+/// the blur of the environment's texels.
 template <class Value>
 void expect(const char* what, const std::vector<Record>& records, size_t first, size_t count, double truth,
             double slack, const Value& value) {
@@ -24,7 +24,7 @@ void expect(const char* what, const std::vector<Record>& records, size_t first, 
 
 }  // namespace
 
-TEST_CASE("half of the sky shines: irradiance and its change with the normal are those of the closed form") {
+TEST_CASE("half an environment: irradiance and its rotational gradient match the closed form") {
   scene::Scene scene = test::CacheBed::load("furnace-disk");
   for (scene::Material& m : scene.materials) m.emission = vec3(0);
   scene::Image sky;
@@ -41,7 +41,7 @@ TEST_CASE("half of the sky shines: irradiance and its change with the normal are
   constexpr uint32_t k_direct = 1;
   bed.set_frame(k_direct);
 
-  // Above the disk, which lies at 2 m: from there nothing but sky is above these planes.
+  // Above the disk at 2 m: only the environment is visible above these planes.
   constexpr size_t k_repeats = 64;
   const std::vector<vec3> normals{
       {0, 1, 0}, normalize(vec3(0.2f, 1, 0.1f)), normalize(vec3(-0.15f, 1, -0.2f))};
@@ -49,8 +49,7 @@ TEST_CASE("half of the sky shines: irradiance and its change with the normal are
   for (const vec3& n : normals)
     for (size_t i = 0; i < k_repeats; ++i) places.push_back({vec3(0, 500, 0), n});
   const auto records = bed.evaluate(places, {.elevations = 16, .azimuths = 64, .parts = k_direct});
-  // E(n) = pi L (1 + n.x) / 2 for radiance L where x > 0; (n_i x n) . g is its change, so that g = n x (pi
-  // L/2) x.
+  // E(n) = pi L (1 + n.x) / 2 for radiance L where x > 0; (n_i x n) . g is its change, so g = n x (pi L/2) x.
   const double half = 3.14159265358979 * 2 / 2;
   for (size_t k = 0; k < normals.size(); ++k) {
     const vec3 n = normals[k];
@@ -66,7 +65,7 @@ TEST_CASE("half of the sky shines: irradiance and its change with the normal are
     one("its blue", 0, [](const Record& r) { return double(r.parts[0].value.z); });
     for (int axis = 0; axis < 3; ++axis)
       one("rotation", double(g[axis]), [&](const Record& r) { return double(r.parts[0].rotation[0][axis]); });
-    // The sky is as far away from everywhere.
+    // The environment is at infinity.
     for (size_t i = k * k_repeats; i < (k + 1) * k_repeats; ++i) {
       CHECK(records[i].parts[0].translation[0] == vec3(0));
       CHECK(std::isinf(records[i].mean_distance));

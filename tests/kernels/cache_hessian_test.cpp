@@ -1,6 +1,6 @@
 // links: irradiance_cache scene_io bvh_embree
 // The Hessian metric of the irradiance cache through its kernels: derivatives of form factors and of whole
-// hemispheres against finite differences of closed forms, and the ellipses that are made of them.
+// hemispheres compared with finite differences of closed forms, and the resulting ellipses.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -27,7 +27,7 @@ dvec cross(const dvec& a, const dvec& b) {
 }
 double dot(const dvec& a, const dvec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
 
-/// Lambert's formula for one edge, seen from (x, y, 0) whose normal is z.
+/// Lambert's formula for one edge, from (x, y, 0) with normal z.
 double edge_value(const dvec& p, const dvec& q, double x, double y) {
   const dvec a{p[0] - x, p[1] - y, p[2]}, b{q[0] - x, q[1] - y, q[2]}, c = cross(a, b);
   const double sine = std::sqrt(dot(c, c));
@@ -47,8 +47,8 @@ std::array<double, 6> differences(const Function& f, double x, double y, double 
           (n + s - 2 * o) / (h * h)};
 }
 
-/// disk_irradiance() where x < 0 is hidden 1 m above the floor: a half plane in front of the disk. Midpoint
-/// rule over the strips of the disk that are seen, each in closed form.
+/// disk_irradiance() with x < 0 hidden 1 m above the floor by a half plane in front of the disk. Midpoint
+/// rule over the visible strips of the disk, each in closed form.
 double half_hidden_irradiance(double x, double y) {
   constexpr int k_strips = 4000;
   const double lo = std::max(-1.0, -x);  // through the half plane's edge, twice as far
@@ -65,15 +65,15 @@ double half_hidden_irradiance(double x, double y) {
   return 10 * sum;
 }
 
-/// Of the disk's light, over its red.
+/// Luminance of the disk's light over its red.
 constexpr double k_luminance = 0.2126 + 0.5 * 0.7152 + 0.25 * 0.0722;
 
-/// What hessian.comp leaves of a place that faces up, in world axes x and z, and near.comp after it.
+/// The result of hessian.comp for a place that faces up, in world axes x and z, followed by near.comp.
 struct Bent {
   double xx, xz, zz;
   float bound;
 };
-/// All records' pilots.
+/// The pilots of all records.
 void pilot(test::CacheBed& bed, Records& records, const irradiance_cache::EvaluateOptions& options) {
   std::vector<uint32_t> all(records.size());
   std::iota(all.begin(), all.end(), 0u);
@@ -106,7 +106,7 @@ Bent mean_hessian(test::CacheBed& bed, const vec3& at, uint32_t elevations, size
   return mean;
 }
 
-/// Double-sided and black, but for what it emits.
+/// Double-sided and black except for its emission.
 void add_quad(scene::Scene& s, const vec3& a, const vec3& b, const vec3& c, const vec3& emission) {
   s.materials.push_back(test::diffuse(vec3(0), emission));
   s.materials.back().double_sided = true;
@@ -117,7 +117,7 @@ struct Shape {
   float lesser, greater;
   vec3 along;
 };
-/// ellipse.comp on records that have these Hessians, bounds and irradiances (luminance).
+/// ellipse.comp on records with these Hessians, bounds and irradiances (luminance).
 struct Bending {
   vec3 hessian;
   float bound, irradiance;
@@ -155,7 +155,7 @@ constexpr shared::EllipsePush k_free{0, 0, 0.3f, 100, 0, 1, 1, 0};
 
 }  // namespace
 
-TEST_CASE("derivatives of an edge's form factor are those of Lambert's formula") {
+TEST_CASE("derivatives of an edge's form factor match Lambert's formula") {
   test::CacheBed bed(test::CacheBed::load("furnace-disk"), 1024);
   struct Edge {
     vec3 a;
@@ -167,7 +167,7 @@ TEST_CASE("derivatives of an edge's form factor are those of Lambert's formula")
   const auto unit = [&] { return float(random() >> 8) / 16777216.0f; };
   std::vector<Edge> edges;
   for (int i = 0; i < 2000; ++i) {
-    // At angles as between the rays of neighbouring cells, at distances that differ up to a hundredfold.
+    // At angles as between the rays of neighbouring cells, at distances with a ratio of up to a hundred.
     const vec3 a = normalize(vec3(unit() - 0.5f, unit() - 0.5f, 0.02f + unit()));
     const vec3 b = normalize(a + 0.25f * vec3(unit() - 0.5f, unit() - 0.5f, unit() - 0.5f));
     if (b.z <= 0) continue;
@@ -175,11 +175,11 @@ TEST_CASE("derivatives of an edge's form factor are those of Lambert's formula")
   }
   const gpu::Kernel kernel(bed.device, bed.compiler,
                            std::string(LUCERNA_SOURCE_DIR) + "/tests/kernels/shaders/form_factor_probe.comp");
-  gpu::Buffer asked(bed.device, {.name = "edges", .bytes = edges.size() * sizeof(Edge)});
-  asked.write(std::span<const Edge>(edges));
+  gpu::Buffer edge_buffer(bed.device, {.name = "edges", .bytes = edges.size() * sizeof(Edge)});
+  edge_buffer.write(std::span<const Edge>(edges));
   const gpu::Buffer terms(bed.device, {.name = "terms", .bytes = edges.size() * 6 * sizeof(float)});
   gpu::Resources resources;
-  resources.set("Edges", asked);
+  resources.set("Edges", edge_buffer);
   resources.set("Terms", terms);
   gpu::Stream stream(bed.device);
   stream.dispatch(kernel, resources, uint32_t(edges.size()), gpu::groups_for(edges.size(), 64));
@@ -204,9 +204,9 @@ TEST_CASE("derivatives of an edge's form factor are those of Lambert's formula")
   }
 }
 
-TEST_CASE("a hemisphere's Hessian is that of the irradiance, the nearer the more rays") {
-  // Of strata this coarse the disk's border is known to a cell's width, and what is behind the nearer surface
-  // counts there: all figures come out too small, by a share that halves with twice the rows.
+TEST_CASE("a hemisphere's Hessian converges to that of the irradiance with the number of rays") {
+  // With coarse strata the disk's border is resolved to a cell's width, and light behind the nearer surface
+  // counts there: all figures are too small by a share that halves with twice the rows.
   scene::Scene open = test::CacheBed::load("furnace-disk"), hidden = open;
   add_quad(hidden, {-100, 1, -100}, {0, 1, -100}, {-100, 1, 100}, vec3(0));
   for (const bool half : {false, true}) {
@@ -239,8 +239,9 @@ TEST_CASE("a hemisphere's Hessian is that of the irradiance, the nearer the more
   }
 }
 
-TEST_CASE("a hemisphere of one radiance bends nothing, whatever the distances") {
-  // Open: nothing is met. In a box of unlike walls that all shine alike: everything is, at all distances.
+TEST_CASE("a hemisphere of constant radiance has no Hessian, whatever the distances") {
+  // Open: no surface is hit. In a box of different walls of equal radiance: surfaces at all distances are
+  // hit.
   scene::Scene open = test::CacheBed::load("furnace-disk");
   for (scene::Material& m : open.materials) m.emission = vec3(0);
   scene::Scene black = open;
@@ -261,7 +262,7 @@ TEST_CASE("a hemisphere of one radiance bends nothing, whatever the distances") 
     const bool met = scene == &box;
     for (const Bent& b : hessians(bed, met ? inside : above, 8)) {
       INFO((met ? "box" : scene == &open ? "sky" : "black") << ": " << b.xx << " " << b.xz << " " << b.zz);
-      // In a box, what rounding leaves of the mean: of second derivatives up to radiance over 0.1^2.
+      // In a box: rounding of the mean, relative to second derivatives of up to radiance over 0.1^2.
       const double most = met ? 1e-3 : 0;
       CHECK(std::abs(b.xx) <= most);
       CHECK(std::abs(b.xz) <= most);
@@ -272,7 +273,7 @@ TEST_CASE("a hemisphere of one radiance bends nothing, whatever the distances") 
   }
 }
 
-TEST_CASE("a record's Hessian depends on nothing but the record, and what it saw last") {
+TEST_CASE("a record's Hessian depends only on the record and its last evaluation") {
   test::CacheBed bed(test::CacheBed::load("cornell"));
   bed.set_frame(0b1110);
   std::vector<Place> places;
@@ -288,7 +289,7 @@ TEST_CASE("a record's Hessian depends on nothing but the record, and what it saw
     CHECK(bed.evaluator.evaluate(bed.wavefront, bed.automaton, apart, std::span(&i, 1), how) == 1);
     const RawRecords before = apart.raw(40);
     CHECK(bed.evaluator.pilot(bed.wavefront, bed.automaton, apart, std::span(&i, 1), how) == 1);
-    // A pilot brings no light.
+    // A pilot adds no light.
     CHECK(std::memcmp(before.lights.data(), apart.raw(40).lights.data(),
                       before.lights.size() * sizeof(vec4)) == 0);
   }
@@ -299,7 +300,7 @@ TEST_CASE("a record's Hessian depends on nothing but the record, and what it saw
     const size_t at = i * shared::k_record_texels + k_pilot;
     CHECK(a.places[at] == b.places[at]);
     bent += a.places[at].x != 0;
-    // Nor is what it saw of the rays that bring it.
+    // Nor does its evaluation change the light.
     float light = 0;
     for (size_t p = 0; p < shared::k_part_count; ++p)
       light += luminance(vec3(a.lights[(i * shared::k_part_count + p) * shared::k_part_texels]));
@@ -310,7 +311,7 @@ TEST_CASE("a record's Hessian depends on nothing but the record, and what it saw
   CHECK(std::memcmp(a.lights.data(), b.lights.data(), a.lights.size() * sizeof(vec4)) == 0);
 }
 
-TEST_CASE("ellipses have the same error whatever the Hessian, and turn with it") {
+TEST_CASE("ellipses have the same error for any Hessian, and rotate with it") {
   test::CacheBed bed(test::CacheBed::load("furnace-disk"), 1024);
   bed.set_frame(k_direct);
   const float none = std::numeric_limits<float>::infinity();
@@ -344,7 +345,7 @@ TEST_CASE("ellipses have the same error whatever the Hessian, and turn with it")
   }
 }
 
-TEST_CASE("ellipses are bounded: in length, in width, by what is near, in the dark") {
+TEST_CASE("ellipses are limited: in length, in width, by near surfaces, in the dark") {
   test::CacheBed bed(test::CacheBed::load("furnace-disk"), 1024);
   bed.set_frame(k_direct);
   const float none = std::numeric_limits<float>::infinity();
@@ -352,28 +353,28 @@ TEST_CASE("ellipses are bounded: in length, in width, by what is near, in the da
   const auto one = [&](const Bending& b, const shared::EllipsePush& push, float least = 0) {
     return ellipses(bed, {b}, push, least)[0];
   };
-  // Nothing bends, black or not: as wide as may be, and round.
+  // No curvature, black or not: maximum radius, and round.
   for (const Bending& b : {Bending{vec3(0), none, 1}, Bending{vec3(0), none, 0}}) {
     CHECK(one(b, how).lesser == 2);
     CHECK(one(b, how).greater == 2);
     CHECK(one(b, how).along == vec3(0));
   }
   CHECK(one({vec3(0), 0.4f, 1}, how).greater == Approx(0.4f));
-  // Bent one way alone: not endless.
+  // Curved in one direction only: limited length.
   const Shape flat = one({vec3(9, 0, 0), none, 1}, how);
   CHECK(flat.greater == Approx(flat.lesser * shared::k_record_ratio));
   CHECK(flat.lesser == Approx(0.3 * std::pow(1 / 9.0, 0.25) * std::pow(shared::k_record_ratio, -0.25)));
-  // By what is near, both axes alike; then by the greatest and the least radius.
+  // Limited by near surfaces, both axes with the same ratio; then by the maximum and the minimum radius.
   const Shape near = one({vec3(9, 0, 0), 0.05f, 1}, how);
   CHECK(near.lesser == Approx(0.05f));
   CHECK(near.greater == Approx(0.05f * shared::k_record_ratio));
   const Shape slight = one({vec3(1e-6f, 0, 0), none, 1}, how);
   CHECK(slight.greater == 2);
   CHECK(slight.lesser == 2);
-  // Not narrower than the least radius; that is at most the greatest.
+  // At least the minimum radius, which is at most the maximum.
   CHECK(one({vec3(9, 0, 0), 0.05f, 1}, how, 0.5f).lesser == 0.5f);
   CHECK(one({vec3(9, 0, 0), none, 1}, how, 1e6f).lesser == 2);
-  // What is dark is held against what is told to be.
+  // Dark places are compared with `darkest`.
   CHECK(one({vec3(9, 0, 0), none, 0}, how).lesser == one({vec3(9, 0, 0), none, 0.1f}, how).lesser);
   CHECK(one({vec3(9, 0, 0), none, 0.2f}, how).lesser > one({vec3(9, 0, 0), none, 0.1f}, how).lesser);
 }

@@ -1,6 +1,6 @@
 // links: session
-// What a person is told of the irradiance cache: which records serve a pixel, how many serve the picture,
-// what is drawn over it, and the log of its building; held against all records read back and weighed here.
+// Inspection of the irradiance cache: which records a pixel reads, how many the picture reads, what is drawn
+// over it, and the log of its build; compared with all records read back and weighted on the host.
 #include <unistd.h>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -21,10 +21,10 @@ using irradiance_cache::Record;
 namespace {
 
 constexpr uint32_t k_size = 192;
-// Of the cache: 1 - cos 20 degrees; of the radius, and of the least radius there is, which is so many pixels.
+// Of the cache: 1 - cos 20 degrees; of the radius, and of the minimum radius, which is in pixels.
 constexpr float k_tolerance = 0.06f, k_off_plane = 0.03f, k_off_plane_least = 0.16f, k_least_pixels = 3;
 
-/// Tabellion and Lamorlette's weight, as shaders/irradiance_cache/lookup.glsl has it.
+/// Tabellion and Lamorlette's weight, as in shaders/irradiance_cache/lookup.glsl.
 float weight(const Record& record, const vec3& x, const vec3& n, const session::Renderer& r) {
   const vec3 away = x - record.place.position, eye(r.camera().to_world[3]);
   const float least = k_least_pixels * 2 * std::tan(0.5f * r.camera().yfov) / float(r.film().height()) *
@@ -38,7 +38,8 @@ float weight(const Record& record, const vec3& x, const vec3& n, const session::
   return std::max(0.0f, 1 - std::max(far, turned));
 }
 
-/// Of all records; none where the nearest in whose disc the point lies holds no light, so that paths gather.
+/// Weights of all records; all zero where the nearest record whose disc contains the point has no light, so
+/// that paths gather.
 std::vector<float> weights(const std::vector<Record>& all, const vec3& x, const vec3& n,
                            const session::Renderer& r) {
   std::vector<float> found;
@@ -80,7 +81,7 @@ session::Renderer& bed() {
   return *renderer;
 }
 
-Inspection ask(session::Renderer& r, uint32_t x, uint32_t y) {
+Inspection inspect_pixel(session::Renderer& r, uint32_t x, uint32_t y) {
   r.inspect(vec2((float(x) + 0.5f) / k_size, (float(y) + 0.5f) / k_size));
   r.picture(false);
   return test::cache_report(r)->inspection;
@@ -98,7 +99,7 @@ vec2 place_of(uint32_t pixel) { return {float(pixel % k_size) + 0.5f, float(pixe
 
 }  // namespace
 
-TEST_CASE("nothing is told of a cache that nobody uses, and nothing is seen before the first sample") {
+TEST_CASE("an unused cache has no report, and an inspection before the first sample finds no surface") {
   session::Renderer r(test::renderer_options(false, {}, true));
   CHECK(test::cache_report(r) == nullptr);
   r.set_size(32, 32);
@@ -117,7 +118,7 @@ TEST_CASE("nothing is told of a cache that nobody uses, and nothing is seen befo
   CHECK_FALSE(report->overlap.has_value());
   CHECK(report->status.passes.empty());
 
-  // While it is being built the coarse film shows where surfaces are.
+  // During the build the coarse film provides the surfaces.
   REQUIRE(r.draw_draft());
   while (test::cache(r)->status().records == 0) REQUIRE(r.step());
   REQUIRE_FALSE(test::cache(r)->ready());
@@ -141,8 +142,7 @@ TEST_CASE("nothing is told of a cache that nobody uses, and nothing is seen befo
   CHECK_FALSE(test::cache_report(r)->overlap.has_value());
 }
 
-TEST_CASE(
-    "the records that serve a pixel are those that all records weighed by hand say, with their weights") {
+TEST_CASE("the inspected records of a pixel are those with a weight computed on the host") {
   session::Renderer& r = bed();
   const std::vector<Record> all = test::cache(r)->records().read();
   REQUIRE(all.size() > 100);
@@ -150,11 +150,11 @@ TEST_CASE(
   size_t solid = 0, listed = 0, unders = 0;
   for (uint32_t y = 3; y < k_size; y += 18)
     for (uint32_t x = 4; x < k_size; x += 22) {
-      const Inspection found = ask(r, x, y);
+      const Inspection found = inspect_pixel(r, x, y);
       INFO("pixel " << x << " " << y);
       REQUIRE(found.x == x);
       REQUIRE(found.y == y);
-      // The plain scene says what is there; pixels on edges are means.
+      // Picking in the scene gives the true surface; pixels on edges are means.
       const auto hit =
           session::pick(*r.scene(), camera, (float(x) + 0.5f) / k_size, (float(y) + 0.5f) / k_size, 1);
       if (!found.solid) continue;
@@ -164,14 +164,14 @@ TEST_CASE(
       double sum = 0;
       const std::vector<float> expected = weights(all, found.surface.position, found.surface.normal, r);
       for (const float w : expected) sum += double(w);
-      // At the very border of all that serve rounding decides.
+      // At the very border of all records rounding decides.
       if (found.count > 0 && sum < 1e-4) continue;
       size_t serve = 0;
       for (const auto& s : found.serving) {
         REQUIRE(s.record < all.size());
         CHECK(s.weight == Approx(expected[s.record] / sum).margin(1e-4));
         if (expected[s.record] > 0) ++serve;
-        // Its centre in the picture is the one from which the camera looks back at it.
+        // Its centre in the picture, picked, gives the same ray.
         const auto there = session::pick(*r.scene(), camera, s.at.x / k_size, s.at.y / k_size, 1);
         const vec3 centre = all[s.record].place.position;
         if (there && s.at.x > 0 && s.at.x < k_size && s.at.y > 0 && s.at.y < k_size) {
@@ -181,7 +181,7 @@ TEST_CASE(
         }
         ++listed;
       }
-      // Nobody is left out, but at the border of validity, where rounding decides.
+      // No record is missing, except at the border of validity, where rounding decides.
       for (size_t i = 0; i < all.size(); ++i)
         if (expected[i] > 1e-5f)
           CHECK(std::any_of(found.serving.begin(), found.serving.end(),
@@ -210,7 +210,7 @@ TEST_CASE(
   CHECK(r.device().validation_messages() == 0);
 }
 
-TEST_CASE("the overlap told of the picture is that of its pixels, counted by hand") {
+TEST_CASE("the reported overlap of the picture equals that of its pixels, counted on the host") {
   session::Renderer& r = bed();
   r.picture(false);
   const auto report = test::cache_report(r);
@@ -224,14 +224,14 @@ TEST_CASE("the overlap told of the picture is that of its pixels, counted by han
   for (uint32_t p = 0; p < k_size * k_size; ++p) {
     const vec2 at = place_of(p) / float(k_size);
     const auto hit = session::pick(*r.scene(), r.camera(), at.x, at.y, 1);
-    // Normals are means; where edges are seen they are nobody's.
+    // Normals are means; at edges they belong to no surface.
     if (!hit || image.normal[p] == vec3(0)) continue;
     uint32_t count = 0;
     for (const float w : weights(all, hit->position, image.normal[p], r)) count += w > 0;
     ++pixels, served += count > 0, sum += count, most = std::max(most, count);
     ++histogram[std::min<size_t>(count, histogram.size() - 1)];
   }
-  INFO(reported.pixels << " pixels, " << reported.served << " served by " << reported.mean << ", "
+  INFO(reported.pixels << " pixels, " << reported.served << " covered by " << reported.mean << ", "
                        << reported.most << " at most; by hand " << pixels << ", " << served << ", "
                        << double(sum) / double(served) << ", " << most);
   CHECK(served > 1000);
@@ -244,7 +244,7 @@ TEST_CASE("the overlap told of the picture is that of its pixels, counted by han
     CHECK(std::abs(int(reported.histogram[i]) - int(histogram[i])) < int(pixels / 100));
 }
 
-TEST_CASE("on a normal map what is told is what paths are answered: on the smooth surface, or in vain") {
+TEST_CASE("on a normal map inspection reports lookups on the smooth surface, and those without records") {
   for (const float degrees : {12.0f, 45.0f}) {
     INFO(degrees << " degrees");
     session::Renderer r(test::renderer_options(true));
@@ -255,14 +255,14 @@ TEST_CASE("on a normal map what is told is what paths are answered: on the smoot
     test::finish(r);
     const irradiance_cache::Overlap reported = *test::cache_report(r)->overlap;
     CHECK(reported.pixels == 64 * 64);
-    // Three quarters of the texels are tilted; 45 degrees are more than records can bridge, 12 are not.
+    // Three quarters of the texels are tilted; records bridge 12 degrees, not 45.
     const double unserved = double(reported.histogram[0] - reported.gathered) / double(reported.pixels);
-    INFO(unserved << " not served");
+    INFO(unserved << " without records");
     if (degrees < 20)
       CHECK(unserved < 0.01);
     else
       CHECK(unserved == Approx(0.75).margin(0.03));
-    size_t in_vain = 0, asked = 0;
+    size_t in_vain = 0, inspected = 0;
     for (const float x : {0.13f, 0.31f, 0.44f, 0.58f, 0.71f, 0.9f})
       for (const float y : {0.11f, 0.27f, 0.4f, 0.63f, 0.77f, 0.92f}) {
         r.inspect(vec2(x, y));
@@ -273,13 +273,13 @@ TEST_CASE("on a normal map what is told is what paths are answered: on the smoot
         CHECK(found.surface.normal == vec3(0, 0, 1));
         CHECK(found.surface.position.z == Approx(-0.98).margin(1e-5));
         CHECK((found.count > 0) == (found.lookup == shared::k_lookup_possible));
-        in_vain += found.lookup == shared::k_lookup_too_steep, ++asked;
+        in_vain += found.lookup == shared::k_lookup_too_steep, ++inspected;
       }
     if (degrees < 20)
       CHECK(in_vain == 0);
     else
-      CHECK(in_vain > asked / 2);
-    // As a metal it asks for nothing, and counts for nothing.
+      CHECK(in_vain > inspected / 2);
+    // A metal has no lookups, and does not count.
     scene::Material metal = room.materials[2];
     metal.metallic = 1;
     r.set_material(2, metal);
@@ -293,7 +293,9 @@ TEST_CASE("on a normal map what is told is what paths are answered: on the smoot
   }
 }
 
-TEST_CASE("it is told who serves what the camera sees where only later vertices ask, and of a loaded cache") {
+TEST_CASE(
+    "records of directly visible points are reported even if only later vertices read them, also after "
+    "loading") {
   session::Renderer r(test::renderer_options(true));
   r.set_size(48, 48);
   r.set_scene(std::make_shared<scene::Scene>(test::PanelRoom().s));
@@ -302,8 +304,9 @@ TEST_CASE("it is told who serves what the camera sees where only later vertices 
   const irradiance_cache::Overlap reported = *test::cache_report(r)->overlap;
   CHECK(reported.pixels == 48 * 48);
   CHECK(reported.served > reported.pixels / 2);
-  // Without a pass of building it looks at the picture because it is asked.
-  const auto file = std::filesystem::temp_directory_path() / fmt::format("lucerna-told-{}.cache", getpid());
+  // A loaded cache measures the picture on request, without a build pass.
+  const auto file =
+      std::filesystem::temp_directory_path() / fmt::format("lucerna-overlap-{}.cache", getpid());
   r.solver_save("cache", file);
   r.restart();
   r.solver_load("cache", file);
@@ -315,22 +318,22 @@ TEST_CASE("it is told who serves what the camera sees where only later vertices 
   CHECK(r.stats().rays == rays);
 }
 
-TEST_CASE("lines go from the pixel to the records that serve it, and nowhere else") {
+TEST_CASE("lines lead from the pixel to the records that it reads, and nowhere else") {
   session::Renderer& r = bed();
   const std::vector<uint8_t> plain = r.picture(false);
-  // How far a place is from the line to a record, in pixels.
+  // Distance of a point from the line to a record, in pixels.
   const auto from_line = [](const vec2& p, const vec2& a, const vec2& b) {
     const vec2 along = b - a;
     const float t = std::clamp(dot(p - a, along) / std::max(dot(along, along), 1e-9f), 0.0f, 1.0f);
     return length(p - a - t * along);
   };
-  // A pixel that a record serves whose centre is some way off, with nothing else drawn about the middle of
-  // the line to it: not the ring, nor other lines.
+  // A pixel with a record whose centre is some distance away, with nothing else drawn near the middle of the
+  // line: neither the ring nor other lines.
   Inspection found;
   vec2 here(0), centre(0);
   for (uint32_t y = k_size - 5; y > k_size / 3 && centre == vec2(0); y -= 5)
     for (uint32_t x = 10; x < k_size - 10 && centre == vec2(0); x += 5) {
-      found = ask(r, x, y);
+      found = inspect_pixel(r, x, y);
       here = vec2(float(x), float(y)) + 0.5f;
       if (!found.solid || !found.under) continue;
       for (const auto& s : found.serving) {
@@ -347,7 +350,7 @@ TEST_CASE("lines go from the pixel to the records that serve it, and nowhere els
   REQUIRE(centre != vec2(0));
   const std::vector<uint8_t> lined = r.picture(false);
   CHECK(r.picture(false) == lined);
-  // Looking is not kept in a file, nor ended by it.
+  // Inspection is not saved in a file, and saving does not end it.
   const auto png = std::filesystem::temp_directory_path() / fmt::format("lucerna-inspect-{}.png", getpid());
   r.save(png);
   const film::FilmImage kept = film::read_exr(png);
@@ -369,7 +372,7 @@ TEST_CASE("lines go from the pixel to the records that serve it, and nowhere els
     INFO("pixel " << p % k_size << " " << p / k_size);
     CHECK((off(place_of(p)) < 6 || length(place_of(p) - found.under->at) < ring + 4));
   }
-  // Along the line something has changed everywhere.
+  // The picture has changed everywhere along the line.
   for (const float t : {0.0f, 0.25f, 0.5f, 0.6f, 0.75f, 1.0f}) {
     const vec2 at = glm::floor(here + t * (centre - here));
     const uint32_t p = uint32_t(at.y) * k_size + uint32_t(at.x);
@@ -381,9 +384,9 @@ TEST_CASE("lines go from the pixel to the records that serve it, and nowhere els
   CHECK_FALSE(test::cache_report(r)->looked_at.has_value());
 }
 
-TEST_CASE("normals are short lines at the centres of records that are seen") {
+TEST_CASE("normals are drawn as short lines at the centres of visible records") {
   session::Renderer& r = bed();
-  // From elsewhere, so that the blocks stand before records that were asked for from where the camera was.
+  // From another position, so the blocks hide some of the records placed for the first camera.
   const scene::Camera kept = r.camera();
   scene::Camera moved = kept;
   moved.to_world[3] += vec4(-2, 1.2f, 0, 0);
@@ -398,7 +401,7 @@ TEST_CASE("normals are short lines at the centres of records that are seen") {
   CHECK(test::cache(r)->ready());
   const std::vector<uint32_t> list = changed(plain, ticked);
   CHECK(list.size() > 100);
-  // Centres of records that nothing hides, and where their normals point to.
+  // Centres of unhidden records, and the tips of their normals.
   const mat4 to_camera = glm::inverse(r.camera().to_world);
   const float half = std::tan(0.5f * r.camera().yfov);
   const auto project = [&](const vec3& x) {
@@ -406,7 +409,7 @@ TEST_CASE("normals are short lines at the centres of records that are seen") {
     return vec3((0.5f + 0.5f * vec2(c.x, -c.y) / (-c.z * half)) * float(k_size), -c.z);
   };
   const film::Image image = r.image();
-  // From foot to tip; beyond the picture's border nobody knows whether they are hidden.
+  // From foot to tip; outside the picture their visibility is unknown.
   std::vector<std::pair<vec2, vec2>> seen, beyond;
   std::vector<vec2> hidden;  // feet
   for (const Record& record : test::cache(r)->records().read()) {
@@ -446,12 +449,12 @@ TEST_CASE("normals are short lines at the centres of records that are seen") {
     INFO("pixel " << p % k_size << " " << p / k_size);
     CHECK(std::find(list.begin(), list.end(), p) == list.end());
   }
-  INFO(hidden.size() << " records hidden, " << lone << " where no other's normal is");
+  INFO(hidden.size() << " records hidden, " << lone << " away from other normals");
   CHECK(lone > 1);
   r.set_camera(kept);
 }
 
-TEST_CASE("the log of building adds up to what the cache holds") {
+TEST_CASE("the log of a build sums to the contents of the cache") {
   session::Renderer& r = bed();
   r.restart();
   while (r.step()) {
@@ -477,7 +480,7 @@ TEST_CASE("the log of building adds up to what the cache holds") {
     INFO(irradiance_cache::k_build_steps[k]);
     CHECK(ms[k] > 0);
   }
-  // Steps are parts of what all stages took.
+  // Steps are parts of the time of all stages.
   double stages = 0;
   for (const auto& stage : r.stats().stages) stages += stage.ms;
   CHECK(std::accumulate(ms.begin(), ms.end(), 0.0) - ms[size_t(irradiance_cache::BuildStep::choose)] <=
@@ -486,7 +489,7 @@ TEST_CASE("the log of building adds up to what the cache holds") {
     CHECK(double(s.passes.back().uncovered) <=
           r.settings().real("cache.stop") * double(s.passes.back().paths));
 
-  // Seen from elsewhere passes are added; begun anew they are forgotten.
+  // Another view adds passes; a restart clears them.
   const size_t before = s.passes.size();
   scene::Camera moved = r.camera();
   const scene::Camera kept = moved;
@@ -528,7 +531,7 @@ TEST_CASE("detail of the geometry is dark on walls and bright at edges, and wide
   CHECK(r.picture(false) == plain);
 }
 
-TEST_CASE("what is chosen of a pass's candidates can be read until the next pass") {
+TEST_CASE("the candidates chosen in a pass can be read until the next pass") {
   session::Renderer& r = bed();
   r.restart();
   while (test::cache(r)->placement().tried.empty()) REQUIRE(r.step());
@@ -538,7 +541,7 @@ TEST_CASE("what is chosen of a pass's candidates can be read until the next pass
   CHECK(all.cluster.size() == pass.candidates);
   CHECK(all.tried.size() == pass.tried);
   CHECK(std::is_sorted(all.cluster.begin(), all.cluster.end()));
-  // The picture asks by dithering: a small share of its pixels, all of them on what it shows.
+  // The picture proposes candidates by dithering: a small share of its pixels, all on visible surfaces.
   size_t screen = 0;
   for (const irradiance_cache::Place& p : all.candidates) screen += p.origin == shared::k_origin_screen;
   CHECK(screen == pass.screen);

@@ -1,6 +1,6 @@
 // links: session
-// The choice of places for records, watched: building waits after each stage and comes to the same cache, and
-// what it has done is drawn where it is, hidden behind what is in front.
+// The placement of records, observed: building waits after each stage and gives the same cache, and its state
+// is drawn at the right positions, hidden by nearer surfaces.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <ctime>
@@ -23,7 +23,7 @@ namespace {
 
 constexpr uint32_t k_size = 128;
 
-/// A Cornell box with secondary and tertiary light cached, about to be built.
+/// A Cornell box with secondary and tertiary light cached, before its build.
 session::Renderer& bed() {
   static const std::unique_ptr<session::Renderer> renderer = [] {
     auto r = std::make_unique<session::Renderer>(session::RendererOptions{.device = test::device_name(),
@@ -51,7 +51,7 @@ void set(session::Renderer& r, const char* key, const char* value) {
   r.apply_settings();
 }
 
-/// Works until there is nothing to do; how many pieces that took.
+/// Works until there is nothing to do; returns the number of work items.
 int work(session::Renderer& r) {
   int pieces = 0;
   while (r.step()) ++pieces;
@@ -60,7 +60,7 @@ int work(session::Renderer& r) {
 
 const irradiance_cache::CacheStatus& status(session::Renderer& r) { return test::cache(r)->status(); }
 
-/// Builds anew, with a pause after every stage, up to a stage.
+/// Restarts the build, with a pause after every stage, up to a stage.
 void build_to(session::Renderer& r, BuildStage stage) {
   set(r, "cache.pause", "stage");
   r.restart();
@@ -71,27 +71,27 @@ void build_to(session::Renderer& r, BuildStage stage) {
   }
 }
 
-/// Where a point lies in the picture, and its depth.
+/// The position of a point in the picture, and its depth.
 vec3 project(const session::Renderer& r, const vec3& x) {
   const vec3 c(glm::inverse(r.camera().to_world) * vec4(x, 1));
   const float half = std::tan(0.5f * r.camera().yfov);
   return vec3((0.5f + 0.5f * vec2(c.x, -c.y) / (-c.z * half)) * float(k_size), -c.z);
 }
 
-/// Of a pixel, at a depth [m].
+/// Size of a pixel at a depth [m].
 float pixel_size(const session::Renderer& r, float depth) {
   return 2 * std::tan(0.5f * r.camera().yfov) * depth / k_size;
 }
 
-/// How many pixels of room a point of the picture has to the surface behind it: negative where something is
-/// in front of it.
+/// Distance in pixels between a point of the picture and the surface behind it: negative if a surface is in
+/// front of it.
 float room(const session::Renderer& r, const vec3& at) {
   const auto hit = session::pick(*r.scene(), r.camera(), at.x / k_size, at.y / k_size, 1);
   if (!hit) return 1e9f;
   return (project(r, hit->position).z - at.z) / pixel_size(r, at.z);
 }
 
-/// Pixels with a colour: what is under the marks before there are samples is grey.
+/// Pixels with a colour: before the first sample the picture below the marks is grey.
 std::vector<bool> coloured(const std::vector<uint8_t>& drawn) {
   std::vector<bool> list(size_t{k_size} * k_size);
   for (size_t p = 0; p < list.size(); ++p) {
@@ -101,7 +101,7 @@ std::vector<bool> coloured(const std::vector<uint8_t>& drawn) {
   return list;
 }
 
-/// Pixels where a mark lies: all others are the plain picture dimmed, as overlay/lay.comp does.
+/// Pixels with a mark: all others are the plain picture, dimmed as by overlay/lay.comp.
 std::vector<bool> marked(const std::vector<uint8_t>& plain, const std::vector<uint8_t>& drawn) {
   std::vector<bool> list(size_t{k_size} * k_size);
   for (size_t p = 0; p < list.size(); ++p) {
@@ -127,7 +127,7 @@ bool near(const std::vector<bool>& list, const vec3& at, int reach) {
 
 }  // namespace
 
-TEST_CASE("building waits after each stage and comes to the same cache, bit for bit") {
+TEST_CASE("building waits after each stage and gives the same cache, bit for bit") {
   session::Renderer& r = bed();
   set(r, "cache.pause", "off");
   r.restart();
@@ -140,7 +140,7 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
   REQUIRE(count > 100);
 
   set(r, "cache.pause", "stage");
-  CHECK(r.done());  // to set it begins nothing anew
+  CHECK(r.done());  // changing it restarts nothing
   r.restart();
   CHECK_FALSE(status(r).last.has_value());
   std::vector<std::pair<BuildStage, uint32_t>> stages;  // and passes
@@ -164,8 +164,8 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
     r.solver_command("cache", "step");
   }
   REQUIRE(test::cache(r)->ready());
-  // Every stage of both passes in its order, evaluation once more for each level; the last end of all is no
-  // pause, for then the cache is complete.
+  // Every stage of both passes in order, with one evaluation per level; the last end is no pause, because the
+  // cache is complete.
   REQUIRE(stages.size() >= 11);
   for (size_t i = 0; i < stages.size(); ++i) {
     INFO(i);
@@ -192,7 +192,7 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
   CHECK(test::identical(test::cache(r)->records().raw(count), all));
   CHECK(r.picture(false) == picture);
 
-  // After a pass alone; then on to the end.
+  // After a pass only; then on to the end.
   set(r, "cache.pause", "pass");
   r.restart();
   work(r);
@@ -204,7 +204,7 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
   CHECK(r.done());
   CHECK(test::identical(test::cache(r)->records().raw(count), all));
 
-  // A step where nothing is set; and the setting ends a pause.
+  // A step without a pause setting; and a change of the setting ends a pause.
   set(r, "cache.pause", "off");
   r.solver_command("cache", "step");  // complete: nothing to wait for
   r.restart();
@@ -212,7 +212,7 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
   work(r);
   REQUIRE(r.waits());
   CHECK(status(r).last->stage == BuildStage::probe);
-  set(r, "overlay.placement", "stage");  // what is shown does not matter
+  set(r, "overlay.placement", "stage");  // the overlay does not matter
   CHECK(r.waits());
   set(r, "overlay.placement", "off");
   set(r, "cache.pause", "stage");
@@ -223,7 +223,7 @@ TEST_CASE("building waits after each stage and comes to the same cache, bit for 
   CHECK(test::identical(test::cache(r)->records().raw(count), all));
 }
 
-TEST_CASE("who renders without a person waits for none") {
+TEST_CASE("batch rendering never pauses") {
   session::Renderer r(test::renderer_options(false));
   r.set_size(32, 32);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
@@ -238,7 +238,7 @@ TEST_CASE("who renders without a person waits for none") {
   CHECK(r.done());
 }
 
-TEST_CASE("candidates are drawn where they are, those that the camera sees") {
+TEST_CASE("candidates on visible surfaces are drawn at their positions") {
   session::Renderer& r = bed();
   build_to(r, BuildStage::probe);
   set(r, "overlay.placement", "off");
@@ -258,13 +258,13 @@ TEST_CASE("candidates are drawn where they are, those that the camera sees") {
   }
   INFO(seen << " seen, " << unmarked << " of them not drawn");
   CHECK(seen > 1000);
-  // Where the coarse film shows another surface than the place's, at edges, it may be hidden.
+  // At edges, where the coarse film shows another surface than the candidate's, it may be hidden.
   CHECK(unmarked < seen / 50);
   set(r, "overlay.placement", "off");
   CHECK(r.picture(true) == plain);
 }
 
-TEST_CASE("while building waits what one looks at stays, also seen from elsewhere") {
+TEST_CASE("the inspected point stays while building waits, also after a camera move") {
   session::Renderer& r = bed();
   build_to(r, BuildStage::thin);
   set(r, "overlay.placement", "chosen");
@@ -284,7 +284,7 @@ TEST_CASE("while building waits what one looks at stays, also seen from elsewher
   CHECK(r.step() == false);
   CHECK(test::cache(r)->placement().kept.size() == kept);
   CHECK(ink() > before / 4);
-  // Going on finishes that pass, and adds what is missing from here.
+  // Continuing finishes that pass, and adds the records missing from here.
   r.solver_command("cache", "run");
   work(r);
   CHECK(r.done());
@@ -294,12 +294,12 @@ TEST_CASE("while building waits what one looks at stays, also seen from elsewher
   r.set_camera(camera);
 }
 
-TEST_CASE("what is chosen is drawn with its radius, and hidden by what is in front") {
+TEST_CASE("chosen candidates are drawn with their radius, and hidden by nearer surfaces") {
   session::Renderer& r = bed();
   set(r, "cache.pause", "off");
-  set(r, "cache.passes", "1");       // of which all is known in the end
+  set(r, "cache.passes", "1");       // whose data is complete at the end
   set(r, "cache.min_radius", "16");  // few places, far apart
-  // With rings; and with radii so small that none is drawn, so that places behind something lie alone.
+  // With rings; and with radii so small that none is drawn, so hidden places are isolated.
   const bool wide = GENERATE(true, false);
   set(r, "cache.max_radius", wide ? "0.25" : "0.01");
   work(r);
@@ -313,13 +313,13 @@ TEST_CASE("what is chosen is drawn with its radius, and hidden by what is in fro
 
   const irradiance_cache::PlacementShown p = test::cache(r)->placement();
   REQUIRE(p.kept.size() > 50);
-  std::vector<vec3> shown, hidden, edges;  // ... and what may be either
+  std::vector<vec3> shown, hidden, edges;  // edges: visible or hidden
   for (const irradiance_cache::Place& place : p.tried) {
     const vec3 at = project(r, place.position);
     if (!inside(at)) continue;
     const float free = room(r, at);
     if (free > -1) shown.push_back(at);
-    // Dots are some pixels wide: hidden is what is so all around.
+    // Dots are several pixels wide: hidden means hidden all around.
     else if (free < -20 && room(r, at + vec3(3, 0, 0)) < -20 && room(r, at - vec3(3, 0, 0)) < -20 &&
              room(r, at + vec3(0, 3, 0)) < -20 && room(r, at - vec3(0, 3, 0)) < -20)
       hidden.push_back(at);
@@ -331,7 +331,7 @@ TEST_CASE("what is chosen is drawn with its radius, and hidden by what is in fro
   INFO(shown.size() << " to be seen, " << unmarked << " of them not drawn, " << hidden.size() << " hidden");
   CHECK(shown.size() > 100);
   CHECK(unmarked <= shown.size() / 25);
-  // On all rings of what is chosen there is ink, where they lie on what is seen; small ones fade.
+  // All rings of chosen candidates are drawn where they lie on visible surfaces; small ones fade.
   size_t points = 0, bare = 0;
   std::vector<vec3> rings;
   for (const uint32_t i : p.kept) {
@@ -354,7 +354,7 @@ TEST_CASE("what is chosen is drawn with its radius, and hidden by what is in fro
   INFO(points << " points of rings, " << bare << " bare");
   CHECK((points > 60) == wide);
   CHECK(bare <= points / 10);
-  // And none where there is neither a dot nor a ring: behind the blocks, and everywhere else.
+  // Nothing is drawn away from dots and rings: neither behind the blocks nor elsewhere.
   size_t strays = 0, inked = 0;
   for (uint32_t y = 0; y < k_size; ++y)
     for (uint32_t x = 0; x < k_size; ++x) {
@@ -386,7 +386,7 @@ TEST_CASE("what is chosen is drawn with its radius, and hidden by what is in fro
   set(r, "cache.max_radius", "0.1");
 }
 
-TEST_CASE("a session whose cache waits is at rest, answers, and goes on when it is told to") {
+TEST_CASE("a session with a paused cache is idle, responds, and continues on command") {
   session::Session session({.device = test::device_name()});
   session.set_size(48, 48);
   session.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
@@ -403,7 +403,7 @@ TEST_CASE("a session whose cache waits is at rest, answers, and goes on when it 
         return s;
       std::this_thread::sleep_for(std::chrono::milliseconds(20));
     }
-    FAIL("waited for too long");
+    FAIL("waited too long");
     return Snapshot();
   };
   const auto waits = [](const session::Snapshot& s) { return !s.reports.empty() && s.reports[0]->waits; };
@@ -415,7 +415,7 @@ TEST_CASE("a session whose cache waits is at rest, answers, and goes on when it 
   std::this_thread::sleep_for(std::chrono::milliseconds(500));
   CHECK(double(std::clock() - cpu) / CLOCKS_PER_SEC < 0.2);
   CHECK(session.snapshot()->id == before->id);
-  // Overlays and the camera are answered.
+  // Overlays and the camera respond.
   session.set("overlay.placement", "stage");
   CHECK(wait(waits)->rgba != before->rgba);
   scene::Camera camera = before->camera;

@@ -1,6 +1,6 @@
 // links: irradiance_cache scene_io bvh_embree
-// What a record of the irradiance cache holds, through the real kernels: irradiance, both gradients and
-// distances against closed forms, parts against each other, levels and batches.
+// The contents of a record of the irradiance cache, through the real kernels: irradiance, both gradients and
+// distances compared with closed forms, parts with each other, levels and batches.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -37,7 +37,7 @@ std::array<double, 3> disk_vector(double x) {
 
 }  // namespace
 
-TEST_CASE("irradiance and gradients under a disk light are those of the closed form") {
+TEST_CASE("irradiance and gradients under a disk light match the closed form") {
   test::CacheBed bed(test::CacheBed::load("furnace-disk"));
   bed.set_frame(k_direct);
   constexpr size_t k_repeats = 64;
@@ -51,8 +51,8 @@ TEST_CASE("irradiance and gradients under a disk light are those of the closed f
   for (size_t i = 0; i < distances.size(); ++i) {
     const double d = distances[i];
     INFO("at " << d);
-    // Two-sided at 1e-4 for each of about 40 figures: 3.9 standard errors; and what cells of this size
-    // cost, 1.5 % (of 16 x 64 cells it is 4 %).
+    // Two-sided at 1e-4 for each of about 40 figures: 3.9 standard errors; plus the error of cells of this
+    // size, 1.5 % (for 16 x 64 cells 4 %).
     const auto expect = [&](const char* what, double truth, double scale, const auto& value) {
       const Moments m = moments(records, i * k_repeats, k_repeats, value);
       INFO(what << ": " << m.mean << " +- " << m.deviation << ", expected " << truth);
@@ -76,7 +76,7 @@ TEST_CASE("irradiance and gradients under a disk light are those of the closed f
     expect("translation aside", 0, steepest,
            [&](const Record& r) { return dot(r.parts[0].translation[0], aside); });
     expect("translation upwards", 0, steepest, [](const Record& r) { return r.parts[0].translation[0].y; });
-    // The error that a record tells is that of its red, green and blue as luminance.
+    // A record's error is that of the luminance of its red, green and blue.
     const Moments scatter = moments(records, i * k_repeats, k_repeats, [](const Record& r) {
       return 0.2126 * r.parts[0].value.x + 0.7152 * r.parts[0].value.y + 0.0722 * r.parts[0].value.z;
     });
@@ -85,15 +85,15 @@ TEST_CASE("irradiance and gradients under a disk light are those of the closed f
     INFO("error " << reported.mean << ", scatter " << scatter.deviation * std::sqrt(double(k_repeats)));
     CHECK(reported.mean > 0.8 * scatter.deviation * std::sqrt(double(k_repeats)));
   }
-  // Straight under the disk, which subtends sin^2 = 1/5 from 2 m: rays meet it there and nothing else.
+  // Directly below the disk, which subtends sin^2 = 1/5 from 2 m: rays hit the disk and nothing else.
   const Moments inverse = moments(records, 0, k_repeats, [](const Record& r) { return 1 / r.mean_distance; });
-  // Mean over the cosine's distribution of cos/2 within: (1 - (4/5)^1.5) / 3.
+  // Mean over the cosine distribution of cos/2 within: (1 - (4/5)^1.5) / 3.
   CHECK(inverse.mean == Approx((1 - std::pow(0.8, 1.5)) / 3).epsilon(0.01));
   CHECK(records[0].least_distance == Approx(2).epsilon(0.01));
   CHECK(records[0].rays == 4096);
 }
 
-TEST_CASE("a constant environment comes back within rounding, without gradients") {
+TEST_CASE("a constant environment is reproduced within rounding, without gradients") {
   scene::Scene scene = test::CacheBed::load("furnace-disk");
   for (scene::Material& m : scene.materials) m.emission = vec3(0);
   scene.environment.radiance = vec3(1, 0.5f, 2);
@@ -115,10 +115,9 @@ TEST_CASE("a constant environment comes back within rounding, without gradients"
   }
 }
 
-TEST_CASE("the parts of a record are the components of a path that came by one diffuse event") {
-  // In a Cornell box a record's parts, times albedo over pi, are what a picture of that point has in its
-  // components: compared through a plain sum over long evaluations, and levels and batches agree with one
-  // long run.
+TEST_CASE("a record's parts are the components of a path after one diffuse event") {
+  // In a Cornell box a record's parts, times albedo over pi, equal the components of a picture of that point:
+  // compared through a sum over long evaluations. Levels and batches agree with one long run.
   test::CacheBed bed(test::CacheBed::load("cornell"));
   bed.set_frame(k_beyond);
   const std::vector<Place> places(64, Place{vec3(0, 1e-4f, 0.3f), vec3(0, 1, 0)});
@@ -128,10 +127,10 @@ TEST_CASE("the parts of a record are the components of a path that came by one d
   CHECK(secondary.mean > 0);
   CHECK(tertiary.mean > 0);
   for (const Record& r : once) {
-    CHECK(r.parts[0].value == vec3(0));  // not asked for
-    CHECK(r.parts[3].value == vec3(0));  // nothing glossy
+    CHECK(r.parts[0].value == vec3(0));  // not requested
+    CHECK(r.parts[3].value == vec3(0));  // no glossy surface
   }
-  // Two levels weigh by their rays.
+  // Two levels are weighted by their rays.
   irradiance_cache::Records records(bed.device, 64);
   records.append(test::CacheBed::on_facets(places));
   bed.evaluate(records, {.elevations = 8, .azimuths = 32, .parts = k_beyond});
@@ -144,7 +143,7 @@ TEST_CASE("the parts of a record are the components of a path that came by one d
   CHECK(std::abs(m.mean - secondary.mean) <= 3.9 * std::hypot(m.deviation, secondary.deviation));
   CHECK(both[0].error < coarse[0].error);
   CHECK(both[0].least_distance <= coarse[0].least_distance);
-  // Batches are only a way to cut work: one record alone is bit for bit the one among many.
+  // Batches only divide work: a record alone equals, bit for bit, the same record among many.
   irradiance_cache::Records again(bed.device, 64);
   again.append(test::CacheBed::on_facets(places));
   for (const uint32_t i : {63u, 0u, 17u}) {
@@ -154,7 +153,7 @@ TEST_CASE("the parts of a record are the components of a path that came by one d
     const Record a = again.read(i);
     CHECK(std::memcmp(&a, &once[i], sizeof a) == 0);
   }
-  // Cancelled work leaves records as they were.
+  // Cancelled work does not change records.
   const std::vector<uint32_t> some{1, 2, 3};
   CHECK(bed.evaluator.evaluate(bed.wavefront, bed.automaton, again, some, {.parts = k_beyond},
                                [] { return true; }) == 0);
@@ -162,7 +161,7 @@ TEST_CASE("the parts of a record are the components of a path that came by one d
   CHECK(bed.device.validation_messages() == 0);
 }
 
-TEST_CASE("records beyond the room are refused, not written") {
+TEST_CASE("records beyond the capacity are refused, not written") {
   test::CacheBed bed(test::CacheBed::load("furnace-disk"));
   irradiance_cache::Records records(bed.device, 2);
   CHECK(records.append(std::vector<Place>(5)) == 2);

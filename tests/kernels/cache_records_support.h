@@ -1,6 +1,5 @@
 #pragma once
-// Records on the device that tests make of places and radii, in an octree, as kernels look them up that bound
-// radii.
+// Records on the device, made by tests from places and radii, in an octree, for kernels that look them up.
 #include <functional>
 #include <vector>
 
@@ -10,13 +9,13 @@
 
 namespace lucerna::test {
 
-/// Records of circles, or of ellipses that are longest along their tangent.
+/// Records of circles, or of ellipses with the major axis along their tangent.
 struct RecordDisc {
   irradiance_cache::Place place;
-  float radius;       ///< of an ellipse the lesser [m]
-  float nearest = 0;  ///< of what its rays met [m]
+  float radius;       ///< the lesser one of an ellipse [m]
+  float nearest = 0;  ///< distance of the nearest hit of its rays [m]
   float stretch = 1;  ///< greater radius over the lesser
-  vec3 light{0};      ///< irradiance of the secondary part, without slopes
+  vec3 light{0};      ///< irradiance of the secondary part, without gradients
   float error = 0;    ///< standard error of its luminance
 };
 
@@ -26,8 +25,9 @@ struct RecordBed {
   gpu::ShaderCompiler compiler;
   gpu::Stream stream{device};
 
-  /// What `change`, told how lookup.glsl's resources are bound, makes of them. The octree has been told every
-  /// radius (checks). `least`: least radius [m]; `frame`: what the test wants otherwise than 0 besides that.
+  /// Runs `change`, which gets a function that binds lookup.glsl's resources, and returns the changed
+  /// records; checks that the octree has every radius. `least`: minimum radius [m]; `frame`: non-zero values
+  /// besides that.
   std::vector<irradiance_cache::Record> change(
       const std::vector<RecordDisc>& discs, float least, shared::CacheFrame frame,
       const std::function<void(const std::function<void(gpu::Resources&)>& bind)>& change) {

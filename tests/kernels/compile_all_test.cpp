@@ -1,6 +1,6 @@
 // links: gpu upload
-// Every kernel compiles, in the leanest and in the fullest variant that the host can ask for; and no variant
-// tests a macro before it is defined.
+// Every kernel compiles in the smallest and in the largest variant that the host can request; no variant
+// tests a macro before its definition.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
@@ -39,7 +39,7 @@ std::vector<std::string> kernels() {
   return names;
 }
 
-/// Those that lib/variants.glsl gives a 0 where the host leaves them out.
+/// Macros for which lib/variants.glsl defines a 0 if the host omits them.
 std::vector<std::string> variants() {
   static const std::regex line("#ifndef (LUCERNA_\\w+)\n#define \\1 0\n#endif\n");
   const std::string text = text_of(root() / "lib/variants.glsl");
@@ -49,7 +49,7 @@ std::vector<std::string> variants() {
   return names;
 }
 
-/// What the host says with them, whatever the variant: it is read where a variant needs it.
+/// Values that the host defines with them in all variants; they are read only where a variant needs them.
 gpu::Defines values() {
   gpu::Defines defines{{"LUCERNA_CACHE_PARTS", "15u"}};
   for (const char* use : {"BASE", "METALLIC_ROUGHNESS", "NORMAL", "EMISSION", "SPECULAR", "SPECULAR_COLOR",
@@ -67,7 +67,7 @@ std::string full(const std::string& variant) {
 
 }  // namespace
 
-TEST_CASE("every kernel compiles with nothing and with everything in the scene") {
+TEST_CASE("every kernel compiles with no feature and with every feature") {
   gpu::ShaderCompiler compiler(root());
   compiler.set_cache(false);
   CHECK(kernels().size() > 50);
@@ -82,12 +82,12 @@ TEST_CASE("every kernel compiles with nothing and with everything in the scene")
     }
 }
 
-TEST_CASE("no kernel tests a macro before it is defined, whatever it is asked for") {
+TEST_CASE("no kernel tests a macro before its definition, in any variant") {
   const gpu::ShaderCompiler compiler(root());
   const std::vector<std::string> names = variants();
   REQUIRE(names.size() > 40);
-  // Of operands that && and || pass over nothing is known: at random all are looked at, each of two with
-  // every value of the other.
+  // Operands that && and || skip are not evaluated: random variants cover all of them, each of two with every
+  // value of the other.
   std::mt19937 random(1);
   for (const std::string& file : kernels())
     for (int round = 0; round < 16; ++round) {
@@ -99,16 +99,16 @@ TEST_CASE("no kernel tests a macro before it is defined, whatever it is asked fo
     }
 }
 
-TEST_CASE("macros are tested by #if, and so seen by that check") {
-  // #ifdef, #ifndef and defined() ask whether, not when. An #ifndef may begin a file or give a value that is
-  // missing.
-  const std::regex asks("^\\s*#\\s*(ifdef|ifndef)\\s+(\\w+).*$|\\bdefined\\b");
+TEST_CASE("macros are tested by #if only, which the check above covers") {
+  // #ifdef, #ifndef and defined() test existence, not order. #ifndef may start a file or define a missing
+  // value.
+  const std::regex existence("^\\s*#\\s*(ifdef|ifndef)\\s+(\\w+).*$|\\bdefined\\b");
   for (const fs::path& file : files({".comp", ".glsl", ".h"})) {
     std::istringstream text(text_of(file));
     std::string line, next;
     for (int number = 1; std::getline(text, line); ++number) {
       std::smatch m;
-      if (line[0] != '#' || !std::regex_search(line, m, asks) || m[2] == "__cplusplus") continue;
+      if (line[0] != '#' || !std::regex_search(line, m, existence) || m[2] == "__cplusplus") continue;
       INFO(file.string() << ":" << number << ": " << line);
       REQUIRE(m[1] == "ifndef");
       std::getline(text, next), ++number;
@@ -117,7 +117,7 @@ TEST_CASE("macros are tested by #if, and so seen by that check") {
   }
 }
 
-TEST_CASE("what the host says of a scene is something that kernels listen to") {
+TEST_CASE("every macro that the host defines for a scene is used by kernels") {
   gpu::Device device({"", true});
   const std::vector<std::string> list = variants();
   std::set<std::string> known(list.begin(), list.end());

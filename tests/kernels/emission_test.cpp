@@ -1,6 +1,6 @@
 // links: transport
-// Where light paths begin (shaders/lib/emission.glsl), of every kind of light: how much flux they carry,
-// whence and whither, and how often each light is chosen.
+// The start of light paths (shaders/lib/emission.glsl) for every kind of light: their flux, origin and
+// direction, and the probability of each light.
 #include <fmt/format.h>
 #include <bit>
 #include <catch2/catch.hpp>
@@ -79,7 +79,7 @@ struct Emitted {
   }
 };
 
-/// A square floor of 2 m, so that a scene has a size; light falls on it from above.
+/// A square floor of 2 m, which gives the scene a size; light falls on it from above.
 scene::Scene floor() {
   scene::Scene s;
   s.materials.resize(1);
@@ -113,7 +113,7 @@ vec3 mean_flux(const Emitted& e) {
   for (const Beginning& b : e.paths) sum += glm::dvec3(b.flux);
   return sum / double(e.paths.size());
 }
-/// Counts in cells of u, v in 0..1, where all are equally likely.
+/// Chi-square tail of counts in cells of u, v in 0..1, all equally likely.
 double even_tail(const std::vector<vec2>& places, int side = 16) {
   std::vector<double> observed(size_t(side * side), 0.0);
   for (const vec2& p : places)
@@ -122,7 +122,7 @@ double even_tail(const std::vector<vec2>& places, int side = 16) {
   const std::vector<double> expected(observed.size(), double(places.size()) / double(observed.size()));
   return chi_square(observed, expected).p;
 }
-/// Azimuth about an axis, 0..1.
+/// Azimuth around an axis, 0..1.
 float turn(const vec3& d, const vec3& axis) {
   const vec3 t = glm::normalize(glm::cross(axis, std::abs(axis.x) < 0.9f ? vec3(1, 0, 0) : vec3(0, 1, 0)));
   const float phi = std::atan2(glm::dot(d, glm::cross(axis, t)), glm::dot(d, t));
@@ -131,7 +131,7 @@ float turn(const vec3& d, const vec3& axis) {
 
 }  // namespace
 
-TEST_CASE("a point sends 4 pi times its intensity, each path the same, evenly in all directions") {
+TEST_CASE("a point light emits 4 pi times its intensity, equal per path, uniform over directions") {
   scene::Scene s = floor();
   s.lights = {lamp(scene::LightKind::point, {3, 2, 1})};
   const Emitted e(s);
@@ -145,7 +145,7 @@ TEST_CASE("a point sends 4 pi times its intensity, each path the same, evenly in
 }
 
 TEST_CASE(
-    "a spot sends the integral of its intensity, each path the same to 1e-3, and as its intensity says") {
+    "a spot emits the integral of its intensity, equal per path to 1e-3, distributed by its intensity") {
   struct Cones {
     float inner, outer;
   };
@@ -155,7 +155,7 @@ TEST_CASE(
     s.lights = {lamp(scene::LightKind::spot, {3, 2, 1})};
     s.lights[0].inner_cone = cones.inner, s.lights[0].outer_cone = cones.outer;
     const Emitted e(s);
-    // By quadrature of what sample_light makes of the cones, in their cosines as floats.
+    // Quadrature of sample_light's cone function, with the cosines as floats.
     const double inner = std::cos(cones.inner), outer = std::cos(cones.outer);
     constexpr int k_steps = 200000, k_rings = 24;
     const double width = std::max(double(float(inner) - float(outer)), 1e-4), low = double(float(outer));
@@ -187,7 +187,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a sun sends its irradiance through a disk that hides the whole scene") {
+TEST_CASE("a sun emits its irradiance through a disk that covers the whole scene") {
   scene::Scene s = floor();
   s.lights = {lamp(scene::LightKind::directional, {3, 2, 1})};
   const Emitted e(s);
@@ -198,12 +198,12 @@ TEST_CASE("a sun sends its irradiance through a disk that hides the whole scene"
   for (const Beginning& b : e.paths) {
     REQUIRE(b.direction == s.lights[0].direction);
     const vec3 off = b.origin - e.flat.scene_centre;
-    REQUIRE(glm::dot(off, b.direction) == Approx(-radius).epsilon(1e-3));  // before all surfaces
+    REQUIRE(glm::dot(off, b.direction) == Approx(-radius).epsilon(1e-3));  // in front of all surfaces
     const vec3 across = off - glm::dot(off, b.direction) * b.direction;
     disk.emplace_back(glm::dot(across, across) / (radius * radius), turn(across, b.direction));
   }
   CHECK(even_tail(disk) > 1e-4);
-  // So many come through the floor as its projected area says.
+  // The number of paths through the floor follows its projected area.
   double through = 0;
   for (const Beginning& b : e.paths) {
     const vec3 at = b.origin - b.direction * (b.origin.y / b.direction.y);
@@ -214,7 +214,7 @@ TEST_CASE("a sun sends its irradiance through a disk that hides the whole scene"
 }
 
 TEST_CASE(
-    "a shining triangle sends pi times radiance times area, by the cosine, from its front or both sides") {
+    "an emissive triangle emits pi times radiance times area, cosine-distributed, from one or both sides") {
   for (const bool both : {false, true}) {
     scene::Scene s = floor();
     s.materials[0].emission = {5, 3, 2};
@@ -228,7 +228,7 @@ TEST_CASE(
       places.emplace_back(0.5f * b.origin.x + 0.5f, 0.5f * b.origin.z + 0.5f);
       directions.emplace_back(b.direction.y * b.direction.y, turn(b.direction, {0, 1, 0}));
       below += b.direction.y < 0;
-      REQUIRE(b.origin.y * b.direction.y > 0);  // moved off the side that it leaves
+      REQUIRE(b.origin.y * b.direction.y > 0);  // offset to the side that it leaves
       const float cosine = std::abs(b.direction.y);
       REQUIRE(b.pdf_direction == Approx(cosine / k_pi_d).epsilon(1e-3).margin(1e-4));
       REQUIRE(b.pdf_place == Approx(both ? 0.25 : 0.5).epsilon(1e-4));  // each triangle has half of the area
@@ -239,7 +239,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a texture of emission is sent from where it is bright") {
+TEST_CASE("an emission texture emits where it is bright") {
   scene::Scene s = floor();
   s.materials[0].emission = {2, 2, 2};
   scene::Image image;
@@ -249,7 +249,7 @@ TEST_CASE("a texture of emission is sent from where it is bright") {
   s.textures = {{.image = 0, .wrap_u = scene::Wrap::clamp, .nearest = true, .srgb = true}};
   s.materials[0].emission_texture.texture = 0;
   const Emitted e(s, 1 << 17);
-  // Half of the floor shines.
+  // Half of the floor is emissive.
   CHECK(mean_flux(e).x == Approx(2 * k_pi_d * 2).epsilon(5e-3));
   size_t wrong = 0;
   for (const Beginning& b : e.paths)
@@ -257,7 +257,7 @@ TEST_CASE("a texture of emission is sent from where it is bright") {
   CHECK(wrong == 0);
 }
 
-TEST_CASE("an environment sends what comes through the scene's disk from each direction") {
+TEST_CASE("an environment emits through the scene's disk from each direction") {
   constexpr uint32_t k_width = 16, k_height = 8;
   for (const float threshold : {0.f, 20.f}) {
     scene::Scene s = floor();
@@ -274,7 +274,7 @@ TEST_CASE("an environment sends what comes through the scene's disk from each di
     const Emitted e(s, 1 << 18, threshold);
     CHECK(e.flat.effects.separate_sky == (threshold > 0));
     CHECK(e.flat.effects.sun == (threshold > 0));
-    // Integral of the map as it is read, bilinear, over all directions.
+    // Integral of the bilinearly filtered map over all directions.
     constexpr int k_fine = 16;
     double integral = 0;
     for (uint32_t y = 0; y < k_height * k_fine; ++y)
@@ -301,9 +301,9 @@ TEST_CASE("an environment sends what comes through the scene's disk from each di
     }
     INFO("threshold " << threshold << ": " << red.value() << " +- " << red.error() << " of "
                       << 2 * integral * disk);
-    // Draws are stratified, so that their error is less than that of independent ones.
+    // Draws are stratified, so their error is below that of independent ones.
     CHECK(std::abs(red.value() - 2 * integral * disk) < 4 * red.error() + 2e-3 * red.value());
-    // Flux over densities is the radiance that the direction has, of either emitter.
+    // Flux over densities is the radiance of the direction, for either emitter.
     for (size_t i = 0; i < 1000; ++i) {
       const Beginning& b = e.paths[i];
       if (b.light == 0) continue;
@@ -314,7 +314,7 @@ TEST_CASE("an environment sends what comes through the scene's disk from each di
   }
 }
 
-TEST_CASE("lights are chosen by their power, so that paths of all carry as much") {
+TEST_CASE("lights are chosen by power, so all paths carry the same flux") {
   scene::Scene s = floor();
   s.materials[0].emission = {5, 3, 2};
   s.lights = {lamp(scene::LightKind::point, {3, 2, 1}), lamp(scene::LightKind::spot, {300, 200, 900}),
@@ -337,7 +337,7 @@ TEST_CASE("lights are chosen by their power, so that paths of all carry as much"
   for (size_t i = 0; i < 6; ++i) CHECK(std::abs(observed[i] - expected[i]) < 5 * std::sqrt(expected[i] + 1));
 }
 
-TEST_CASE("where nothing shines nothing is sent") {
+TEST_CASE("without lights nothing is emitted") {
   const upload::FlatScene flat = upload::flatten(floor());
   const transport::LightSource none(device(), flat, flat.scene_centre, flat.scene_radius);
   CHECK(none.power() == 0);
@@ -346,7 +346,7 @@ TEST_CASE("where nothing shines nothing is sent") {
 
 namespace {
 
-/// Whether the path's first line enters a box, and where from.
+/// True if the path's first ray enters a box; and its origin.
 bool enters(const Beginning& b, const Box& box) {
   const glm::dvec3 o(b.origin), d(b.direction);
   double near = 0, far = 1e30;
@@ -357,7 +357,7 @@ bool enters(const Beginning& b, const Box& box) {
   return near <= far;
 }
 
-/// What paths bring in all and through each box, and two moments of where they go.
+/// Mean contributions of paths in total and through each box, and two moments of their directions.
 std::vector<test::Mean> contributions(const Emitted& e, const std::vector<Box>& boxes) {
   std::vector<test::Mean> means(3 + boxes.size());
   for (const Beginning& b : e.paths) {
@@ -390,7 +390,7 @@ scene::Scene sky_scene() {
 
 }  // namespace
 
-TEST_CASE("aimed paths bring on average what others bring, whatever their shares, of every kind of light") {
+TEST_CASE("aimed paths have the same mean as unaimed ones, for any shares and every kind of light") {
   std::vector<std::pair<std::string, scene::Scene>> scenes;
   for (const auto kind : {scene::LightKind::point, scene::LightKind::spot, scene::LightKind::directional}) {
     scene::Scene s = floor();
@@ -415,7 +415,7 @@ TEST_CASE("aimed paths bring on average what others bring, whatever their shares
       const Emitted plain(s, 1 << 17, threshold), aimed(s, 1 << 17, threshold, k_boxes, k_uneven);
       REQUIRE(aimed.source.strata() == 1 + 3 * aimed.source.table().groups);
       const std::vector<test::Mean> a = contributions(plain, k_boxes), b = contributions(aimed, k_boxes);
-      // Points are stratified, so that both err by less than independent ones; 5 sigma of 50 comparisons.
+      // Points are stratified, so both errors are below those of independent ones; 5 sigma of 50 comparisons.
       for (size_t i = 0; i < a.size(); ++i) {
         INFO(name << ", threshold " << threshold << ", moment " << i << ": " << b[i].value() << " +- "
                   << b[i].error() << " of " << a[i].value() << " +- " << a[i].error());
@@ -423,7 +423,7 @@ TEST_CASE("aimed paths bring on average what others bring, whatever their shares
               5 * std::hypot(a[i].error(), b[i].error()) + 1e-4 * std::abs(a[i].value()));
       }
       CHECK(b[0].value() > 0);
-      // Each stratum has its share of the paths, to the last one.
+      // Each stratum has its share of the paths, up to the last path.
       std::vector<double> drawn(aimed.source.strata(), 0.0);
       for (const Beginning& path : aimed.paths) drawn[path.stratum] += 1;
       for (size_t i = 0; i < drawn.size(); ++i)
@@ -431,11 +431,11 @@ TEST_CASE("aimed paths bring on average what others bring, whatever their shares
     }
 }
 
-TEST_CASE("what is aimed arrives") {
+TEST_CASE("aimed paths reach their box") {
   scene::Scene s = sky_scene();
   s.materials[0].emission = {5, 3, 2};
   s.lights = {lamp(scene::LightKind::point, {3, 2, 1}), lamp(scene::LightKind::directional, {5, 5, 5})};
-  // Far away and small, besides the others.
+  // A far and small box, besides the others.
   std::vector<Box> boxes{k_boxes[0], k_boxes[1]};
   boxes.push_back({vec3(0.6f, 0.2f, 0.5f), vec3(0.60005f, 0.20005f, 0.50005f)});
   const Emitted e(s, 1 << 16, 0, boxes);
@@ -443,14 +443,14 @@ TEST_CASE("what is aimed arrives") {
   for (const Beginning& b : e.paths) {
     if (b.stratum == 0 || luminance(b.flux) <= 0) continue;
     Box box = boxes[(b.stratum - 1) % boxes.size()];
-    box.lo -= vec3(3e-6f), box.hi += vec3(3e-6f);  // of rounding
+    box.lo -= vec3(3e-6f), box.hi += vec3(3e-6f);  // rounding
     const bool inside =
         glm::all(glm::greaterThan(b.origin, box.lo)) && glm::all(glm::lessThan(b.origin, box.hi));
     ++aimed, missed += !inside && !enters(b, box);
   }
   CHECK(double(aimed) > 0.4 * double(e.paths.size()));
   CHECK(missed == 0);
-  // Through the small one alone comes what its size says: of the sun, irradiance times what it covers.
+  // The small box alone receives the flux of its size: for the sun, irradiance times its covered area.
   std::vector<test::Mean> means = contributions(e, {boxes.back()});
   const double sun = [&] {
     double sum = 0;

@@ -1,13 +1,13 @@
 // links: upload
-// Sampling the environment through shaders/lib/lights.glsl: which direction of the sky and of the sun in it,
-// and that what is drawn has the density that it says.
+// Sampling the environment through shaders/lib/lights.glsl: the directions of the sky and of its sun, and
+// their densities.
 #include "kernels/light_support.h"
 
 using namespace lucerna;
 using namespace lucerna::test;
 
-TEST_CASE("beside the poles of a high map directions have the density that is told of them") {
-  // Rows of 1/8192 of a half circle, of equal power in the eight at either pole, dark between.
+TEST_CASE("near the poles of a high map directions follow their stated density") {
+  // Rows of 1/8192 of a half circle, with equal power in the eight rows at either pole, dark in between.
   constexpr uint32_t k_width = 4, k_height = 8192, k_rows = 8;
   scene::Scene scene;
   scene::Image image;
@@ -22,7 +22,7 @@ TEST_CASE("beside the poles of a high map directions have the density that is to
   scene.environment.image = 0;
   Lights lights(scene);
   const double row_angle = 0.5 * k_tau / k_height;
-  // By the nearer pole's row, and by sin^2 of half the angle to it within the row.
+  // By the row from the nearer pole, and by sin^2 of half the angle to it within the row.
   constexpr int k_grid = 8;
   std::vector<double> within(k_rows * k_grid, 0.0), rows(k_rows, 0.0);
   size_t wrong = 0, count = 0;
@@ -54,7 +54,7 @@ TEST_CASE("beside the poles of a high map directions have the density that is to
   }
   std::vector<double> expected;
   for (const double power : rows) expected.insert(expected.end(), k_grid, power / all * k_draws / k_grid);
-  // Rounding may put a direction into the next row, or its part of a row.
+  // Rounding can move a direction into the next row, or part of a row.
   INFO(wrong << " of " << count << " densities are off");
   CHECK(double(count) > 0.9 * k_draws);
   CHECK(double(wrong) < 2e-3 * double(count));
@@ -63,9 +63,8 @@ TEST_CASE("beside the poles of a high map directions have the density that is to
   CHECK(p > 1e-4);
 }
 
-TEST_CASE("directions of the environment map: by its density, which integrates to the chance of the map") {
-  // Flat texels, so that an error of height shows, and high ones, in which the solid angle is not spread
-  // evenly.
+TEST_CASE("directions of the environment map follow its density, which integrates to the map's probability") {
+  // Flat texels, which reveal an error of height, and tall ones, in which the solid angle is not uniform.
   for (const uvec2 size : {uvec2(64, 512), uvec2(16, 4)}) {
     const float rotation = size.x == 64 ? 0 : 37;
     scene::Scene scene = sky(size.x, size.y, rotation);
@@ -148,7 +147,7 @@ TEST_CASE("directions of the environment map: by its density, which integrates t
     jury.add("within texels",
              chi_square(within, std::vector<double>(within.size(), drawn / double(within.size()))).p);
     CHECK(jury.verdict() == "");
-    // What a draw says of its density is what hitting the sky in that direction is told.
+    // The density of a draw equals the density returned for hitting the environment in that direction.
     const auto reported = lights.environment(again);
     size_t different = 0;
     for (size_t i = 0; i < reported.size(); ++i) different += std::abs(reported[i].pdf / pdfs[i] - 1) > 1e-4f;
@@ -156,7 +155,7 @@ TEST_CASE("directions of the environment map: by its density, which integrates t
   }
 }
 
-TEST_CASE("the environment's radiance is the map, bilinear, turned counter-clockwise seen from above") {
+TEST_CASE("the environment's radiance is the bilinear map, rotated counter-clockwise seen from above") {
   const scene::Scene scene = sky(16, 8, 90);
   Lights lights(scene);
   const scene::Image& image = scene.images[0];
@@ -171,8 +170,8 @@ TEST_CASE("the environment's radiance is the map, bilinear, turned counter-clock
   const auto answers = lights.environment(directions);
   size_t bad = 0, dark = 0;
   for (size_t i = 0; i < answers.size(); ++i) {
-    // Turned by 90 degrees counter-clockwise (seen from above, x to the right, z towards the viewer), the map
-    // shows at d what it showed at d turned back clockwise: (x, z) -> (-z, x).
+    // Rotated by 90 degrees counter-clockwise (seen from above, x to the right, z towards the viewer), the
+    // map shows at d the value of d rotated back clockwise: (x, z) -> (-z, x).
     const glm::dvec3 d(-directions[i].z, directions[i].y, directions[i].x);
     const double u = 0.5 + std::atan2(d.z, d.x) / k_tau,
                  v = std::acos(std::clamp(d.y, -1.0, 1.0)) / (0.5 * k_tau);
@@ -189,7 +188,7 @@ TEST_CASE("the environment's radiance is the map, bilinear, turned counter-clock
       const double most =
           std::max({texel(c, r, k), texel(c + 1, r, k), texel(c, r + 1, k), texel(c + 1, r + 1, k)});
       bad += !(std::abs(answers[i].value[k] - expected) <= 2e-4 * most);
-      // Where there is light it is found by draws too.
+      // Directions with light also have a positive density.
       dark += expected > 1e-6 && !(answers[i].pdf > 0);
     }
   }
@@ -197,7 +196,7 @@ TEST_CASE("the environment's radiance is the map, bilinear, turned counter-clock
   CHECK(dark == 0);
 }
 
-TEST_CASE("tables of an environment are made once for its texels, whatever else is edited") {
+TEST_CASE("tables of an environment are built once for its texels, whatever else is edited") {
   const scene::Scene scene = sky(48, 24, 37);
   upload::FlatScene flat = upload::flatten(scene, 16);
   const upload::EnvironmentTables before = flat.environment;
@@ -225,7 +224,7 @@ TEST_CASE("tables of an environment are made once for its texels, whatever else 
   CHECK(kept());
   CHECK(flat.environment_texels.shares_with(texels));
   CHECK(as_rebuilt());
-  // Others where the sun is apart by another threshold, or not at all, and where a texel is another.
+  // Other tables for another sun threshold or none, and for a changed texel.
   for (const float threshold : {1.5f, 0.0f, 16.0f}) {
     flat.sun_threshold = threshold;
     upload::flatten_lights(edited, flat);
@@ -246,7 +245,7 @@ TEST_CASE("tables of an environment are made once for its texels, whatever else 
   }
 }
 
-TEST_CASE("sky and sun apart: two emitters that add up to the environment, each sampled by its own density") {
+TEST_CASE("sky and sun as two emitters sum to the environment, each sampled by its own density") {
   scene::Scene scene = sky(48, 24, 37);
   scene::Light lamp;
   lamp.intensity = vec3(300);
@@ -254,7 +253,7 @@ TEST_CASE("sky and sun apart: two emitters that add up to the environment, each 
   Lights whole(scene), lights(scene, 16);
   REQUIRE(lights.flat.effects.separate_sky);
   REQUIRE(lights.flat.effects.sun);
-  // One texel is the sun; filtering reaches it from the eight around it.
+  // One texel is the sun; filtering reads it from the eight around it.
   CHECK(lights.flat.environment.sun_cells.size() == 2 * 9);
   std::vector<vec3> directions;
   const uint32_t width = 48, height = 24;
@@ -286,7 +285,7 @@ TEST_CASE("sky and sun apart: two emitters that add up to the environment, each 
   CHECK(double(bright) == Approx(4 * k_grid * k_grid).epsilon(0.2));  // two texels wide and high
   CHECK(sky_chance == Approx(lights.frame.environment_light_pmf).epsilon(1e-3));
   CHECK(sun_light > 0.2 * sky_light);
-  // Draws bring the light of each, by its share of the draws, with the densities that hitting them tells.
+  // Draws give the light of each, with its share of the draws and with the densities of hits.
   constexpr uint32_t k_draws = 1 << 18;
   Mean sky_mean, sun_mean;
   double sky_drawn = 0, sun_drawn = 0;
@@ -317,9 +316,9 @@ TEST_CASE("sky and sun apart: two emitters that add up to the environment, each 
     for (size_t i = 0; i < reported.size(); ++i)
       wrong += std::abs(reported[i].pdf / pdfs[sun][i] - 1) > 1e-3f;
     CHECK(double(wrong) <
-          1e-3 * double(reported.size()));  // rounding may put a direction into the next texel
+          1e-3 * double(reported.size()));  // rounding can move a direction into the next texel
   }
-  // A sky without anything bright has no sun, and light samples know nothing else.
+  // An environment without bright texels has no sun, and light samples ignore it.
   scene.lights.clear();
   scene.environment.image = scene::k_none;
   scene.environment.radiance = vec3(1);
@@ -330,4 +329,4 @@ TEST_CASE("sky and sun apart: two emitters that add up to the environment, each 
   CHECK(even.effects.lights);
 }
 
-TEST_CASE("the validation layers had nothing to say") { CHECK(device().validation_messages() == 0); }
+TEST_CASE("there were no validation messages") { CHECK(device().validation_messages() == 0); }

@@ -1,5 +1,5 @@
 // links: film
-// The film's sums through the real kernel: a million samples of mixed magnitude add up without drift.
+// The film's sums through the real kernel: a million samples of mixed magnitude sum without drift.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -10,8 +10,8 @@ using namespace lucerna;
 
 namespace {
 
-/// Sample `s` of a component: mostly small values with a part that float cannot hold beside the sum, now and
-/// then a firefly of a million times that.
+/// Sample `s` of a component: mostly small values with digits that a float sum cannot hold, occasionally a
+/// firefly a million times larger.
 float sample_value(uint32_t pixel, uint32_t component, uint32_t s) {
   uint32_t h = (s * 4 + component) * 64 + pixel;
   h = (h ^ h >> 16) * 0x7feb352du, h = (h ^ h >> 15) * 0x846ca68bu, h ^= h >> 16;
@@ -21,13 +21,13 @@ float sample_value(uint32_t pixel, uint32_t component, uint32_t s) {
 
 }  // namespace
 
-TEST_CASE("a million samples of mixed magnitude: each half's sum is right to float's last digits") {
+TEST_CASE("a million samples of mixed magnitude: each half's sum is accurate to float's last digits") {
   gpu::Device device({test::device_name(), true});
   gpu::ShaderCompiler compiler;
   gpu::Stream stream(device);
   film::Film film(device, 8, 8);
   film.clear(stream);
-  // As storage buffers are written, and as films are that do not fit into one.
+  // Storage buffers, and images for films that do not fit into one buffer.
   const bool images = GENERATE(false, true);
   const gpu::Kernel add(device, compiler, "film/add.comp", {{"LUCERNA_FILM_IMAGES", images ? "1" : "0"}});
   constexpr uint32_t k_batch = 1000, k_batches = 1000;
@@ -41,7 +41,7 @@ TEST_CASE("a million samples of mixed magnitude: each half's sum is right to flo
   resources.set("WorkBlocks", block);
   resources.set("radiance_texels", radiance);
   resources.set("feature_texels", features);
-  // Three pixels are told apart; the rest of the tile repeats them.
+  // Three different pixels; the rest of the tile repeats them.
   std::vector<vec4> values(64 * k_batch * 4);
   double even[3][4] = {}, odd[3][4] = {}, naive_error = 0;
   float naive = 0;
@@ -65,7 +65,7 @@ TEST_CASE("a million samples of mixed magnitude: each half's sum is right to flo
   }
   naive_error = std::abs(naive - naive_truth) / naive_truth;
   const film::Image image = film.read();
-  CHECK(naive_error > 1e-6);  // or this test would show nothing
+  CHECK(naive_error > 1e-6);  // otherwise this test proves nothing
   const auto compact = [](uint32_t x) { return (x & 1u) | (x >> 1 & 2u) | (x >> 2 & 4u); };
   for (uint32_t code = 0; code < 64; ++code) {
     const size_t pixel = compact(code >> 1) * 8 + compact(code);

@@ -1,6 +1,6 @@
 // links: film
-// What the error kernel says of a film, against the same sums taken here in double precision; and what is
-// made of it.
+// The error kernel's sums over a film compared with the same sums in double precision; and the errors derived
+// from them.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -14,14 +14,14 @@ using shared::BlockError;
 
 namespace {
 
-/// Samples with a heavy tail; dark towards the right, so that the floor matters.
+/// Samples with a heavy tail; dark towards the right, so the floor matters.
 float sample_value(std::mt19937& random, uint32_t x) {
   std::exponential_distribution<float> tail(1.0f);
   const float t = tail(random);
   return (x > 15 ? 1e-3f : 0.3f) * t * t;
 }
 
-/// Mean over the 5x5 pixels around, of those in the picture.
+/// Mean over the surrounding 5x5 pixels inside the picture.
 template <class Shown>
 double mean_around(uint32_t x, uint32_t y, uint32_t width, uint32_t height, const Shown& shown) {
   double sum = 0, count = 0;
@@ -34,11 +34,11 @@ uint32_t compact(uint32_t x) { return (x & 1u) | (x >> 1 & 2u) | (x >> 2 & 4u); 
 
 }  // namespace
 
-TEST_CASE("the error kernel: sums over the blocks of an item, to float's precision") {
+TEST_CASE("the error kernel: sums over the blocks of an item, to float precision") {
   gpu::Device device({test::device_name(), true});
   gpu::ShaderCompiler compiler;
   gpu::Stream stream(device);
-  constexpr uint32_t k_width = 20, k_height = 12, k_samples = 6;  // blocks that stick out on two sides
+  constexpr uint32_t k_width = 20, k_height = 12, k_samples = 6;  // blocks extend beyond two sides
   constexpr float k_floor = 0.05f, k_white = 4;
   film::Film film(device, k_width, k_height);
   film.clear(stream);
@@ -49,8 +49,8 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
   std::mt19937 random(1);
   std::vector<vec4> values(size_t(blocks) * 64 * k_samples * 4);
   std::vector<shared::WorkBlock> list;
-  for (uint32_t b = 0; b < blocks; ++b) list.push_back({blocks - 1 - b, 0});  // in an order of their own
-  // Sums of the two halves of every pixel and component, red, green and blue alike but for their size.
+  for (uint32_t b = 0; b < blocks; ++b) list.push_back({blocks - 1 - b, 0});  // in another order
+  // Sums of the two halves of every pixel and component; red, green and blue are proportional.
   std::vector<double> half(size_t(k_width) * k_height * 4 * 2);
   for (uint32_t s = 0; s < k_samples; ++s)
     for (uint32_t b = 0; b < blocks; ++b)
@@ -77,7 +77,7 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
   resources.set("feature_texels", features);
   const shared::FilmPush added{k_width, k_height, 64 * blocks, k_samples, 0, 0};
   stream.dispatch(add, resources, added, blocks);
-  // The last block of the list is left out: its figures stay as they were.
+  // The last block of the list is excluded: its figures stay unchanged.
   stream.dispatch(error, resources, shared::ErrorPush{k_width, k_height, blocks - 1, k_floor, k_white},
                   (blocks + 7) / 8);
   stream.run();
@@ -142,7 +142,7 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
       }
     }
   }
-  // What stops a tile, alone: the same to the last bit, and nothing else is touched.
+  // Only the stopping criterion: identical bit for bit, and nothing else is written.
   const std::vector<BlockError> full(film.errors().begin(), film.errors().end());
   film.clear(stream);
   stream.dispatch(add, resources, added, blocks);
@@ -159,7 +159,7 @@ TEST_CASE("the error kernel: sums over the blocks of an item, to float's precisi
     CHECK(film::relative_error(film, std::span(&b, 1)).paths ==
           film::tile_error(std::span(&full[b], 1)).relative);
   }
-  // The renderer's own way to both: the same, and the stages have their names.
+  // The renderer's interface to both: the same, with named stages.
   film::ErrorEstimator estimator(device, compiler, false);
   for (const bool all : {true, false}) {
     film.clear(stream);
@@ -213,7 +213,7 @@ film::TileError tile_of(uint32_t count, const F& difference) {
 
 }  // namespace
 
-TEST_CASE("a tile's error: noise alike, a lone firefly, a hard corner, a hard line") {
+TEST_CASE("a tile's error: uniform noise, a single firefly, a hard corner, a hard line") {
   std::mt19937 random(2);
   std::normal_distribution<double> normal(0, 0.1);
   const auto alike = tile_of(4, [&](auto...) { return normal(random); });
@@ -228,13 +228,13 @@ TEST_CASE("a tile's error: noise alike, a lone firefly, a hard corner, a hard li
     CHECK(lone.degrees == Approx(3).epsilon(0.01));
   }
   const auto corner = tile_of(4, [&](uint32_t b, uint32_t q, uint32_t) { return b + q == 0 ? 0.4 : 0.0; });
-  CHECK(corner.relative == Approx(0.4 * 1.2533 / 4).epsilon(0.01));  // the mean alone would say 0.031
+  CHECK(corner.relative == Approx(0.4 * 1.2533 / 4).epsilon(0.01));  // the mean alone would give 0.031
   const auto line = tile_of(4, [&](uint32_t, uint32_t, uint32_t i) { return i % 4 == 0 ? 0.4 : 0.0; });
   CHECK(line.relative == Approx(0.1 * 1.2533).epsilon(0.01));
   CHECK(film::tile_error({}).relative == 0);
 }
 
-TEST_CASE("heavy tails: a firefly marks its tile and its calm neighbours, a lamp does not") {
+TEST_CASE("heavy tails: a firefly marks its tile and its quiet neighbours, a lamp does not") {
   std::mt19937 random(3);
   std::normal_distribution<double> normal(0, 0.05);
   const auto calm = [&](double scale) {
@@ -269,7 +269,7 @@ TEST_CASE("the spread of the tiles: a bright window does not hide grainy walls")
   CHECK(spread.worst_tenth == Approx(0.19));
   CHECK(spread.worst == Approx(0.2));
   CHECK(spread.heavy_tailed == 1);
-  // A window of 100 that is calm beside walls of 1 with a noise of 30 %.
+  // A noise-free window of 100 beside walls of 1 with a noise of 30 %.
   const auto block = [](float luminance, float v, float relative) {
     BlockError b{};
     b.pixels = 64, b.luminance[0] = 64 * luminance, b.variance[0] = 64 * v, b.fourth = 64 * v * v;
@@ -286,8 +286,7 @@ TEST_CASE("the spread of the tiles: a bright window does not hide grainy walls")
   CHECK(film::tile_spread(walls).worst_tenth == Approx(0.3));
 }
 
-TEST_CASE(
-    "the error kernel: what pixels read of records, summed beside their noise, which it leaves as it is") {
+TEST_CASE("the error kernel: records' errors are summed beside the pixels' noise and leave it unchanged") {
   gpu::Device device({test::device_name(), true});
   gpu::ShaderCompiler compiler;
   gpu::Stream stream(device);
@@ -319,7 +318,7 @@ TEST_CASE(
   std::vector<vec2> records(size_t{k_width} * k_height);
   for (size_t i = 0; i < records.size(); ++i)
     records[i] = vec2(1e-4f * float(i), 2e-4f * float(i % 7) - 3e-4f);
-  gpu::Buffer estimated(device, {.name = "told", .bytes = records.size() * sizeof(vec2)});
+  gpu::Buffer estimated(device, {.name = "estimated", .bytes = records.size() * sizeof(vec2)});
   estimated.write(std::span<const vec2>(records));
   resources.set("FilmRecords", estimated);
   const auto run = [&](const gpu::Kernel& kernel, uint32_t known) {
@@ -331,7 +330,7 @@ TEST_CASE(
   stream.dispatch(add, resources, shared::FilmPush{k_width, k_height, 64 * k_blocks, k_samples, 0, 0},
                   k_blocks);
   std::vector<BlockError> without = run(plain, 0), unknown = run(error, 0), full = run(error, 1);
-  // Light that no groups are mixed of is as it is.
+  // Unmixed light is unchanged.
   for (BlockError& e : unknown) {
     CHECK(e.unmixed == e.luminance[0]);
     e.unmixed = 0;
@@ -362,7 +361,7 @@ TEST_CASE(
     CHECK(full[b].records_relative == Approx(sums[2]).epsilon(1e-4));
     CHECK(full[b].interpolation_relative == Approx(sums[3]).epsilon(1e-3).margin(1e-5));
   }
-  // What stops a tile says the same of the records.
+  // The stopping criterion has the same records' error.
   film.clear(stream);
   stream.dispatch(add, resources, shared::FilmPush{k_width, k_height, 64 * k_blocks, k_samples, 0, 0},
                   k_blocks);
@@ -397,7 +396,7 @@ TEST_CASE(
   stream.fill(features, 0);
   std::array<std::vector<double>, 2> mean{std::vector<double>(k_pixels), std::vector<double>(k_pixels)};
   gpu::Resources resources;
-  // Three samples, in two batches: two even ones and an odd one. What is told is of the first lane alone.
+  // Three samples, in two batches: two even ones and an odd one. Only the first lane has a bias.
   for (const uint32_t first : {0u, 2u}) {
     const uint32_t samples = first == 0 ? 2 : 1;
     std::vector<vec4> values(k_blocks * 64 * samples * 4);
@@ -460,11 +459,11 @@ TEST_CASE(
   const std::vector<BlockError> alone = run(stopping, 1);
   for (uint32_t b = 0; b < k_blocks; ++b)
     CHECK(alone[b].interpolation_relative == full[b].interpolation_relative);
-  // Halves that do not agree in sign have told noise.
+  // Halves of opposite sign are noise.
   BlockError noise{};
   noise.pixels = 64, noise.bias[0] = 3, noise.bias[1] = -2;
   CHECK(film::blur_error({&noise, 1}) == 0);
-  // Another picture begins with nothing.
+  // Another picture starts with zero.
   film.clear(stream);
   CHECK_FALSE(film.lookup_bias_known());
   film.make_room_for_lookup_bias(stream);
@@ -474,8 +473,8 @@ TEST_CASE(
   CHECK(device.validation_messages() == 0);
 }
 
-TEST_CASE("where pixels share their noise a tile's interval holds the truth as often as where they do not") {
-  // Pixels of a tile in groups that are off by the same, of Gaussian noise; tiles are of unlike brightness.
+TEST_CASE("a tile's interval contains the truth equally often with and without shared noise") {
+  // Pixels of a tile in groups with the same Gaussian error; tiles differ in brightness.
   std::mt19937 random(8);
   std::normal_distribution<double> normal;
   constexpr uint32_t k_across = 12, k_pixels = 64;
@@ -509,14 +508,14 @@ TEST_CASE("where pixels share their noise a tile's interval holds the truth as o
                       << double(naive) / double(all) << " without");
     CHECK(double(held) > 0.87 * double(all));
     CHECK(double(held) < 0.95 * double(all));
-    // Not less than 1, so that where nothing is shared it is a little more.
+    // At least 1, so it is slightly more where nothing is shared.
     CHECK(widened / double(all) > 0.9 * group);
     CHECK(widened / double(all) < 1.2 * group);
     if (group > 1) CHECK(double(naive) < 0.6 * double(all));
   }
 }
 
-TEST_CASE("a tile's error is its paths' and its records' in quadrature, and interpolation's on top") {
+TEST_CASE("a tile's error combines paths and records in quadrature and adds interpolation") {
   BlockError e{};
   e.pixels = 64, e.luminance[0] = 32, e.variance[0] = 64 * 0.04f, e.fourth = 64 * 3 * 0.0016f;
   for (int q = 0; q < 4; ++q) e.relative[q] = 16 * 0.4f, e.quadrant_pixels[q] = 16;
@@ -528,7 +527,7 @@ TEST_CASE("a tile's error is its paths' and its records' in quadrature, and inte
   shared::BlockRecords r{};
   r.pixels = 64;
   for (uint32_t k = 0; k < 2 * shared::k_record_lanes; ++k) r.noise[k] = 64 * (k % 3 ? 0.3f : -0.3f);
-  // The signs of a lane agree between the paths where their sums are of the same records.
+  // A lane's signs agree between the paths if their sums are of the same records.
   for (uint32_t k = 0; k < shared::k_record_lanes; ++k) r.noise[shared::k_record_lanes + k] = r.noise[k];
   r.interpolation[0] = r.interpolation[1] = 64 * -0.2f;
   const film::TileError tile = film::tile_error({&e, 1}, {&r, 1});
@@ -536,7 +535,7 @@ TEST_CASE("a tile's error is its paths' and its records' in quadrature, and inte
   CHECK(tile.records.noise == Approx(0.3));
   CHECK(tile.records.interpolation == Approx(0.2));
   CHECK(tile.relative_sum() == Approx(std::hypot(plain.relative, 0.3) + 0.1));
-  // The records rule the noise: their degrees of freedom are the sum's, a little more for the paths'.
+  // The records dominate the noise: the sum has their degrees of freedom, plus a little for the paths'.
   const double noise = std::hypot(plain.standard_error, 0.3);
   CHECK(tile.half_width_90() < film::student_90(shared::k_record_lanes) * noise + 0.2);
   CHECK(tile.half_width_90() > 1.6448 * noise + 0.2);
@@ -544,29 +543,29 @@ TEST_CASE("a tile's error is its paths' and its records' in quadrature, and inte
   CHECK(image.records_rms == Approx(0.3));
   CHECK(image.interpolation_rms == Approx(0.1));
   CHECK(image.relative_sum() == Approx((std::hypot(image.rms[0], 0.3) + 0.1) / 0.5));
-  // Errors that are told to be below nothing by chance are nothing.
+  // Estimates below zero, which occur by chance, count as zero.
   e.records = e.records_relative = -1e-3f;
   CHECK(film::tile_error({&e, 1}).relative_records == 0);
 }
 
-TEST_CASE("where lookups have found nothing the error is unknown, not none", "[film_error]") {
+TEST_CASE("where lookups found no light the error is unknown, not zero", "[film_error]") {
   constexpr float k_mark = shared::k_found_nothing;
   shared::BlockError dark{};
   dark.pixels = 64;
   for (float& n : dark.quadrant_pixels) n = 16;
-  CHECK_FALSE(film::without_evidence(dark));  // nothing is looked up, as in path tracing
-  // The least and the most that is left of the marks: the square, over that of the pixel's scale.
+  CHECK_FALSE(film::without_evidence(dark));  // no lookups, as in path tracing
+  // The smallest and the largest mark: the square over that of the pixel's scale.
   for (const float scale : {shared::k_luminance_floor, 100.0f}) {
     dark.interpolation_relative = 64 * k_mark * k_mark / (scale * scale);
     CHECK(film::without_evidence(dark));
   }
-  dark.interpolation_relative = 1e-12f;  // one of the halves has found something
+  dark.interpolation_relative = 1e-12f;  // one of the halves has found light
   CHECK_FALSE(film::without_evidence(dark));
   dark.interpolation_relative = k_mark * k_mark;
   const film::TileError tile = film::tile_error(std::array{dark});
   CHECK(tile.unknown);
   CHECK(tile.relative == 1);
-  // A quarter of a picture; and all of one, which is black.
+  // A quarter of a picture; and a whole picture that is black.
   shared::BlockError lit{};
   lit.pixels = 64, lit.luminance[0] = 64;
   CHECK(film::image_error(std::array{lit, dark, lit, lit}).relative(0) == Approx(0.5));

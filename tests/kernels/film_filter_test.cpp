@@ -1,6 +1,6 @@
 // links: film_filter
-// The filter for finished pictures, through the real shaders: what it takes away, what it leaves, and what it
-// reports of both.
+// The filter for finished pictures, through the real shaders: the noise that it removes, the detail that it
+// keeps, and its reported error.
 #include "film/filter/filter.h"
 
 #include <bit>
@@ -52,7 +52,7 @@ double mean(const film::Image& image) {
   return std::accumulate(red.begin(), red.end(), 0.0) / double(red.size());
 }
 
-/// Light that comes rarely and then in large amounts, 1 in the mean: of a sample, variance 3.
+/// Rare light in large amounts with a mean of 1: variance 3 per sample.
 struct Noise {
   std::mt19937 random{7};
   float operator()() {
@@ -61,7 +61,7 @@ struct Noise {
   }
 };
 
-/// A texture without a pattern: 0.15 to 0.85, another colour every two pixels.
+/// A random texture: 0.15 to 0.85, another colour every two pixels.
 float texture(uint32_t x, uint32_t y) {
   uint32_t h = x / 2 * 73856093u ^ y / 2 * 19349663u;
   h = (h ^ h >> 13) * 1274126177u;
@@ -70,7 +70,7 @@ float texture(uint32_t x, uint32_t y) {
 
 }  // namespace
 
-TEST_CASE("the filter: what has no noise stays, and no error is reported") {
+TEST_CASE("the filter keeps noise-free pictures and reports no error") {
   test::Stage stage(40, 24);
   const auto light = [](uint32_t x, uint32_t y) {
     return 0.5f + (x > 17 ? 2.0f : 0.0f) + (y == 9 ? 1.0f : 0.0f);
@@ -85,7 +85,7 @@ TEST_CASE("the filter: what has no noise stays, and no error is reported") {
   CHECK(f.filtered.samples == f.samples.samples);
 }
 
-TEST_CASE("the filter: of pure noise little is left, and as much as it reports") {
+TEST_CASE("the filter removes most of pure noise, and reports the rest") {
   test::Stage stage(96, 64);
   Noise noise;
   stage.sample(stage.film, 16, [&](uint32_t, uint32_t) { return Sample{vec3(noise())}; });
@@ -103,10 +103,10 @@ TEST_CASE("the filter: of pure noise little is left, and as much as it reports")
   CHECK(held >= f.error.tiles.size() * 8 / 10);
 }
 
-TEST_CASE("the filter: textures and shadows are not smeared, and the reported error is right") {
+TEST_CASE("the filter keeps textures and shadows, and its reported error is correct") {
   test::Stage stage(96, 64);
   Noise noise;
-  // A hard shadow; at its foot a line of contact, two pixels wide, and a texture all over.
+  // A hard shadow; at its foot a contact line, two pixels wide; and a texture everywhere.
   const Truth light = [](uint32_t x, uint32_t y) { return x < 40 ? (y == 30 || y == 31 ? 0.1 : 1.0) : 0.2; };
   const Truth seen = [&](uint32_t x, uint32_t y) { return light(x, y) * double(texture(x, y)); };
   stage.sample(stage.film, 64, [&](uint32_t x, uint32_t y) {
@@ -141,7 +141,7 @@ TEST_CASE("the filter: textures and shadows are not smeared, and the reported er
   CHECK(line == Approx(0.1).margin(0.06));
 }
 
-TEST_CASE("the filter: an outlier goes, light that both halves have stays") {
+TEST_CASE("the filter removes an outlier, and keeps light that both halves have") {
   test::Stage stage(48, 48);
   Noise noise;
   uint32_t fireflies = 0;
@@ -160,14 +160,14 @@ TEST_CASE("the filter: an outlier goes, light that both halves have stays") {
     }
 }
 
-TEST_CASE("the filter: components by themselves, and one that is off") {
+TEST_CASE("the filter treats components separately, including one that is off") {
   std::vector<std::vector<vec3>> alone;
   for (const bool both : {false, true}) {
     test::Stage stage(24, 24);
     Noise noise;
     stage.sample(stage.film, 8, [&](uint32_t, uint32_t) { return Sample{vec3(noise())}; });
     if (both) {
-      // Samples of another component for the same pixels, none of whose light is in the first.
+      // Samples of another component for the same pixels, without light of the first.
       stage.component = 3;
       stage.sample(stage.film, 8, [&](uint32_t x, uint32_t) { return Sample{vec3(float(x))}; });
     }
@@ -178,8 +178,8 @@ TEST_CASE("the filter: components by themselves, and one that is off") {
   }
 }
 
-TEST_CASE("the filter: one sample, one pixel, no light") {
-  SECTION("one sample says nothing of its noise") {
+TEST_CASE("the filter with one sample, one pixel, no light") {
+  SECTION("one sample has no noise estimate") {
     test::Stage stage(20, 20);
     Noise noise;
     stage.sample(stage.film, 1, [&](uint32_t, uint32_t) { return Sample{vec3(noise())}; });
@@ -213,13 +213,13 @@ TEST_CASE("the filter: one sample, one pixel, no light") {
   }
 }
 
-TEST_CASE("the filter: the same film, the same bits; light of any size") {
+TEST_CASE("the filter gives the same bits for the same film, and scales with the light") {
   std::vector<std::vector<vec3>> found;
   for (const float scale : {1.0f, 1.0f, 1024.0f, 1.0f / 65536}) {
     test::Stage stage(40, 40);
     Noise noise;
     stage.sample(stage.film, 8, [&](uint32_t x, uint32_t) {
-      // Nothing is there on the right.
+      // No surface on the right.
       Sample s{vec3(scale * (noise() + (x > 20 ? 3.0f : 0.0f)))};
       if (x > 30) s.depth = 0;
       return s;
@@ -229,15 +229,15 @@ TEST_CASE("the filter: the same film, the same bits; light of any size") {
     for (vec3& v : found.back()) v /= scale;
     CHECK(f.error.rms < 0.3 * double{scale});
   }
-  // Powers of two scale all of it.
+  // Powers of two scale the whole picture.
   for (size_t k = 1; k < found.size(); ++k) CHECK(found[k] == found[0]);
 }
 
-TEST_CASE("the filter: noise that both halves have of records is none of the picture's light") {
+TEST_CASE("the filter does not count noise shared by both halves through records as light") {
   test::Stage stage(64, 48);
   std::mt19937 random(5);
   std::normal_distribution<float> noise(0, 0.1f), records(0, 0.15f);
-  // A record serves 4x4 pixels.
+  // A record covers 4x4 pixels.
   std::vector<float> held(16 * 12);
   for (float& h : held) h = records(random);
   stage.sample(stage.film, 16, [&](uint32_t x, uint32_t y) {
@@ -256,17 +256,17 @@ TEST_CASE("the filter: noise that both halves have of records is none of the pic
   const double known = rms(filter(stage, 2).filtered, light);
   INFO(before << ", unknown " << unknown << ", known " << known);
   CHECK(known < 0.8 * unknown);
-  // Another component looks them up, or none.
+  // Another component looks them up, or none does.
   CHECK(rms(filter(stage, 1).filtered, light) == unknown);
 }
 
-TEST_CASE("the filter: it fades as samples grow") {
+TEST_CASE("the filter fades as samples grow") {
   double share[2];
   const Truth light = [](uint32_t x, uint32_t y) { return 1 + 0.5 * std::sin(0.9 * x) * std::sin(0.7 * y); };
   for (const uint32_t many : {0u, 1u}) {
     test::Stage stage(48, 48);
     std::mt19937 random(3);
-    // Of 4 samples, and what the mean of 4096 is like.
+    // 4 samples each, with the noise of 4 samples or of the mean of 4096.
     std::normal_distribution<float> noise(0, many ? 0.5f / 32 : 0.5f);
     stage.sample(stage.film, 4, [&](uint32_t x, uint32_t y) {
       return Sample{vec3(float(light(x, y)) * std::max(0.0f, 1 + noise(random)))};
@@ -279,7 +279,7 @@ TEST_CASE("the filter: it fades as samples grow") {
   CHECK(share[0] < 0.8);
 }
 
-TEST_CASE("the error of a filtered picture: a bias that is known") {
+TEST_CASE("the error of a filtered picture includes a known bias") {
   std::mt19937 random(11);
   std::normal_distribution<float> noise(0, 0.2f);
   film::Image samples, filtered;
@@ -291,7 +291,7 @@ TEST_CASE("the error of a filtered picture: a bias that is known") {
   for (size_t i = 0; i < n; ++i) {
     const float even = 1 + noise(random), odd = 1 + noise(random);
     samples.components[0][i] = vec3((even + odd) / 2), samples.odd_half[0][i] = vec3(odd);
-    // Half of it is wrong by 0.1, and that without any noise.
+    // Half of the picture is wrong by 0.1, without any noise.
     const float wrong = i % 80 < 40 ? 1.1f : 1.0f;
     filtered.components[0][i] = filtered.odd_half[0][i] = vec3(wrong);
   }

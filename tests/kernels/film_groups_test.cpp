@@ -1,7 +1,6 @@
 // links: film
-// Sums by group of lights in short, through the real kernel: right in the mean however small samples are
-// beside the sum, as noisy as is said, over the whole range of floats, and to the bit the same however
-// samples are cut into batches.
+// Compact sums by light group, through the real kernel: unbiased for any ratio of sample and sum, as noisy as
+// stated, over the whole range of floats, and bit-identical for any division of samples into batches.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <functional>
@@ -17,7 +16,7 @@ namespace {
 constexpr uint32_t k_groups = 2, k_side = 64, k_pixels = k_side * k_side, k_blocks = k_pixels / 64;
 constexpr uint32_t k_lanes = 4 + k_groups;
 
-/// What sample `s` brings of a group, to every pixel alike: pixels then differ by rounding alone.
+/// The contribution of sample `s` to a group, the same in every pixel: pixels then differ by rounding only.
 using Contribution = std::function<vec3(uint32_t group, uint32_t s)>;
 
 /// A film, and the kernel that adds to it.
@@ -42,13 +41,13 @@ struct Bench {
   }
   ~Bench() { CHECK(device.validation_messages() == 0); }
 
-  /// Samples `first` to `first + count`, in batches of so many.
+  /// Adds samples `first` to `first + count`, in batches of `batch`.
   void samples(uint32_t first, uint32_t count, uint32_t batch, const Contribution& contribution) {
     radiance = gpu::Buffer(
         device,
         {.name = "radiance", .bytes = uint64_t{k_pixels} * batch * k_lanes * sizeof(vec4), .texel = true});
     resources.set("radiance_texels", radiance);
-    // Components are not its affair, nor are groups that a path has no light of: of those nothing is written.
+    // The kernel ignores components and groups without light of the path: nothing is written for them.
     std::vector<vec4> values(size_t{k_pixels} * batch * k_lanes, vec4(7));
     std::vector<shared::WorkBlock> blocks(k_blocks);
     for (uint32_t done = 0; done < count; done += batch) {
@@ -62,8 +61,8 @@ struct Bench {
     }
   }
 
-  /// What path `i` of every pixel has brought, as transport/shade.comp leaves it: groups with light have a
-  /// bit.
+  /// The contribution of path `i` of every pixel, as written by transport/shade.comp: groups with light have
+  /// a bit.
   static void write_sample(std::vector<vec4>& values, uint32_t i, uint32_t sample,
                            const Contribution& contribution) {
     uint32_t lit = 0;
@@ -79,8 +78,7 @@ struct Bench {
     }
   }
 
-  /// Of a group, by pixel: the sums of even and odd samples. Nobody has counted samples, so that a mean is a
-  /// sum.
+  /// A group's sums of even and odd samples by pixel. The sample count is 0, so a mean is a sum.
   std::vector<vec3> sums(uint32_t group) const { return film.read_group_sum(group); }
 };
 
@@ -95,14 +93,14 @@ Moments moments(const std::vector<vec3>& values, int channel) {
   return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean))};
 }
 
-/// Halves rounded apart, each of half of the samples, are together no noisier than all of them in one.
+/// Halves rounded separately, each with half of the samples, have together at most the noise of a single sum.
 double estimated_deviation(double samples) { return std::min(std::sqrt(samples / 12) / 131072, 1.0 / 512); }
 
 }  // namespace
 
 TEST_CASE(
     "small samples beside a large sum are not lost: the mean over pixels is right to 5 standard errors") {
-  // An eighth of the sum's last bit: rounding to the nearest would lose every one of them.
+  // An eighth of the sum's last bit: rounding to nearest would lose every sample.
   constexpr uint32_t k_small = 4000;
   const float small = 0x1p-20f;
   Bench b;
@@ -121,8 +119,8 @@ TEST_CASE(
     }
 }
 
-TEST_CASE("sums of many samples are right in the mean, and no noisier than is said") {
-  // Samples of uneven size, the group's mean in all channels; what differs between pixels is rounding.
+TEST_CASE("sums of many samples are unbiased, and no noisier than stated") {
+  // Samples of different size with the group's mean in all channels; pixels differ by rounding.
   const Contribution contribution = [](uint32_t group, uint32_t s) {
     const float x = float((s * 2654435761u) >> 8) * 0x1p-24f;
     return (group == 0 ? 3.7f : 1e-6f) * vec3(x, 0.3f, 0.9f * x * x);
@@ -140,7 +138,7 @@ TEST_CASE("sums of many samples are right in the mean, and no noisier than is sa
         const Moments m = moments(b.sums(g), k);
         INFO(samples << " samples, group " << g << ", channel " << k << ": " << m.deviation / exact[g][k]);
         CHECK(std::abs(m.mean - exact[g][k]) <= 5 * m.deviation / std::sqrt(double{k_pixels}));
-        // The bit is the largest channel's.
+        // The bit is that of the largest channel.
         const double largest = std::max({exact[g][0], exact[g][1], exact[g][2]});
         CHECK(m.deviation <= 1.1 * estimated_deviation(samples) * largest);
         CHECK(m.deviation > 0);
@@ -148,7 +146,7 @@ TEST_CASE("sums of many samples are right in the mean, and no noisier than is sa
   }
 }
 
-TEST_CASE("sums are the same to the bit however samples are cut into batches and written") {
+TEST_CASE("sums are bit-identical for any batches and either way of writing") {
   const Contribution contribution = [](uint32_t group, uint32_t s) {
     return std::exp2(float(s * 37 % 23) - 11.0f) * vec3(0.3f, 1 + 0.1f * float(group), float(s % 3));
   };
@@ -165,7 +163,7 @@ TEST_CASE("sums are the same to the bit however samples are cut into batches and
   }
 }
 
-TEST_CASE("sums reach from 1e-32 to 1e36, and hold one sample to their last bit") {
+TEST_CASE("sums range from 1e-32 to 1e36, and represent one sample exactly") {
   for (const float scale : {1e-32f, 1e-20f, 1.0f, 1e20f, 1e36f}) {
     INFO(scale);
     Bench b;
@@ -177,7 +175,7 @@ TEST_CASE("sums reach from 1e-32 to 1e36, and hold one sample to their last bit"
       CHECK(v.z == 0);
     }
     for (const vec3& v : b.sums(1)) CHECK(v == vec3(0));
-    // A large one after it, and one that is smaller by far: the large one's share is right.
+    // A large one after it, and a far smaller one: the large one's share is correct.
     b.samples(1, 2, 1, [&](uint32_t group, uint32_t s) {
       return group == 0 ? vec3(0) : s == 1 ? vec3(scale) : vec3(1e-12f * scale);
     });
@@ -186,16 +184,15 @@ TEST_CASE("sums reach from 1e-32 to 1e36, and hold one sample to their last bit"
   }
 }
 
-TEST_CASE("a channel that is nothing beside the others goes with them in a mix") {
+TEST_CASE("a channel that is negligible beside the others is scaled with them in a mix") {
   CHECK(shared::group_ratio(vec3(2, 0, 0), vec3(1, 0, 4)) == vec3(2, 0.4f, 0));
   CHECK(shared::group_ratio(vec3(0), vec3(0)) == vec3(1));
   CHECK(shared::group_ratio(vec3(0), vec3(3, 2, 0)) == vec3(0));
 }
 
-TEST_CASE("samples that have no light of a group add nothing to it, whatever memory holds there") {
+TEST_CASE("samples without light of a group add nothing to it, whatever memory contains") {
   Bench bench;
-  // Whole numbers, which are kept exactly; each group has light in some samples of a batch and none in
-  // others.
+  // Whole numbers, which are represented exactly; each group has light in some samples of a batch.
   const auto contribution = [](uint32_t group, uint32_t sample) {
     return sample % (2 + group) == 0 ? vec3(1, 2, float(1 + group)) : vec3(0);
   };

@@ -1,6 +1,6 @@
 // links: film film_io
-// Heat maps and the overlay of tiles through the real shaders: pixels are where the ramp says, and the ramp
-// is what the legend draws.
+// Heat maps and the overlay of tiles through the real shaders: pixels have the ramp's colour of their value,
+// and the legend draws the same ramp.
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
 
@@ -36,9 +36,9 @@ float farthest(const vec3& a, const vec3& b) {
   return std::max({d.x, d.y, d.z});
 }
 
-/// A film whose counts, vertices and errors are the test's own.
+/// A film with sample counts, vertices and errors set by the test.
 struct Stage {
-  static constexpr uint32_t k_width = 44, k_height = 27;  // tiles that are cut off on two sides
+  static constexpr uint32_t k_width = 44, k_height = 27;  // tiles are cut off on two sides
   gpu::Device device{{test::device_name(), true}};
   gpu::ShaderCompiler compiler;
   gpu::Stream stream{device};
@@ -69,7 +69,7 @@ struct Stage {
 
 }  // namespace
 
-TEST_CASE("the ramps are those of their names, and their lightness rises evenly") {
+TEST_CASE("the ramps match their names, and their lightness rises evenly") {
   for (const auto& [ramp, name] :
        {std::pair{shared::k_ramp_viridis, "viridis"}, {shared::k_ramp_magma, "magma"}}) {
     constexpr int k_steps = 101;
@@ -92,7 +92,7 @@ TEST_CASE("the ramps are those of their names, and their lightness rises evenly"
   }
   for (const uint32_t ramp : {shared::k_ramp_viridis, shared::k_ramp_magma, shared::k_ramp_tiles}) {
     const double from = lightness(shared::ramp_color(ramp, 0)), to = lightness(shared::ramp_color(ramp, 1));
-    CHECK(to - from > 40);  // black and white eyes can read it
+    CHECK(to - from > 40);  // readable in black and white
     for (int i = 1; i <= 16; ++i) {
       const double before = lightness(shared::ramp_color(ramp, static_cast<float>(i - 1) / 16));
       const double step = lightness(shared::ramp_color(ramp, static_cast<float>(i) / 16)) - before;
@@ -101,7 +101,7 @@ TEST_CASE("the ramps are those of their names, and their lightness rises evenly"
       CHECK(step < 1.8 * (to - from) / 16);
     }
   }
-  // What cannot be is held to the ends.
+  // Invalid values are clamped to the ends.
   for (const float odd : {-1.0f, NAN, -INFINITY})
     CHECK(shared::ramp_color(0, odd) == shared::ramp_color(0, 0));
   CHECK(shared::ramp_color(0, INFINITY) == shared::ramp_color(0, 1));
@@ -112,7 +112,7 @@ TEST_CASE("the ramps are those of their names, and their lightness rises evenly"
   CHECK(shared::ramp_position(5, 0, 10, 0) == 0.5f);
 }
 
-TEST_CASE("heat maps: each pixel has its value's place on the ramp, and nothing is grey") {
+TEST_CASE("heat maps: each pixel has its value's colour of the ramp, and none is grey") {
   Stage s;
   std::vector<uint32_t> counts, vertices;
   for (uint32_t y = 0; y < Stage::k_height; ++y)
@@ -121,7 +121,7 @@ TEST_CASE("heat maps: each pixel has its value's place on the ramp, and nothing 
       vertices.push_back(40 * x + 100 * y);
     }
   std::vector<shared::BlockError> errors(s.film.blocks());
-  for (uint32_t b = 1; b < errors.size(); ++b)  // of the first nothing is known
+  for (uint32_t b = 1; b < errors.size(); ++b)  // the first is unknown
     for (uint32_t q = 0; q < 4; ++q) {
       errors[b].pixels = 64;
       errors[b].quadrant_pixels[q] = q == 3 && b % 3 == 0 ? 0.0f : 16.0f;
@@ -166,7 +166,7 @@ TEST_CASE("heat maps: each pixel has its value's place on the ramp, and nothing 
   }
 }
 
-TEST_CASE("a tile's place on its ramp: even in factors, from eight times the target to the target") {
+TEST_CASE("a tile's position on its ramp is logarithmic, from eight times the target to the target") {
   CHECK(film::tile_position(0.05, 0.05) == 1);
   CHECK(film::tile_position(0.001, 0.05) == 1);
   CHECK(film::tile_position(0.1, 0.05) == Approx(2.0 / 3));
@@ -177,8 +177,7 @@ TEST_CASE("a tile's place on its ramp: even in factors, from eight times the tar
   CHECK(film::tile_position(0.1, 0) < 0);
 }
 
-TEST_CASE(
-    "the overlay: tiles at work are outlined, done ones dim, others told apart; the rest is as it was") {
+TEST_CASE("the overlay outlines active tiles, dims finished ones, marks others, and keeps the rest") {
   Stage s;
   constexpr uint32_t k_side = 16, k_across = 3;
   const vec3 base(0.5f, 0.6f, 0.4f);
@@ -201,7 +200,7 @@ TEST_CASE(
   const auto at = [&](const std::vector<uint8_t>& shown, uint32_t x, uint32_t y) {
     return pixel_of(shown, Stage::k_width, x, y);
   };
-  // Of the two rows of three tiles: at work and far, at work and near, done; given up, heavy and done,
+  // Two rows of three tiles: active and far, active and near, finished; limited, heavy-tailed and finished,
   // waiting.
   const std::vector<uint8_t> shown = draw({{0.0f, shared::k_tile_active},
                                            {1.0f, shared::k_tile_active},
@@ -215,12 +214,12 @@ TEST_CASE(
   CHECK(farthest(at(shown, 24, 0), glm::mix(base, near, 0.85f)) < 0.06f);
   CHECK(farthest(at(shown, 16, 8), glm::mix(base, near, 0.85f)) < 0.06f);  // one line between neighbours
   CHECK(farthest(at(shown, 15, 8), at(shown, 8, 8)) < 0.01f);
-  CHECK(farthest(at(shown, 31, 8), glm::mix(base, near, 0.85f)) < 0.06f);  // and one towards a done tile
-  CHECK(farthest(at(shown, 8, 8), base) < 0.12f);                          // the picture is seen inside
+  CHECK(farthest(at(shown, 31, 8), glm::mix(base, near, 0.85f)) < 0.06f);  // and one towards a finished tile
+  CHECK(farthest(at(shown, 8, 8), base) < 0.12f);                          // the picture is visible inside
   CHECK(at(shown, 8, 8).x - at(shown, 24, 8).x > 0.01f);                   // tinted
-  CHECK(luminance(at(shown, 38, 8)) < 0.5f * luminance(base));             // done: dim, without an outline
+  CHECK(luminance(at(shown, 38, 8)) < 0.5f * luminance(base));  // finished: dim, without an outline
   CHECK(farthest(at(shown, 38, 0), at(shown, 38, 8)) < 0.01f);
-  // Given up: dim too, with a hatch.
+  // Limited: dim too, with hatching.
   uint32_t hatched = 0, dim = 0;
   for (uint32_t y = 16; y < Stage::k_height; ++y)
     for (uint32_t x = 0; x < 16; ++x) (luminance(at(shown, x, y)) > 0.35f ? hatched : dim) += 1;

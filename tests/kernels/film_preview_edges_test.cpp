@@ -1,5 +1,5 @@
 // links: film film_io
-// What the window shows where pixels' samples meet several surfaces or materials, through the real shaders.
+// The window's preview in pixels whose samples hit several surfaces or materials, through the real shaders.
 #include <algorithm>
 
 #include "kernels/film_preview_support.h"
@@ -9,16 +9,16 @@ using namespace lucerna::test;
 
 namespace {
 
-/// Share of a pixel that the nearer of two surfaces covers, left of a border that is askew.
+/// Share of a pixel that the nearer of two surfaces covers, left of a slanted border.
 float covered(uint32_t x, uint32_t y) { return std::clamp(20.5f + 0.3f * float(y) - float(x), 0.0f, 1.0f); }
 
 struct Border {
-  double edge;       ///< rms of relative errors of mixed pixels
-  double beside;     ///< mean of the nearer one's pixels next to the border
-  double brightest;  ///< of the nearer one's pixels that show nothing else
+  double edge;       ///< rms relative error of mixed pixels
+  double beside;     ///< mean of the nearer surface's pixels next to the border
+  double brightest;  ///< of pixels of the nearer surface only
 };
 
-/// Of light `near` that one in four paths finds, before `far`, which has no noise.
+/// Light `near`, found by one in four paths, in front of noise-free `far`.
 Border border_of(Stage& stage, float near, float far) {
   const std::vector<float> shown = stage.shown();
   double square = 0, mixed = 0, sum = 0, count = 0, brightest = 0;
@@ -38,8 +38,8 @@ Border border_of(Stage& stage, float near, float far) {
 
 constexpr float k_near = 0.15f, k_far = 0.9f;
 constexpr uint32_t k_samples = 12;
-// Of twelve samples' shares of two lights, for those shares that are there: sqrt(s (1 - s) / 12) times 0.75
-// over the mean.
+// The standard deviation of twelve samples' shares of two lights, sqrt(s (1 - s) / 12) for occurring shares
+// s, times 0.75, over the mean.
 constexpr double k_edge_error = 0.3;
 
 /// Adds samples of the nearer surface, by its share, and of the other.
@@ -54,7 +54,7 @@ void sample_border(Stage& stage, const Sample& near, const Sample& far) {
   });
 }
 
-/// Mixed pixels show both in their shares, those beside them the nearer one alone.
+/// Mixed pixels show both surfaces by their shares, neighbouring pixels the nearer one only.
 void check_border(Stage& stage) {
   const Border shown = border_of(stage, k_near, k_far);
   INFO("edge " << shown.edge << ", beside it " << shown.beside);
@@ -64,14 +64,14 @@ void check_border(Stage& stage) {
 
 }  // namespace
 
-TEST_CASE("before a bright sky a pixel shows as much of either as its samples have met") {
+TEST_CASE("in front of a bright background a pixel shows each part by its share of samples") {
   Stage stage(64, 48);
   sample_border(stage, {.light = vec3(k_near)}, {.light = vec3(k_far), .depth = 0});
   stage.show();
   check_border(stage);
 }
 
-TEST_CASE("before another surface a pixel shows as much of either as its depth tells of") {
+TEST_CASE("in front of another surface a pixel shows each part by its share of depths") {
   Stage stage(64, 48);
   sample_border(stage, {.light = vec3(k_near), .depth = 2}, {.light = vec3(k_far), .depth = 9});
   const gpu::Buffer surfaces = surfaces_of(
@@ -80,7 +80,7 @@ TEST_CASE("before another surface a pixel shows as much of either as its depth t
   check_border(stage);
 }
 
-TEST_CASE("beside a lamp that shines in its plane a frame shows its own light") {
+TEST_CASE("a frame beside a lamp in its plane shows its own light") {
   Stage stage(64, 48);
   stage.component = 0;
   const float far = 20 * k_far;
@@ -95,7 +95,7 @@ TEST_CASE("beside a lamp that shines in its plane a frame shows its own light") 
 }
 
 TEST_CASE("a dark mat on a table that mirrors a window does not glow") {
-  // The table's light is a mirror's: over its colour it is far more than what falls on the mat.
+  // The table's light is a reflection: over its albedo it is far more than the light on the mat.
   Stage stage(96, 64);
   std::mt19937 random(3);
   const auto mat = [](uint32_t x, uint32_t y) { return x >= 30 && x < 66 && y >= 20 && y < 44; };
@@ -109,13 +109,13 @@ TEST_CASE("a dark mat on a table that mirrors a window does not glow") {
   double sum = 0, count = 0;
   for (uint32_t y = 20; y < 44; ++y)
     for (uint32_t x = 30; x < 66; ++x) sum += shown[y * 96 + x], count += 1;
-  INFO("the mat's light " << sum / count);
+  INFO("light of the mat: " << sum / count);
   CHECK(sum / count < 0.015);
   CHECK(sum / count > 0.006);
 }
 
-TEST_CASE("what a floor mirrors does not show its pattern, and what falls on it does") {
-  // Planks of two colours, of which light knows nothing, or half of it, or which it goes with.
+TEST_CASE("a floor's pattern does not show in its reflections, but in its diffuse light") {
+  // Planks of two colours; the light is independent of them, half dependent, or proportional.
   Stage stage(96, 64);
   std::mt19937 random(7);
   const float share = GENERATE(0.0f, 0.5f, 1.0f);
@@ -131,8 +131,8 @@ TEST_CASE("what a floor mirrors does not show its pattern, and what falls on it 
   CHECK(off < 0.15);
 }
 
-TEST_CASE("what a mirror shows has the borders of what it shows") {
-  // Samples meet the mirror; behind it, as it were, lie two surfaces of other light.
+TEST_CASE("an image in a mirror has the borders of the reflected objects") {
+  // Samples hit the mirror; behind it, virtually, are two surfaces of different light.
   Stage stage(96, 64);
   std::mt19937 random(21);
   const auto light = [](uint32_t x) { return x < 41 ? 0.1f : 0.7f; };
@@ -149,12 +149,12 @@ TEST_CASE("what a mirror shows has the borders of what it shows") {
         stage.shown(), [&](uint32_t x, uint32_t) { return light(x); }, 96);
   };
   const double without = error(false), with = error(true);
-  INFO("relative error " << without << ", with what the mirror shows " << with);
+  INFO("relative error " << without << ", with the mirror's image " << with);
   CHECK(without > 0.3);
   CHECK(with < 0.15);
 }
 
-TEST_CASE("a bright path among many, or two among few, is no speck") {
+TEST_CASE("one bright path among many, or two among few, show no speck") {
   Stage stage(96, 64);
   std::mt19937 random(5);
   std::normal_distribution<float> noise(0, 1);

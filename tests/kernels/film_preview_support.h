@@ -1,5 +1,5 @@
 #pragma once
-// A film of made-up samples and its preview, through the real shaders.
+// A film of synthetic samples and its preview, through the real shaders.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -18,16 +18,16 @@ using film::Film;
 
 inline uint32_t compact(uint32_t x) { return (x & 1u) | (x >> 1 & 2u) | (x >> 2 & 4u); }
 
-/// What a sample of a pixel brings.
+/// The values of a pixel's sample.
 struct Sample {
   vec3 light{0}, albedo{1}, normal{0, 0, 1};
-  float depth = 5;  ///< 0: nothing is there
+  float depth = 5;  ///< 0: no surface
 };
 using Source = std::function<Sample(uint32_t x, uint32_t y)>;
 
 struct Stage {
   uint32_t width, height;
-  uint32_t component = 1;  ///< of what samples bring
+  uint32_t component = 1;  ///< of the samples' light
   gpu::Device device{{test::device_name(), true}};
   gpu::ShaderCompiler compiler;
   gpu::Stream stream{device};
@@ -44,7 +44,7 @@ struct Stage {
   }
   ~Stage() { CHECK(device.validation_messages() == 0); }
 
-  /// Adds samples to all of a film's pixels, or to those of its blocks where `where` is true.
+  /// Adds samples to all pixels of a film, or to those of blocks where `where` is true.
   void sample(
       Film& to, uint32_t samples, const Source& source,
       const std::function<bool(uint32_t block)>& where = [](uint32_t) { return true; }) {
@@ -82,7 +82,7 @@ struct Stage {
   film::PreviewShares show(const Film* draft = nullptr, bool filtered = true) {
     return preview.develop(stream, film, draft, view, camera, filtered);
   }
-  /// Linear red, as the picture shows it.
+  /// Linear red as displayed.
   std::vector<float> shown() const {
     const std::vector<uint8_t> rgba = film.read_picture();
     std::vector<float> red;
@@ -99,14 +99,14 @@ struct Seen {
   bool emits = false, beyond = false;
 };
 
-/// Surfaces of a stage's pixels that face the eye, as shaders/shared/preview.h has them.
+/// Surfaces of a stage's pixels that face the camera, in the format of shaders/shared/preview.h.
 inline gpu::Buffer surfaces_of(Stage& stage, const std::function<Seen(uint32_t x, uint32_t y)>& at) {
   std::vector<vec4> texels;
   for (uint32_t y = 0; y < stage.height; ++y)
     for (uint32_t x = 0; x < stage.width; ++x) {
       const Seen s = at(x, y);
       const auto byte = uint32_t(std::lround(s.albedo * 255));
-      // A normal towards the eye is 0 on the octahedron.
+      // A normal towards the camera is 0 on the octahedron.
       const uint32_t bits[2] = {0, byte * 0x010101u | (s.emits ? 0 : 0xff000000u)};
       vec4 texel(s.depth, 0, 0, s.beyond ? shared::k_preview_beyond : 0);
       std::memcpy(&texel.y, bits, sizeof bits);
@@ -117,7 +117,7 @@ inline gpu::Buffer surfaces_of(Stage& stage, const std::function<Seen(uint32_t x
   return surfaces;
 }
 
-/// The preview of a stage's film, of whose pixels it is known what they show.
+/// The preview of a stage's film with known primary visibility.
 inline film::PreviewShares show_seen(Stage& stage, const gpu::Buffer& surfaces) {
   return stage.preview.develop(stage.stream, stage.film, nullptr, stage.view, stage.camera, true,
                                film::Sampled::all, &surfaces);

@@ -1,6 +1,6 @@
 // links: film film_io
-// What the window shows of a film with few samples, through the real shaders: noise goes and edges of colour
-// stay, what was there before stays until the new light says otherwise, and goes where the camera sees it.
+// The window's preview of a film with few samples, through the real shaders: noise is removed and colour
+// edges stay; the previous picture stays until new light contradicts it, and moves with the camera.
 #include "kernels/film_preview_support.h"
 
 using namespace lucerna;
@@ -28,12 +28,12 @@ TEST_CASE("noise of few samples is filtered, and edges of the surfaces' colours 
   }
 }
 
-TEST_CASE("what has little noise is shown as it is, pixel for pixel, also without a filter") {
+TEST_CASE("a picture with little noise is shown unchanged, pixel for pixel, also without a filter") {
   Stage stage(60, 44);
   std::mt19937 random(4);
   std::uniform_real_distribution<float> any(0, 1);
   std::vector<float> value(size_t(stage.width) * stage.height);
-  for (float& v : value) v = 0.05f + 0.9f * any(random);  // detail of one pixel that surfaces know nothing of
+  for (float& v : value) v = 0.05f + 0.9f * any(random);  // detail of one pixel, independent of the surfaces
   stage.sample(stage.film, 8, [&](uint32_t x, uint32_t y) {
     return Sample{.light = vec3(x < stage.width && y < stage.height ? value[y * stage.width + x] : 0)};
   });
@@ -50,7 +50,7 @@ TEST_CASE("what has little noise is shown as it is, pixel for pixel, also withou
   }
 }
 
-TEST_CASE("pixels without samples show the draft, without black ones or seams of blocks") {
+TEST_CASE("pixels without samples show the coarse film, without black pixels or seams between blocks") {
   Stage stage(96, 64);
   Film draft(stage.device, 24, 16);
   draft.clear(stage.stream);
@@ -62,25 +62,25 @@ TEST_CASE("pixels without samples show the draft, without black ones or seams of
   for (const float v : stage.shown()) CHECK(v == Approx(0.4f).epsilon(0.02));
 }
 
-TEST_CASE("after an edit what was there stays until new light says otherwise") {
+TEST_CASE("after an edit the previous picture stays until new light contradicts it") {
   Stage stage(64, 48);
   const auto light = [](uint32_t x, uint32_t y) { return 0.2f + 0.3f * float((x / 8 + y / 8) % 2); };
   stage.sample(stage.film, 8, [&](uint32_t x, uint32_t y) { return Sample{.light = vec3(light(x, y))}; });
   stage.show();
   const std::vector<float> before = stage.shown();
 
-  // Nothing new is known.
+  // No new light.
   stage.preview.keep();
   stage.film.clear(stage.stream);
   CHECK(stage.show().stale == Approx(1));
   for (size_t i = 0; i < before.size(); ++i) REQUIRE(stage.shown()[i] == Approx(before[i]).margin(0.004));
-  // All light is known to be half.
+  // All light is known to be halved.
   stage.preview.keep(vec3(0.5f));
   stage.show();
   for (size_t i = 0; i < before.size(); ++i)
     REQUIRE(stage.shown()[i] == Approx(0.5f * before[i]).margin(0.004));
 
-  // Noisy samples of that light, one a pixel: hardly anything is taken from them.
+  // Noisy samples of that light, one per pixel: they have almost no influence.
   std::mt19937 random(5);
   std::exponential_distribution<float> noise(1);
   stage.sample(stage.film, 1, [&](uint32_t x, uint32_t y) {
@@ -93,14 +93,14 @@ TEST_CASE("after an edit what was there stays until new light says otherwise") {
   INFO("noise " << raw << ", shown " << rms(stage.shown(), half, stage.width));
   CHECK(rms(stage.shown(), half, stage.width) < 0.15 * raw);
 
-  // Clean samples of other light: nothing is left of the old.
+  // Noise-free samples of other light replace the previous picture.
   stage.preview.keep();
   stage.film.clear(stage.stream);
   stage.sample(stage.film, 8, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.7f)}; });
   CHECK(stage.show().stale < 0.01);
   for (const float v : stage.shown()) REQUIRE(v == Approx(0.7f).epsilon(0.01));
 
-  // Noisy samples of light five times as dim contradict it at once.
+  // Noisy samples of light five times dimmer contradict it immediately.
   stage.preview.keep();
   stage.film.clear(stage.stream);
   stage.sample(stage.film, 4,
@@ -115,9 +115,8 @@ TEST_CASE("after an edit what was there stays until new light says otherwise") {
   for (const float v : stage.shown()) REQUIRE(v == 0);
 }
 
-TEST_CASE("what was there before is scaled by what few samples of many pixels say of the change") {
-  // Shadows too fine to be seen in the new noise, in a room of which one side gets dimmer and the other
-  // brighter.
+TEST_CASE("the previous picture is scaled by the change that few samples of many pixels show") {
+  // Shadows too fine for the new noise, in a room where one side gets dimmer and the other brighter.
   Stage stage(192, 96);
   const auto pattern = [](uint32_t x, uint32_t y) { return (x / 3 + y / 3) % 2 ? 0.3f : 0.1f; };
   const auto change = [](uint32_t x) { return x < 96 ? 0.25f : 1.8f; };
@@ -125,7 +124,7 @@ TEST_CASE("what was there before is scaled by what few samples of many pixels sa
   stage.show();
   stage.preview.keep();
   stage.film.clear(stage.stream);
-  // Of ten paths one finds the light.
+  // One in ten paths finds the light.
   std::mt19937 random(11);
   std::uniform_real_distribution<float> any(0, 1);
   stage.sample(stage.film, 1, [&](uint32_t x, uint32_t y) {
@@ -146,9 +145,7 @@ TEST_CASE("what was there before is scaled by what few samples of many pixels sa
   CHECK(fine > 0.025);
 }
 
-TEST_CASE(
-    "where few samples by chance find nothing what was there before does not go dark, but for lamps' own "
-    "light") {
+TEST_CASE("where few samples find no light the previous picture does not go dark, except direct light") {
   for (const uint32_t component : {0u, 1u}) {
     Stage stage(192, 96);
     stage.component = component;
@@ -156,7 +153,7 @@ TEST_CASE(
     stage.show();
     stage.preview.keep();
     stage.film.clear(stage.stream);
-    // A block of 32x32 pixels finds this light once or twice, or not at all.
+    // A block of 32x32 pixels finds this light once, twice, or not at all.
     std::mt19937 random(17);
     stage.sample(stage.film, 1,
                  [&](uint32_t, uint32_t) { return Sample{.light = vec3(random() % 700 == 0 ? 140.0f : 0)}; });
@@ -170,8 +167,7 @@ TEST_CASE(
       darkest = std::min(darkest, sum / 1024);
     }
     INFO("component " << component << ": " << darkest);
-    // Light by way of other surfaces is found by chance; whether a lamp shines on a place any path to it
-    // tells.
+    // Indirect light is found by chance; every path shows whether a lamp lights a point.
     if (component == 0)
       CHECK(darkest < 0.1);
     else
@@ -179,7 +175,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("what was there before is shown in the new colour of a surface at once") {
+TEST_CASE("the previous picture is shown in a surface's new colour immediately") {
   Stage stage(96, 64);
   std::mt19937 random(5);
   std::exponential_distribution<float> noise(1);
@@ -202,7 +198,7 @@ TEST_CASE("what was there before is shown in the new colour of a surface at once
   }
 }
 
-TEST_CASE("what a draft alone has shown stays after an edit, and goes with the camera") {
+TEST_CASE("a picture of the coarse film only stays after an edit, and moves with the camera") {
   Stage stage(64, 48);
   Film draft(stage.device, 16, 12);
   draft.clear(stage.stream);
@@ -221,9 +217,9 @@ TEST_CASE("what a draft alone has shown stays after an edit, and goes with the c
     REQUIRE(stage.shown()[24 * 64 + x] == Approx(before[24 * 64 + x + 8]).margin(0.02));
 }
 
-TEST_CASE("a draft of one noisy sample does not put its specks in the place of what was there") {
+TEST_CASE("a coarse film of one noisy sample does not replace the previous picture by specks") {
   Stage stage(96, 64);
-  // Narrow surfaces side by side, so that few cells have neighbours of their own kind.
+  // Narrow surfaces side by side, so few cells have similar neighbours.
   const auto surface = [](uint32_t x, float scale) {
     const float turn = 1.5f * float(uint32_t(float(x) * scale) / 4 % 2);
     return vec3(std::sin(turn), 0, std::cos(turn));
@@ -246,9 +242,9 @@ TEST_CASE("a draft of one noisy sample does not put its specks in the place of w
   CHECK(error < 0.5);
 }
 
-TEST_CASE("after a move of the camera what was there is where the camera sees it now") {
+TEST_CASE("after a camera move the previous picture is reprojected") {
   Stage stage(64, 48);
-  // A wall 5 m away, and to the right one 2.5 m away.
+  // A wall at 5 m, and on the right one at 2.5 m.
   const auto wall = [](uint32_t x, uint32_t y) {
     const bool near = x >= 40;
     return Sample{.light = vec3(near ? 0.8f : 0.1f + 0.01f * float((3 * x + 7 * y) % 16)),
@@ -256,7 +252,7 @@ TEST_CASE("after a move of the camera what was there is where the camera sees it
   };
   stage.sample(stage.film, 8, wall);
   stage.show();
-  // By four pixels of the far wall's, which are 2 * 5 / 64 m wide, and so by eight of the near one's.
+  // By four pixels of the far wall, which are 2 * 5 / 64 m wide, and so by eight of the near one.
   stage.preview.keep();
   stage.film.clear(stage.stream);
   stage.camera.axes.origin.x = 4 * 2 * 5 / 64.0f;
@@ -270,8 +266,9 @@ TEST_CASE("after a move of the camera what was there is where the camera sees it
       REQUIRE(shown[y * 64 + x] == Approx(expected).margin(0.01));
     }
   for (uint32_t x = 60; x < 64; ++x) hidden += shown[24 * 64 + x] == 0;
-  CHECK(hidden == 4);  // it has come into view; nobody knows it
-  // A turn by half of the picture's width moves all alike, whatever its distance, also what is far.
+  CHECK(hidden == 4);  // newly visible; unknown
+  // A rotation by half of the picture's width moves every pixel alike, whatever its distance, also at
+  // infinity.
   stage.preview.forget();
   stage.camera.axes = {vec3(0), vec3(1, 0, 0), vec3(0, 0.75f, 0), vec3(0, 0, -1)};
   stage.sample(stage.film, 8,
@@ -286,10 +283,10 @@ TEST_CASE("after a move of the camera what was there is where the camera sees it
   CHECK(stage.shown()[24 * 64 + 40] == 0);
 }
 
-TEST_CASE("what was there before can be shown at once, as the camera sees it now and without holes") {
+TEST_CASE("the previous picture can be recalled immediately, reprojected and without holes") {
   Stage stage(64, 48);
-  // Two walls, the right one nearer, so that a step to the right uncovers nothing and one to the left a strip
-  // of the far one.
+  // Two walls, the right one nearer: a step to the right uncovers nothing, a step to the left a strip of the
+  // far wall.
   const auto wall = [](uint32_t x, uint32_t y) {
     const bool near = x >= 40;
     return Sample{.light = vec3(near ? 0.8f : 0.2f + 0.01f * float((3 * x + 7 * y) % 8)),
@@ -306,8 +303,7 @@ TEST_CASE("what was there before can be shown at once, as the camera sees it now
     INFO(i % 64 << ", " << i / 64);
     REQUIRE(stage.shown()[i] == Approx(0.5f * wall(i % 64, i / 64).light.x).margin(0.004));
   }
-  // Any number of moves are shown as one: what went out of the picture on the way is there when it comes
-  // back.
+  // Any number of moves count as one: parts that left the picture in between are there when they return.
   for (const float pixels : {30.0f, 12.0f, -4.0f}) {
     stage.preview.keep();
     stage.camera.axes.origin.x = pixels * 2 * 5 / 64.0f;
@@ -319,23 +315,22 @@ TEST_CASE("what was there before can be shown at once, as the camera sees it now
       INFO(x << ", " << y);
       if (x >= 5 && x < 44)  // the far wall, four pixels to the right
         REQUIRE(shown[y * 64 + x] == Approx(0.5f * wall(x - 4, y).light.x).margin(0.004));
-      else if (x <
-               45)  // what has come into view between the walls, and at the border: rather like the far one
+      else if (x < 45)  // newly visible between the walls, and at the border: similar to the far one
         REQUIRE(shown[y * 64 + x] == Approx(0.15f).margin(0.1));
       else if (x >= 50)
         REQUIRE(shown[y * 64 + x] == Approx(0.4f).margin(0.004));
     }
 }
 
-TEST_CASE("of what the camera comes close to nothing is left out between the pixels that were there") {
+TEST_CASE("when the camera comes close the enlarged previous picture has no holes") {
   Stage stage(64, 48);
   const auto wall = [](uint32_t x, uint32_t y) { return 0.2f + 0.3f * float((x / 8 + y / 8) % 2); };
   stage.sample(stage.film, 8, [&](uint32_t x, uint32_t y) { return Sample{.light = vec3(wall(x, y))}; });
   stage.show();
   stage.preview.keep();
   stage.film.clear(stage.stream);
-  stage.camera.axes.origin.z = -5 * (1 - 1 / 3.2f);  // three times as large, and a little more
-  // Without new light every pixel shows what was there, and the share of what is not known is none.
+  stage.camera.axes.origin.z = -5 * (1 - 1 / 3.2f);  // slightly more than three times as large
+  // Without new light every pixel shows the previous picture, and no share is unknown.
   CHECK(stage.show().stale == Approx(1));
   const std::vector<float> shown = stage.shown();
   for (uint32_t y = 4; y < 44; ++y)
@@ -349,7 +344,7 @@ TEST_CASE("of what the camera comes close to nothing is left out between the pix
     }
 }
 
-TEST_CASE("where only the camera has moved outliers of the noise are no change of the light") {
+TEST_CASE("after a camera move outliers of the noise are no change of the light") {
   double error[2], stale[2];
   for (const bool same : {false, true}) {
     Stage stage(96, 64);
@@ -363,7 +358,7 @@ TEST_CASE("where only the camera has moved outliers of the noise are no change o
     stale[same] = stage.show().stale;
     error[same] = rms(
         stage.shown(), [](uint32_t, uint32_t) { return 0.4f; }, stage.width);
-    // But light that is another one comes through in the end, as what mirrors shows from elsewhere.
+    // Light that did change appears in the end, like a reflection from another direction.
     stage.sample(stage.film, 64, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.8f)}; });
     const double left = stage.show().stale;
     if (same) CHECK(left < 0.05);
@@ -374,8 +369,7 @@ TEST_CASE("where only the camera has moved outliers of the noise are no change o
   CHECK(stale[1] > stale[0]);
 }
 
-TEST_CASE(
-    "where the way in which light is computed changes what was there stays, however often it gets better") {
+TEST_CASE("when the computation of light changes the previous picture stays, however often it improves") {
   for (const bool same : {true, false}) {
     Stage stage(96, 64);
     stage.sample(stage.film, 64, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.4f)}; });
@@ -384,7 +378,7 @@ TEST_CASE(
     double mean = 1;
     for (int better = 0; better < 3; ++better) {
       stage.film.clear(stage.stream);
-      // A path each, of which none has brought anything yet.
+      // One path per pixel; none has found light yet.
       stage.sample(stage.film, 1, [&](uint32_t, uint32_t) { return Sample{.light = vec3(0)}; });
       stage.show();
       stage.preview.better();
@@ -396,7 +390,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("few bright paths do not make the picture darker than they are on average, nor show as specks") {
+TEST_CASE("few bright paths give the right average brightness, without specks") {
   for (const uint32_t component : {0u, 1u})
     for (const uint32_t samples : {1u, 2u})
       for (const float albedo : {1.0f, 0.1f}) {
@@ -414,13 +408,13 @@ TEST_CASE("few bright paths do not make the picture darker than they are on aver
         const double mean = mean_of(shown);
         INFO("component " << component << ", " << samples << " samples, albedo " << albedo << ": true "
                           << truth << ", shown " << mean);
-        // Of one sample of a lamp's light two that lie together may as well be a patch of it.
+        // With one sample of direct light two adjacent bright pixels can be a real patch.
         CHECK(mean == Approx(truth).epsilon(component == 1 ? 0.1 : samples == 1 ? 0.4 : 0.2));
         CHECK(*std::max_element(shown.begin(), shown.end()) < 3 * mean);
       }
 }
 
-TEST_CASE("a patch of a lamp's light does not glow beyond its border") {
+TEST_CASE("a patch of direct light does not glow beyond its border") {
   Stage stage(96, 64);
   stage.component = 0;
   std::mt19937 random(3);
@@ -438,8 +432,8 @@ TEST_CASE("a patch of a lamp's light does not glow beyond its border") {
   }
 }
 
-TEST_CASE("a narrow surface is shown by its own light, wherever the grid's cells lie") {
-  // A post of a pixel's width, before a wall, a column further every 16 rows.
+TEST_CASE("a narrow surface shows its own light, wherever the grid's cells are") {
+  // A post one pixel wide in front of a wall, one column further every 16 rows.
   Stage stage(96, 64);
   std::mt19937 random(8);
   stage.sample(stage.film, 2, [&](uint32_t x, uint32_t y) {
@@ -456,8 +450,8 @@ TEST_CASE("a narrow surface is shown by its own light, wherever the grid's cells
   }
 }
 
-TEST_CASE("a pixel that is alone on its surface is not shown by its two paths") {
-  // A post of a pixel's width, before a wall.
+TEST_CASE("a pixel that is alone on its surface does not show its two paths") {
+  // A post one pixel wide in front of a wall.
   Stage stage(96, 64);
   std::mt19937 random(8);
   const auto post = [](uint32_t x) { return x == 41; };

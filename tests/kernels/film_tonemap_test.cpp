@@ -1,5 +1,5 @@
 // links: film
-// The tone curves on the device are those of the host: what the window shows is what a PNG holds.
+// The tone curves on the device equal those of the host: the window shows the values of a PNG.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -9,7 +9,7 @@
 
 using namespace lucerna;
 
-TEST_CASE("the device's tone curves are the host's, odd values too") {
+TEST_CASE("the device's tone curves equal the host's, also for unusual values") {
   gpu::Device device({"", true});
   gpu::ShaderCompiler compiler;
   const gpu::Kernel kernel(device, compiler,

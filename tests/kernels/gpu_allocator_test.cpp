@@ -1,5 +1,5 @@
 // links: gpu
-// The allocator against a pretended device, so that memory layouts of real GPUs are tested anywhere.
+// The allocator with a simulated driver, which has the memory layouts of real GPUs.
 #include "gpu/memory.h"
 
 #include <random>
@@ -14,7 +14,7 @@ using test::error_of;
 
 namespace {
 
-/// What the pretended driver has given out. Its functions are plain, so its state is global.
+/// Allocations of the simulated driver. Its functions are plain, so its state is global.
 struct Driver {
   std::set<VkDeviceMemory> live;
   std::map<VkDeviceMemory, uint32_t> types;
@@ -43,8 +43,8 @@ constexpr VkMemoryPropertyFlags k_visible =
     VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
 constexpr VkMemoryPropertyFlags k_cached = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
 
-/// A discrete GPU: heap 0 is its own memory, heap 1 the host's. Types: 0 other, 1 local, 2 host, 3 host
-/// cached, 4 the window into its own memory.
+/// A discrete GPU: heap 0 is device memory, heap 1 host memory. Types: 0 other, 1 local, 2 host, 3 host
+/// cached, 4 the mapped window into device memory.
 VkPhysicalDeviceMemoryProperties discrete() {
   VkPhysicalDeviceMemoryProperties p{};
   p.memoryHeapCount = 2;
@@ -74,7 +74,7 @@ VkMemoryRequirements needs(VkDeviceSize bytes, VkDeviceSize alignment = 256) {
 
 }  // namespace
 
-TEST_CASE("on a discrete GPU device memory is its own and unmapped, host memory cached and mapped") {
+TEST_CASE("on a discrete GPU device memory is local and unmapped, host memory cached and mapped") {
   const VolkDeviceTable vk = table();
   Allocator allocator(VK_NULL_HANDLE, vk, discrete(), 1ull << 30, false);
   for (const VkDeviceSize bytes : {1024, 4 << 20}) {
@@ -91,7 +91,7 @@ TEST_CASE("on a discrete GPU device memory is its own and unmapped, host memory 
   CHECK(allocator.allocated_bytes() == 0);
 }
 
-TEST_CASE("a resource's own restriction of memory types is kept") {
+TEST_CASE("a resource's own restriction of memory types is respected") {
   const VolkDeviceTable vk = table();
   Allocator allocator(VK_NULL_HANDLE, vk, discrete(), 1ull << 30, false);
   Allocation only = allocator.allocate({1024, 16, 1u << 2}, Memory::host, false, "a", 1024);
@@ -103,8 +103,7 @@ TEST_CASE("a resource's own restriction of memory types is kept") {
              Contains("no suitable kind of memory"));
 }
 
-TEST_CASE(
-    "pieces never overlap and keep their alignment, whatever comes and goes; holes grow together again") {
+TEST_CASE("allocations never overlap and keep their alignment in any order; free ranges merge") {
   const VolkDeviceTable vk = table();
   {
     Allocator allocator(VK_NULL_HANDLE, vk, discrete(), 1ull << 30, false);
@@ -133,7 +132,7 @@ TEST_CASE(
     for (Allocation& piece : pieces) allocator.free(piece);
     CHECK(allocator.allocated_bytes() == 0);
     CHECK(driver.live.size() == 1);  // one block is kept
-    // All holes are one again: seven pieces of nearly 1 MiB fit into the block that is left.
+    // All free ranges have merged: seven allocations of almost 1 MiB fit into the remaining block.
     for (int i = 0; i < 7; ++i) {
       pieces[i] = allocator.allocate(needs(1000000), Memory::device, false, "p", 1000000);
     }
@@ -143,7 +142,7 @@ TEST_CASE(
   CHECK(driver.live.empty());
 }
 
-TEST_CASE("a full heap is refused with name and size, and is usable again after something was freed") {
+TEST_CASE("a full heap is refused with name and size, and is usable again after memory was freed") {
   const VolkDeviceTable vk = table();
   Allocator allocator(VK_NULL_HANDLE, vk, discrete(), 48 << 20, false);
   Allocation first = allocator.allocate(needs(40 << 20), Memory::device, false, "first", 40 << 20);

@@ -39,7 +39,7 @@ TEST_CASE("a device is chosen by index, part of its name or kind") {
   }
 }
 
-TEST_CASE("an unknown device is refused with the list of those there are") {
+TEST_CASE("an unknown device is refused with the list of devices") {
   const std::string name = enumerate().front().name;
   CHECK_THAT(error_of([] { Device({"no such device"}); }),
              Contains("'no such device'") && Contains("0: " + name));
@@ -47,7 +47,7 @@ TEST_CASE("an unknown device is refused with the list of those there are") {
   CHECK_THAT(error_of([] { Device({"99999999999999999999"}); }), Contains("99999999999999999999"));
 }
 
-TEST_CASE("LUCERNA_DEVICE is the default, and an option stands above it") {
+TEST_CASE("LUCERNA_DEVICE is the default, and an option overrides it") {
   setenv("LUCERNA_DEVICE", "no such device", 1);
   CHECK_THAT(error_of([] { Device(); }), Contains("no such device"));
   CHECK_NOTHROW(Device({"0"}));
@@ -55,7 +55,7 @@ TEST_CASE("LUCERNA_DEVICE is the default, and an option stands above it") {
   CHECK_NOTHROW(Device());
 }
 
-TEST_CASE("devices come and go, on several threads at once") {
+TEST_CASE("devices can be created and destroyed on several threads at once") {
   std::vector<std::thread> threads;
   std::atomic<int> good{0};
   for (int i = 0; i < 4; ++i)

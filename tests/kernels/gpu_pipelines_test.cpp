@@ -1,5 +1,5 @@
 // links: gpu
-// Kernels of the same content share a pipeline, also one after the other; others never do.
+// Kernels of the same content share a pipeline, also one after the other; different ones never do.
 #include <fstream>
 #include <numeric>
 #include <optional>
@@ -27,7 +27,7 @@ struct Bed {
   Kernel count(uint32_t step, uint32_t workgroup = 16) {
     return {silent.device, compiler, test::shader("gpu_count.comp"), {}, {{0, workgroup}, {1, step}}};
   }
-  /// What the kernel adds to each of its 64 marks; 0 where they differ.
+  /// The number that the kernel adds to each of its 64 marks; 0 if they differ.
   uint32_t step_of(const Kernel& kernel) {
     const std::vector<uint32_t> none(64, 0);
     marks.write(std::span<const uint32_t>(none));
@@ -45,7 +45,7 @@ struct Bed {
 
 }  // namespace
 
-TEST_CASE("a kernel that is built again is not made again, beside the first or after it") {
+TEST_CASE("a kernel that is built again reuses the pipeline, beside the first or after it") {
   Bed bed;
   std::optional<Kernel> first = bed.count(3);
   CHECK(bed.made() == 1);
@@ -92,7 +92,7 @@ TEST_CASE("kernels that differ in a constant, a define or a line of source do no
   CHECK(bed.step_of(other) == 9);
 }
 
-TEST_CASE("pipelines in use are kept, and of the others the last") {
+TEST_CASE("pipelines in use are kept, and the most recent unused ones") {
   Bed bed;
   const Kernel used = bed.count(1);
   const uint32_t spare = Pipelines::k_spare;

@@ -19,7 +19,7 @@ std::vector<uint32_t> counting(size_t n) {
 
 }  // namespace
 
-TEST_CASE("buffers give back what was written, in both memories, small and larger than the staging buffer") {
+TEST_CASE("buffers return what was written, in both memories, smaller and larger than the staging buffer") {
   const bool map_device_memory = GENERATE(true, false);
   test::SilentDevice silent(map_device_memory);
   for (const Memory memory : {Memory::device, Memory::host})
@@ -50,7 +50,7 @@ TEST_CASE("reading or writing beyond a buffer is refused") {
   CHECK_THAT(error_of([&] { Buffer().write(data, 1); }), Contains("empty"));
 }
 
-TEST_CASE("an empty buffer exists, moves leave nothing behind") {
+TEST_CASE("an empty buffer is valid, and a moved-from one holds nothing") {
   test::SilentDevice silent;
   Buffer none(silent.device, {"none", 0});
   CHECK(none);
@@ -63,7 +63,7 @@ TEST_CASE("an empty buffer exists, moves leave nothing behind") {
   CHECK(moved.name() == "other");
 }
 
-TEST_CASE("memory is accounted, given back and reused") {
+TEST_CASE("memory is accounted, released and reused") {
   test::SilentDevice silent;
   Device& device = silent.device;
   const uint64_t before = device.allocated_bytes();
@@ -75,7 +75,7 @@ TEST_CASE("memory is accounted, given back and reused") {
     CHECK(with_small > before);
     Buffer large(device, {"large", 8 << 20});
     CHECK(device.allocated_bytes() >= with_small + (8 << 20));
-    // Neighbours must not overlap, whatever was freed and reused in between.
+    // Neighbours must not overlap after any sequence of releases and reuse.
     for (size_t i = 0; i < buffers.size(); i += 2) buffers[i] = Buffer();
     for (size_t i = 0; i < buffers.size(); i += 2)
       buffers[i] = Buffer(device, {"again", 500 + 991 * i % 50000});
@@ -92,7 +92,7 @@ TEST_CASE("memory is accounted, given back and reused") {
   CHECK(device.peak_bytes() >= before + (8 << 20));
 }
 
-TEST_CASE("what exceeds the device is refused by name, size and limit") {
+TEST_CASE("a resource beyond the device's limits is refused by name, size and limit") {
   test::SilentDevice silent;
   Device& device = silent.device;
   const Limits& limits = device.info().limits;
@@ -116,14 +116,14 @@ TEST_CASE("what exceeds the device is refused by name, size and limit") {
   CHECK_THAT(error_of([&] { TextureArray(device, {"flat", 4, 0, 1}); }), Contains("'flat'"));
 }
 
-TEST_CASE("when memory runs out, the message names the resource; what is there stays usable") {
+TEST_CASE("when memory runs out the message names the resource, and existing resources stay usable") {
   test::SilentDevice silent;
   Device& device = silent.device;
   Buffer kept(device, {"kept", 4096});
   const auto values = counting(1024);
   kept.write(std::span<const uint32_t>(values));
   const uint64_t before = device.allocated_bytes();
-  // 4 bytes * 16384 * 16384 * layers goes beyond any device of today; nothing is touched.
+  // 4 bytes * 16384 * 16384 * layers exceeds every present device; nothing is touched.
   const uint32_t side = std::min(16384u, device.info().limits.max_image_size);
   const uint32_t layers = device.info().limits.max_image_layers;
   const std::string message = error_of([&] {
@@ -134,7 +134,7 @@ TEST_CASE("when memory runs out, the message names the resource; what is there s
   CHECK(kept.read_all<uint32_t>() == values);
 }
 
-TEST_CASE("sizes are written for people") {
+TEST_CASE("sizes are formatted for readers") {
   CHECK(format_bytes(640) == "640 bytes");
   CHECK(format_bytes(2048) == "2 KiB");
   CHECK(format_bytes(99ull << 20) == "99 MiB");

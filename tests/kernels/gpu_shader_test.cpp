@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A disk cache with nothing in it.
+/// An empty disk cache.
 struct OwnCache {
   OwnCache() { set(folder.path.c_str()); }
   ~OwnCache() { set(before ? before->c_str() : nullptr); }
@@ -51,7 +51,7 @@ std::vector<std::string> names(const std::vector<uint32_t>& words) {
   return list;
 }
 
-/// Buffers that the words declare as possibly one another.
+/// The number of buffers that the words decorate as Aliased.
 size_t aliased(const std::vector<uint32_t>& words) {
   constexpr uint32_t k_decorate = 71, k_aliased = 20;  // OpDecorate, Aliased
   size_t count = 0;
@@ -115,13 +115,13 @@ TEST_CASE("files below the root are called shaders/...; includes are found from 
              Contains("shaders/lost.comp:3: ") && Contains("nowhere.glsl"));
 }
 
-TEST_CASE("a macro that is tested before it is defined is an error, not 0") {
+TEST_CASE("a macro that is tested before its definition is an error, not 0") {
   const OwnCache cache;
   const test::Folder root;
   write_text(root.path / "late.comp",
              "#include \"first.glsl\"\n#include \"second.glsl\"\n"
              "buffer T { float t[]; };\nvoid main() { t[0] = first() + second(); }\n");
-  // As a library file that reads what another, included later, defines.
+  // Like a library file that reads a macro which a later include defines.
   write_text(root.path / "first.glsl",
              "float first() {\n#if ASKED || DERIVED\n  return 1.0;\n#else\n  return 2.0;\n#endif\n}\n");
   write_text(root.path / "second.glsl",
@@ -135,7 +135,7 @@ TEST_CASE("a macro that is tested before it is defined is an error, not 0") {
         }) == "shaders/first.glsl:2: 'DERIVED' : tested by an #if before it is defined");
   CHECK_THAT(error_of([&] { compiler.compile("late.comp"); }),
              Contains("shaders/first.glsl:2: 'ASKED' : tested"));
-  // What is passed over decides nothing.
+  // Skipped operands have no effect.
   CHECK_NOTHROW(compiler.compile("late.comp", {{"ASKED", "1"}}));
   CHECK_NOTHROW(compiler.compile("late.comp", {{"ASKED", "0"}, {"DERIVED", "1"}}));
 }
@@ -155,7 +155,7 @@ TEST_CASE("dependencies are the files to watch") {
   CHECK(compiler.dependencies("never/compiled.comp").empty());
 }
 
-TEST_CASE("a changed include is seen; a file that does not compile is still watched") {
+TEST_CASE("a changed include is noticed; a file that does not compile is still watched") {
   const OwnCache cache;
   const test::Folder root;
   const std::string body =
@@ -174,7 +174,7 @@ TEST_CASE("a changed include is seen; a file that does not compile is still watc
   CHECK(compiler.cache_hits() == 1);
 }
 
-TEST_CASE("the disk cache saves the work, tells defines apart and recovers from damage") {
+TEST_CASE("the disk cache saves compiles, distinguishes defines and recovers from damage") {
   const OwnCache cache;
   const std::string file = shader("gpu_scale.comp");
   ShaderCompiler first;
@@ -218,7 +218,7 @@ TEST_CASE("the disk cache saves the work, tells defines apart and recovers from 
   for (const auto& path : cached_files(cache)) CHECK(path.extension() != ".new");
 }
 
-TEST_CASE("a cache folder that cannot be written is no reason to fail") {
+TEST_CASE("a read-only cache folder is not an error") {
   const OwnCache cache;
   OwnCache::set("/dev/null/nowhere");
   ShaderCompiler compiler;

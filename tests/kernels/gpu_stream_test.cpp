@@ -20,7 +20,7 @@ struct CountPush {
   uint32_t count, next_groups;
 };
 
-/// gpu_scale.comp and what it needs.
+/// gpu_scale.comp with its resources.
 struct Scale {
   explicit Scale(Device& device, const std::string& offset = "1.5")
       : kernel(device, compiler, shader("gpu_scale.comp"), {{"OFFSET", offset}}),
@@ -38,7 +38,7 @@ struct Scale {
   Resources resources;
 };
 
-/// gpu_count.comp: how often each index ran.
+/// gpu_count.comp: counts how often each index ran.
 struct Count {
   Count(Device& device, uint32_t workgroup, uint32_t size, uint32_t step = 1)
       : kernel(device, compiler, shader("gpu_count.comp"), {}, {{0, workgroup}, {1, step}}),
@@ -84,7 +84,7 @@ TEST_CASE("dispatches, copies and fills of one run see each other's results, and
   stream.fill(other, 0, 0, 40);
   scale.resources.set("Source", other);
   stream.dispatch(scale.kernel, scale.resources, ScalePush{1000, 3}, 16);
-  Resources swapped;  // the other way round: target -> other
+  Resources swapped;  // reversed: target -> other
   swapped.set("Source", scale.target);
   swapped.set("Target", other);
   stream.dispatch(scale.kernel, swapped, ScalePush{500, 5}, 8);
@@ -100,7 +100,7 @@ TEST_CASE("dispatches, copies and fills of one run see each other's results, and
   CHECK(result[999] == 15);
 }
 
-TEST_CASE("a buffer that is made anew under the same name is bound anew") {
+TEST_CASE("a buffer that is recreated under the same name is bound again") {
   test::SilentDevice silent;
   Scale scale(silent.device, "1");
   Stream stream(silent.device);
@@ -112,7 +112,7 @@ TEST_CASE("a buffer that is made anew under the same name is bound anew") {
   }
 }
 
-TEST_CASE("thousands of different bindings are no trouble") {
+TEST_CASE("thousands of different bindings work") {
   test::SilentDevice silent;
   Scale scale(silent.device, "0");
   Stream stream(silent.device);
@@ -120,7 +120,7 @@ TEST_CASE("thousands of different bindings are no trouble") {
   for (int i = 0; i < 90; ++i) targets.emplace_back(silent.device, BufferDesc{"t", 64});
   const float three[] = {3};
   targets[0].write(std::span<const float>(three));
-  // 90 * 89 pairs of source and target, more than the stream keeps.
+  // 90 * 89 pairs of source and target, more than the stream caches.
   for (size_t a = 0; a < targets.size(); ++a) {
     for (size_t b = 0; b < targets.size(); ++b) {
       if (a == b) continue;
@@ -131,7 +131,7 @@ TEST_CASE("thousands of different bindings are no trouble") {
     }
     stream.run();
   }
-  // Sets that were dropped and made again.
+  // Sets that were evicted and created again.
   for (size_t b = 1; b < targets.size(); ++b) {
     Resources pair;
     pair.set("Source", targets[b]);
@@ -155,7 +155,7 @@ TEST_CASE("texel buffers and texture arrays are read: formats, sRGB, filter, rep
   for (size_t i = 0; i < texels.size(); ++i) texels[i] = 0.25f * static_cast<float>(i);
   Buffer texel_buffer(device, {"texels", texels.size() * 4, Memory::device, true});
   texel_buffer.write(std::span<const float>(texels));
-  // Texel centres of a 2 × 2 image are at 1/4 and 3/4; the second sample lies between two texels, the third
+  // Texel centres of a 2 × 2 image are at 1/4 and 3/4; the second sample is between two texels, the third
   // repeats, the fourth is on the other layer.
   const std::vector<vec3> where{{0.25f, 0.25f, 1}, {0.5f, 0.25f, 1}, {1.75f, -0.25f, 1}, {0.25f, 0.25f, 0}};
   Buffer where_buffer(device, {"where", where.size() * sizeof(vec3)});
@@ -211,7 +211,7 @@ TEST_CASE("texel buffers and texture arrays are read: formats, sRGB, filter, rep
   CHECK_THAT(error_of([&] { half.write_layer(2, halves.data()); }), Contains("'half'"));
 }
 
-TEST_CASE("a texel buffer read as words keeps bits that are no number") {
+TEST_CASE("a texel buffer read as words keeps NaN bits") {
   test::SilentDevice silent;
   ShaderCompiler compiler;
   const Kernel kernel(silent.device, compiler, shader("gpu_words.comp"));
@@ -229,7 +229,7 @@ TEST_CASE("a texel buffer read as words keeps bits that are no number") {
   CHECK(result.read_all<uvec4>() == words);
 }
 
-TEST_CASE("a texture larger than the staging buffer arrives whole") {
+TEST_CASE("a texture larger than the staging buffer is uploaded completely") {
   test::SilentDevice silent;
   Device& device = silent.device;
   const uint32_t width = 1024, height = 1100;
@@ -272,7 +272,7 @@ TEST_CASE("more workgroups than fit along one axis all run, each index once") {
   CHECK(count.total.read_all<uint32_t>()[0] == items);
 }
 
-TEST_CASE("indirect dispatch reads what an earlier dispatch wrote, beyond one axis too") {
+TEST_CASE("an indirect dispatch reads counts written by an earlier one, also beyond one axis") {
   test::SilentDevice silent;
   const uint32_t items = 200001;
   Count count(silent.device, 2, items, 7);
@@ -281,7 +281,7 @@ TEST_CASE("indirect dispatch reads what an earlier dispatch wrote, beyond one ax
   stream.fill(count.total, 0);
   stream.dispatch(count.kernel, count.resources, CountPush{0, groups_for(items, 2)}, 1);
   stream.dispatch_indirect(count.kernel, count.resources, CountPush{items, 0}, count.arguments, 0);
-  // The indirect one has set the next count to 0 workgroups.
+  // The indirect dispatch has set the next count to 0 workgroups.
   stream.dispatch_indirect(count.kernel, count.resources, CountPush{items, 1}, count.arguments, 0);
   stream.run();
   CHECK(count.all_marked(7));
@@ -305,7 +305,7 @@ TEST_CASE("0 workgroups run nothing") {
   CHECK(count.all_marked(5));
 }
 
-TEST_CASE("what is missing, empty or of the wrong kind is named") {
+TEST_CASE("a missing, empty or mismatched resource is named") {
   test::SilentDevice silent;
   Scale scale(silent.device);
   Stream stream(silent.device);
@@ -327,7 +327,7 @@ TEST_CASE("what is missing, empty or of the wrong kind is named") {
              Contains("never made"));
   CHECK_THAT(error_of([&] { stream.fill(scale.source, 0, 4000, 4); }), Contains("'source'"));
   CHECK_THAT(error_of([&] { stream.copy(scale.source, scale.target, 8, 3996); }), Contains("'source'"));
-  // None of the refusals spoils the work that is right.
+  // No refusal invalidates valid work.
   stream.dispatch(scale.kernel, scale.resources, ScalePush{1000, 1}, 16);
   stream.run();
   CHECK(scale.target.read_all<float>()[7] == 8.5f);

@@ -1,5 +1,5 @@
 #pragma once
-// Shared by the tests of gpu/: the device that they run on, and where their shaders are.
+// Shared by the tests of gpu/: their device, and the folder of their shaders.
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace lucerna::test {
 
-/// A validated device, whose destructor requires that validation had nothing to say.
+/// A validated device, whose destructor requires that there were no validation messages.
 struct SilentDevice {
   explicit SilentDevice(bool map_device_memory = true) : device({"", true, map_device_memory}) {
     REQUIRE(device.validation_active());

@@ -1,6 +1,6 @@
 // links: transport
-// Lights drawn by learned rows: the density that a sample has is the one that a scattered ray is weighted
-// against which meets the same light.
+// Lights drawn from learned rows: the density of a light sample equals the density used to weight a scattered
+// ray that hits the same light.
 #include <array>
 #include <cmath>
 
@@ -10,7 +10,7 @@
 using namespace lucerna;
 using namespace lucerna::test;
 
-TEST_CASE("densities of light samples and of rays that meet the same light agree, in every row") {
+TEST_CASE("densities of light samples and of rays that hit the same light agree in every row") {
   for (const bool constant : {false, true}) {
     scene::Scene scene = constant ? scene::Scene{} : sky(64, 32, 40);
     if (constant) scene.environment.radiance = vec3(2), scene.environment.given = true;
@@ -20,7 +20,7 @@ TEST_CASE("densities of light samples and of rays that meet the same light agree
                    vec3(3));
     const upload::FlatScene flat = upload::flatten(scene);
     transport::LightLearning learning(device(), upload::make_light_clusters(flat), 64);
-    // Rows that differ: what was recorded here and there is made up.
+    // Different rows, from synthetic records.
     std::mt19937 random(4);
     std::vector<shared::LightRecord> records(6000);
     for (shared::LightRecord& r : records) {
@@ -71,7 +71,7 @@ TEST_CASE("densities of light samples and of rays that meet the same light agree
     INFO("sky " << apart[0] << " of " << drawn[0] << ", triangles " << apart[1] << " of " << drawn[1]);
     CHECK(drawn[0] > 1000);
     CHECK(drawn[1] > 1000);
-    // At borders of texels and squares rounding may find the neighbour.
+    // At borders of texels and squares rounding can give the neighbour.
     CHECK(apart[0] <= drawn[0] / 2000);
     CHECK(apart[1] <= drawn[1] / 2000);
   }

@@ -1,6 +1,6 @@
 // links: upload
-// Light sampling through shaders/lib/lights.glsl with the tables that the program makes: which light, where
-// on it; and that what is drawn has the density that it says.
+// Light sampling through shaders/lib/lights.glsl with the program's tables: the chosen light, the point on
+// it, and the densities.
 #include <bit>
 #include <cstring>
 
@@ -64,8 +64,8 @@ TEST_CASE("alias tables: every entry with its probability, never one of weight 0
   CHECK(jury.verdict() == "");
 }
 
-TEST_CASE("alias tables of millions of entries: the one that nearly all have for alias gets its share") {
-  // As a sun in a large map: every other entry's coin gives it a 2 % share.
+TEST_CASE("alias tables of millions of entries: an entry that is almost every alias gets its share") {
+  // Like a sun in a large map: all other entries' coins together give it a 2 % share.
   constexpr size_t k_entries = 1 << 22, k_sun = 1234567;
   constexpr uint32_t k_draws = 1 << 22;
   constexpr double k_share = 0.02;
@@ -80,7 +80,7 @@ TEST_CASE("alias tables of millions of entries: the one that nearly all have for
   CHECK(std::abs(drawn / k_draws - k_share) < 4 * error);
 }
 
-TEST_CASE("points on emissive triangles: uniform in area, each triangle by its power, density as it says") {
+TEST_CASE("points on emissive triangles: uniform in area, triangles by power, with the stated density") {
   Lights lights(triangles());
   constexpr uint32_t k_draws = 1 << 18;
   constexpr int k_grid = 16;
@@ -172,7 +172,7 @@ TEST_CASE("lamps: intensity over distance squared, a spot's cone, the sun's irra
   Jury jury;
   for (const float x : {-1.f, -1.7f, -2.1f, -6.f}) {
     const vec3 position(x, 0, 0);
-    Mean inverse[3];  // density of what each is chosen by: its mean is 1 where it sends light
+    Mean inverse[3];  // 1 over the density of each: its mean is 1 where it sends light
     bool sends[3] = {false, false, false};
     const auto draws = lights.draw(position, 1 << 14, 1);
     size_t bad = 0;
@@ -207,10 +207,8 @@ TEST_CASE("lamps: intensity over distance squared, a spot's cone, the sun's irra
   CHECK(jury.verdict() == "");
 }
 
-TEST_CASE(
-    "of many lamps those are sampled that light a place: the mean is right, with a small part of the noise") {
-  // Spots of four powers in a ceiling, each with a cone of its own; two points, one below the floor, and a
-  // panel.
+TEST_CASE("of many lamps those that light a point are sampled: the mean is right, with little of the noise") {
+  // Spots of four powers in a ceiling, each with its own cone; two points, one below the floor, and a panel.
   scene::Scene scene;
   for (int i = 0; i < 20; ++i) {
     scene::Light spot;
@@ -260,12 +258,11 @@ TEST_CASE(
         by_power += second / (right * right) - 1;
   }
   CHECK(jury.verdict() == "");
-  INFO(variance << " by what they send, " << by_power << " by power");
+  INFO(variance << " by contribution, " << by_power << " by power");
   CHECK(variance < 0.2 * by_power);
 }
 
-TEST_CASE(
-    "lights of another strength, chosen as they were: the distribution stays, the mean is the new light") {
+TEST_CASE("lights of another strength, chosen as before: the distribution stays, the mean is the new light") {
   for (const float sun_threshold : {0.f, 16.f}) {
     const auto lit = [](const vec3& panel, const vec3& lamp, float sky_scale, float turn) {
       scene::Scene scene = sky(48, 24, turn);
@@ -293,7 +290,7 @@ TEST_CASE(
     CHECK(same(kept.environment_texels, rebuilt.environment_texels));
     CHECK(kept.environment_radiance == rebuilt.environment_radiance);
     CHECK(kept.environment_rotation == rebuilt.environment_rotation);
-    // What arrives at a point from everywhere.
+    // The mean light at a point from all directions.
     const auto mean = [](upload::FlatScene flat, uint32_t seed) {
       Lights lights(std::move(flat));
       Mean m;
@@ -310,4 +307,4 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("the validation layers had nothing to say") { CHECK(device().validation_messages() == 0); }
+TEST_CASE("there were no validation messages") { CHECK(device().validation_messages() == 0); }

@@ -1,5 +1,5 @@
 #pragma once
-// Shared by the tests of light sampling: shaders/lib/lights.glsl with the tables that the program makes.
+// Shared by the tests of light sampling: shaders/lib/lights.glsl with the program's tables.
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
 
@@ -21,7 +21,7 @@ struct Draw {
   vec3 target;
   uint32_t primitive;
   vec3 normal;
-  uint32_t delta;  ///< 2: of the sky, where that is apart
+  uint32_t delta;  ///< 2: of the sky, if separate from the sun
   vec2 uv;
 };
 struct Answer {
@@ -34,7 +34,7 @@ inline gpu::Device& device() {
   return instance;
 }
 
-/// A flattened scene on the device, and the kernel in the variant that the scene calls for.
+/// A flattened scene on the device, and the kernel in the scene's variant.
 class Lights {
  public:
   explicit Lights(const scene::Scene& scene, float sun_threshold = 0)
@@ -56,14 +56,14 @@ class Lights {
   std::vector<Draw> draw(const vec3& position, uint32_t count, uint32_t seed) {
     return run<Draw>("0", "Draws", {count, seed, position});
   }
-  /// `sun`: of the sun, where that is apart.
+  /// `sun`: of the sun, if separate.
   std::vector<Answer> environment(const std::vector<vec3>& directions, bool sun = false) {
     std::vector<vec4> questions;
     for (const vec3& d : directions) questions.emplace_back(d, sun ? 1 : 0);
-    return ask("1", questions);
+    return query("1", questions);
   }
-  std::vector<Answer> triangle_pdf(const std::vector<vec4>& questions) { return ask("2", questions); }
-  /// Entries of a table of its own.
+  std::vector<Answer> triangle_pdf(const std::vector<vec4>& questions) { return query("2", questions); }
+  /// Draws entries of a given table.
   std::vector<Answer> choose(const std::vector<vec4>& table, uint32_t count, uint32_t seed) {
     gpu::Buffer buffer(device(), {"table", table.size() * sizeof(vec4), gpu::Memory::device, true});
     buffer.write(std::span<const vec4>(table));
@@ -84,7 +84,7 @@ class Lights {
     uint32_t count, seed;
     vec3 position;
   };
-  std::vector<Answer> ask(const char* what, const std::vector<vec4>& questions) {
+  std::vector<Answer> query(const char* what, const std::vector<vec4>& questions) {
     questions_ = gpu::Buffer(device(), {"questions", questions.size() * sizeof(vec4)});
     questions_.write(std::span<const vec4>(questions));
     resources_.set("Questions", questions_);

@@ -1,5 +1,5 @@
 // links: lookup
-// The octree's lists against brute force.
+// The octree's lists compared with brute force.
 #include <cmath>
 #include <random>
 #include <set>
@@ -16,7 +16,7 @@ namespace {
 using Spheres = std::vector<vec4>;
 using Points = std::vector<vec4>;
 
-/// What shaders/octree_probe.comp finds.
+/// The output of shaders/octree_probe.comp.
 struct Found {
   uint32_t count, checksum, list, unordered;
 };
@@ -36,7 +36,7 @@ Found brute_force(const Spheres& spheres, const vec4& x) {
   return f;
 }
 
-/// The host's own grid: every cell lists the spheres whose boxes, a little enlarged, touch it.
+/// The host's own grid: every cell lists the spheres whose boxes, slightly enlarged, touch it.
 class HostGrid {
  public:
   explicit HostGrid(const Spheres& spheres) : spheres_(spheres) {
@@ -83,7 +83,7 @@ struct Bench {
   gpu::Kernel probe{device, compiler, test::shader("octree_probe.comp")};
   gpu::Kernel probe_copies{device, compiler, test::shader("octree_probe.comp"), {{"LUCERNA_COPIES", "1"}}};
   gpu::Buffer spheres;
-  uint32_t crowd = 0;  ///< of the octrees: 0, or some of their leaves are split
+  uint32_t crowd = 0;  ///< of the octrees: 0, or the size from which leaves are split
 
   explicit Bench(uint32_t c = 0) : crowd(c) {}
   gpu::Buffer texels(const char* name, uint64_t bytes) {
@@ -106,7 +106,7 @@ struct Bench {
   std::vector<Found> query(const Octree& octree, const Points& points, bool copies = false) {
     return query(copies ? probe_copies : probe, octree, points, {});
   }
-  /// Of spheres that are asked for near planes with these normals alone.
+  /// For spheres that are only queried near planes with these normals.
   std::vector<Found> query_discs(const Octree& octree, const Points& points, const gpu::Buffer& normals) {
     gpu::Resources r;
     r.set("normals", normals);
@@ -148,7 +148,7 @@ Differences compare(const std::vector<Found>& got, const Points& points, const T
 
 float uniform(std::mt19937& random) { return float(random() >> 8) * (1.0f / 16777216); }
 
-/// Radii over three decades, evenly in their logarithm, most of them on the faces of a room, as records are.
+/// Radii over three decades, uniform in their logarithm, most of them on the faces of a room, like records.
 Spheres mixed_spheres(uint32_t n, vec3 centre, float extent, uint32_t seed) {
   std::mt19937 random(seed);
   Spheres list(n);
@@ -160,7 +160,7 @@ Spheres mixed_spheres(uint32_t n, vec3 centre, float extent, uint32_t seed) {
   return list;
 }
 
-/// Points near the spheres' centres, on their surfaces as well as float can say, and anywhere in the box.
+/// Points near the spheres' centres, on their surfaces to float precision, and anywhere in the box.
 Points points_for(const Spheres& spheres, uint32_t n, vec3 centre, float extent, uint32_t seed) {
   std::mt19937 random(seed);
   Points points(n);
@@ -180,7 +180,7 @@ Points points_for(const Spheres& spheres, uint32_t n, vec3 centre, float extent,
 
 }  // namespace
 
-TEST_CASE("a million queries among spheres of radii over three decades find what brute force finds") {
+TEST_CASE("a million queries among spheres of radii over three decades equal brute force") {
   Bench bench(GENERATE(0u, 4u));
   INFO("crowd " << bench.crowd);
   const vec3 centre(1, 2, 3);
@@ -203,11 +203,11 @@ TEST_CASE("a million queries among spheres of radii over three decades find what
       compare(bench.query(octree, points), points, [&](const vec4& x) { return grid.find(x); });
   CHECK(d.wrong == 0);
   CHECK(d.unordered == 0);
-  CHECK(d.found > 1000000);  // or this test would show little
+  CHECK(d.found > 1000000);  // otherwise this test proves little
   CHECK(d.listed < 3 * d.found);
 }
 
-TEST_CASE("copies of the spheres lie in the order of the lists") {
+TEST_CASE("copies of the spheres are stored in the order of the lists") {
   Bench bench(GENERATE(0u, 4u));
   INFO("crowd " << bench.crowd);
   const Spheres spheres = mixed_spheres(5000, vec3(0), 10, 12);
@@ -230,8 +230,8 @@ TEST_CASE("discs are found near their planes, in fewer leaves than their spheres
   std::mt19937 random(20);
   for (const vec3 centre : {vec3(0), vec3(10000, -9000, 12000)}) {
     const Spheres spheres = mixed_spheres(k_discs, centre, 10, 21);
-    // Along the axes and the cells' diagonals, nearly along them, and anywhere; two texels a disc, as records
-    // have more than one.
+    // Along the axes and the cells' diagonals, close to them, and anywhere; two texels per disc, because
+    // records have more than one.
     std::vector<vec4> normals(2 * k_discs, vec4(9));
     for (uint32_t i = 0; i < k_discs; ++i) {
       vec3 n(uniform(random) - 0.5f, uniform(random) - 0.5f, uniform(random) - 0.5f);
@@ -242,7 +242,7 @@ TEST_CASE("discs are found near their planes, in fewer leaves than their spheres
     }
     Points points(k_points);
     for (uint32_t k = 0; k < k_points; ++k) {
-      // In the slab, on its borders, or anywhere about the disc.
+      // In the slab, on its borders, or anywhere around the disc.
       const uint32_t i = random() % k_discs;
       const vec3 n(normals[2 * i + 1]), d = vec3(uniform(random), uniform(random), uniform(random)) - 0.5f;
       const float height = k % 3 == 0 ? 2 * uniform(random) - 1 : k % 3 == 1 ? 0.2f : -0.2f;
@@ -280,7 +280,7 @@ TEST_CASE("discs are found near their planes, in fewer leaves than their spheres
   }
 }
 
-TEST_CASE("what lies far away makes no leaf larger, and is found") {
+TEST_CASE("far spheres make no leaf larger, and are found") {
   Bench bench(GENERATE(0u, 4u));
   INFO("crowd " << bench.crowd);
   const bool discs = GENERATE(false, true);
@@ -296,7 +296,7 @@ TEST_CASE("what lies far away makes no leaf larger, and is found") {
     Spheres spheres = mixed_spheres(k_near, centre, 10, 32);
     Points points = points_for(spheres, k_points, centre, 10, 33);
     for (uint32_t i = 0; far > 0 && i < k_far; ++i) {
-      // Beyond one face or several, some of them so large that they reach back.
+      // Beyond one face or several, some large enough to reach back.
       vec3 p(uniform(random), uniform(random), uniform(random));
       p = centre + 10.0f * (p - 0.5f);
       for (int axis = 0; axis < 3; ++axis)
@@ -341,7 +341,7 @@ TEST_CASE("what lies far away makes no leaf larger, and is found") {
     });
     CHECK(d.wrong == 0);
     CHECK(d.unordered == 0);
-    // Of what is near, what lies far away has no part but by its size.
+    // Far spheres enter near lists only if they are large enough.
     double listed = 0;
     for (uint32_t i = 0; i < k_points; ++i) listed += found[i].list;
     if (far == 0) alone = float(listed);
@@ -350,7 +350,7 @@ TEST_CASE("what lies far away makes no leaf larger, and is found") {
   }
 }
 
-TEST_CASE("an octree that no buffer can hold is refused") {
+TEST_CASE("an octree beyond every buffer is refused") {
   Bench bench;
   const uint32_t most = Octree::most_references(bench.device);
   CHECK_THAT(
@@ -366,7 +366,7 @@ TEST_CASE("an octree that no buffer can hold is refused") {
              Catch::Matchers::Contains("11 spheres"));
 }
 
-TEST_CASE("coordinates around ten kilometres, where float's steps are a millimetre") {
+TEST_CASE("coordinates around ten kilometres, where floats have steps of a millimetre") {
   Bench bench(GENERATE(0u, 4u));
   INFO("crowd " << bench.crowd);
   for (const float extent : {0.05f, 2.0f, 50.0f}) {
@@ -389,7 +389,7 @@ TEST_CASE("coordinates around ten kilometres, where float's steps are a millimet
 TEST_CASE("points on the borders of cells and spheres that touch them") {
   Bench bench(GENERATE(0u, 4u));
   INFO("crowd " << bench.crowd);
-  // Everything at multiples of a power of two, so that borders are met exactly.
+  // Everything at multiples of a power of two, so borders are met exactly.
   std::mt19937 random(5);
   Spheres spheres;
   for (int i = 0; i < 2000; ++i)
@@ -413,7 +413,7 @@ TEST_CASE("points on the borders of cells and spheres that touch them") {
   CHECK(d.found > 10000);
 }
 
-TEST_CASE("no sphere, one, equal ones, and ones that are none") {
+TEST_CASE("no sphere, one, equal ones, and invalid ones") {
   Bench bench(GENERATE(0u, 4u));
   INFO("crowd " << bench.crowd);
   Points points{{0, 0, 0, 0},       {1, 0, 0, 0},          {1.0001f, 0, 0, 0},
@@ -442,12 +442,12 @@ TEST_CASE("no sphere, one, equal ones, and ones that are none") {
   CHECK(header.spheres == 1);
   CHECK(header.leaf <= 2);
   CHECK(check({{0, 0, 0, -1}, {0, 0, 0, -2}}, 100).cells == 0);
-  // Before anything was built.
+  // Before the first build.
   const Octree empty(bench.device, bench.compiler, {.spheres = 1, .references = 1});
   for (const Found& f : bench.query(empty, points)) CHECK(f.list == 0);
 }
 
-TEST_CASE("where memory is short the leaves are larger and the result is the same") {
+TEST_CASE("with little memory the leaves are larger and the result is the same") {
   Bench bench(GENERATE(0u, 4u));
   INFO("crowd " << bench.crowd);
   const Spheres spheres = mixed_spheres(4000, vec3(0), 8, 6);
@@ -461,7 +461,7 @@ TEST_CASE("where memory is short the leaves are larger and the result is the sam
     INFO(references << " references, level " << h.level << " of " << h.wanted_level);
     CHECK(h.needed == full);
     CHECK(h.capacity == references);
-    // Half of it is kept for what is split.
+    // Half of it is reserved for split leaves.
     if (bench.crowd == 0) CHECK((h.level < h.wanted_level) == (references < full));
     CHECK(h.references <= references);
     CHECK(h.overflow == 0);
@@ -469,7 +469,7 @@ TEST_CASE("where memory is short the leaves are larger and the result is the sam
     CHECK(d.wrong == 0);
     CHECK(d.unordered == 0);
   }
-  // Less than one reference a sphere: said, and what there is is what the first spheres are.
+  // Less than one reference per sphere: reported, and the first spheres are stored.
   const Octree octree = bench.build(spheres, 1500);
   CHECK(octree.header().level == 0);
   CHECK(octree.header().overflow == 2500);
@@ -513,7 +513,7 @@ TEST_CASE("no sphere overlaps more leaves than an invocation may visit on lavapi
   CHECK(d.wrong == 0);
 }
 
-TEST_CASE("two builds are the same byte for byte, and an octree can be built again from other spheres") {
+TEST_CASE("two builds are identical byte for byte, and an octree can be rebuilt from other spheres") {
   Bench bench(GENERATE(0u, 4u));
   INFO("crowd " << bench.crowd);
   const Spheres spheres = mixed_spheres(30000, vec3(0), 20, 10), others = mixed_spheres(500, vec3(9), 3, 11);
@@ -524,7 +524,7 @@ TEST_CASE("two builds are the same byte for byte, and an octree can be built aga
                 {.spheres = 40000, .references = 3000000, .crowd = bench.crowd});
   for (int round = 0; round < 3; ++round) {
     bench.upload(round == 1 ? others : spheres);
-    // The count stands in a buffer; `most` is what the buffer of spheres has room for.
+    // The count is in a buffer; `most` is the capacity of the buffer of spheres.
     const uint32_t n = round == 1 ? 500 : 30000;
     octree.build(bench.stream, bench.spheres, {.most = n, .buffer = &count, .offset = round == 1 ? 8u : 4u});
     const shared::OctreeHeader& h = octree.header();
@@ -544,8 +544,8 @@ TEST_CASE("two builds are the same byte for byte, and an octree can be built aga
   }
 }
 
-TEST_CASE("lists are short in a crowd of small spheres among large ones, once its leaves are split") {
-  // In the second, things stand so far away that leaves are the finest there are without being split.
+TEST_CASE("lists are short in a crowd of small spheres among large ones once its leaves are split") {
+  // In the second case far spheres make leaves the finest possible without splitting.
   const float far = GENERATE(0.0f, 500.0f);
   const vec3 corner(0.3f, 0.2f, 7);
   Spheres spheres = mixed_spheres(2000, vec3(0), 20, 16);
@@ -561,7 +561,7 @@ TEST_CASE("lists are short in a crowd of small spheres among large ones, once it
   size_t listed[2];
   for (const uint32_t crowd : {0u, 16u}) {
     Bench bench(crowd);
-    // As much memory as the plain one takes; with half of it.
+    // With the memory of the plain octree; with half of it.
     for (const uint32_t references : {2000000u, 200000u}) {
       const Octree octree = bench.build(spheres, references);
       CHECK(octree.header().references <= references);

@@ -1,6 +1,6 @@
 // links: overlay
-// Points, segments and discs over a small picture whose surfaces are known, through the real shaders: what
-// lies behind a surface is hidden, what lies before it is drawn, in its own colour, and nothing else changes.
+// Points, segments and discs over a small picture with known surfaces, through the real shaders: marks behind
+// a surface are hidden, marks in front of it are drawn in their colour, and nothing else changes.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -22,19 +22,20 @@ namespace {
 constexpr float k_wall = 4;  // depth [m]
 constexpr uint32_t k_base = 0xff405060u;
 
-/// A picture of one colour. The camera is in the origin and looks along -z; the left half shows a wall that
-/// faces it, the right half shows nothing.
+/// A picture of one colour. The camera is at the origin and looks along -z; the left half shows a wall that
+/// faces it, the right half no surface.
 struct Bed {
   gpu::Device device{{test::device_name(), true}};
   gpu::ShaderCompiler compiler;
   upload::DeviceScene scene{device, {}, {}};
   transport::Wavefront wavefront{device, compiler, scene, 64, [](auto&&...) {}};
   film::Film film, coarse;
-  overlay::Canvas canvas{wavefront, film, coarse};
+  overlay::Sheet sheet{device, compiler};
+  overlay::Canvas canvas{wavefront, film, coarse, sheet};
   overlay::Painter painter{device, compiler};
   shared::Frame frame{};
 
-  Bed(uint32_t width, uint32_t height, bool orthographic = false)
+  Bed(uint32_t width, uint32_t height, bool orthographic = false, uint32_t enlarged = 1)
       : film(device, width, height), coarse(device, std::max(1u, width / 4), std::max(1u, height / 4)) {
     frame.width = width, frame.height = height;
     const float scale = orthographic ? 2.0f : 0.5f;
@@ -43,9 +44,12 @@ struct Bed {
     frame.camera_forward = vec3(0, 0, -1);
     frame.orthographic = orthographic;
     wavefront.set_frame(frame, 15);
+    shared::Frame sheet_frame = frame;
+    sheet_frame.width = enlarged * width, sheet_frame.height = enlarged * height;
+    sheet.fit(film, enlarged, sheet_frame);
     film.clear(wavefront.stream());
     coarse.clear(wavefront.stream());
-    std::vector<vec4> albedo(canvas.pixels()), normal(canvas.pixels());
+    std::vector<vec4> albedo(size_t{width} * height), normal(albedo.size());
     for (size_t p = 0; p < albedo.size(); ++p)
       if (wall(uint32_t(p % width)))
         albedo[p] = vec4(0.5f, 0.5f, 0.5f, 2), normal[p] = vec4(0, 0, 2, 2 * k_wall);
@@ -64,20 +68,21 @@ struct Bed {
     to.write(std::span<const T>(values));
   }
 
-  /// Where a place of the picture lies in the scene, at that depth.
+  /// The point in the scene at that pixel and depth.
   vec3 at(float x, float y, float depth) const {
     const vec2 ndc = 2.0f * vec2(x, y) / vec2(film.width(), film.height()) - 1.0f;
     const vec3 shift = ndc.x * frame.camera_right - ndc.y * frame.camera_up;
     return frame.orthographic ? shift + depth * frame.camera_forward : depth * (frame.camera_forward + shift);
   }
 
-  /// What drawing makes of the picture of one colour.
+  /// The picture of one colour with the drawing on it.
   template <class Draw>
   std::vector<uint32_t> picture(const Draw& draw) {
-    put("Picture", std::vector<uint32_t>(canvas.pixels(), k_base));
+    put("Picture", std::vector<uint32_t>(canvas.at_film().pixels(), k_base));
+    sheet.enlarge(wavefront.stream(), film);
     draw();
     std::vector<uint32_t> pixels(canvas.pixels());
-    film.picture().read(pixels.data(), pixels.size() * 4);
+    canvas.picture().read(pixels.data(), pixels.size() * 4);
     return pixels;
   }
   std::vector<uint32_t> drawn(const std::vector<OverlayPoint>& points,
@@ -100,7 +105,7 @@ size_t changed(const std::vector<uint32_t>& picture) {
   return size_t(std::count_if(picture.begin(), picture.end(), [](uint32_t p) { return p != k_base; }));
 }
 
-/// A dot that covers the one pixel in whose middle it lies, and nothing else.
+/// A dot that covers exactly the pixel around it.
 OverlayPoint dot(const vec3& position, const glm::ivec3& bytes, uint32_t rank = shared::k_rank_least) {
   return {position, 0.5f, encoded(bytes), 1, 0, rank};
 }
@@ -111,12 +116,14 @@ OverlaySegment line(const vec3& from, const vec3& to, const glm::ivec3& bytes) {
 }  // namespace
 
 TEST_CASE(
-    "points: before a surface and where there is none they are drawn, in their colour; behind one not") {
+    "points in front of a surface, and where there is none, are drawn in their colour; those behind are "
+    "not") {
   for (const bool orthographic : {false, true}) {
     Bed bed(48, 32, orthographic);
     std::vector<OverlayPoint> points;
     std::vector<uint32_t> expected(bed.canvas.pixels(), k_base);
-    // Near and far by turns; the nearest behind the wall are what half a percent and two pixels allow.
+    // Near and far alternately; the nearest ones behind the wall are within the tolerance of half a per cent
+    // and two pixels.
     const float depths[] = {1, 3.9f, k_wall, 4.2f + 2 * 4.0f / 32, 9, -2};
     for (uint32_t y = 0; y < 32; ++y)
       for (uint32_t x = 0; x < 48; ++x) {
@@ -153,9 +160,7 @@ TEST_CASE("points have their size, their alpha and a dark edge") {
   CHECK(drawn > 50);
 }
 
-TEST_CASE(
-    "of a million points in device memory each pixel shows the first of the highest rank that is not "
-    "hidden") {
+TEST_CASE("each pixel shows the first unhidden point of the highest rank of a million in device memory") {
   Bed bed(96, 64);
   constexpr uint32_t k_count = 1'000'000;
   std::mt19937 random(7);
@@ -186,15 +191,15 @@ TEST_CASE(
   for (size_t p = 0; p < found.size(); ++p) wrong += found[p] != expected[p];
   CHECK(wrong == 0);
   CHECK(changed(found) == found.size());
-  CHECK(changed(draw(1)) <= 1);  // no more than was asked for
+  CHECK(changed(draw(1)) <= 1);  // no more than requested
   CHECK_THAT(test::error_of([&] { draw(shared::k_most_strokes + 1); }), Catch::Contains("at most 4194304"));
 }
 
-TEST_CASE("segments are hidden from where they pass through a surface, and are as long as they are") {
+TEST_CASE("segments are hidden from the point where they pass through a surface, and have their length") {
   Bed bed(64, 32);
   const glm::ivec3 ink(240, 130, 20);
   for (const bool upright : {false, true}) {
-    // Along a row or a column of pixels of the wall, from before it to behind it.
+    // Along a row or a column of pixels of the wall, from in front of it to behind it.
     const vec2 a(4.5f, upright ? 2.5f : 20.5f), b(upright ? 4.5f : 28.5f, upright ? 26.5f : 20.5f);
     const float near = 2, far = 8;
     const std::vector<uint32_t> found =
@@ -212,7 +217,7 @@ TEST_CASE("segments are hidden from where they pass through a surface, and are a
     CHECK(shown == changed(found));
     CHECK(shown > 10);
     CHECK(hidden > 5);
-    // What it may lie behind the surface is its own affair.
+    // Each segment has its own tolerance behind the surface.
     OverlaySegment loose = line(bed.at(a.x, a.y, near), bed.at(b.x, b.y, far), ink);
     loose.slack = 100;
     CHECK(changed(bed.drawn({}, {loose})) == 25);
@@ -221,8 +226,7 @@ TEST_CASE("segments are hidden from where they pass through a surface, and are a
   }
 }
 
-TEST_CASE(
-    "segments cover the pixels that are near them, whatever they lie beside, before or behind the eye") {
+TEST_CASE("segments cover the pixels near them, even if they pass beside, in front of or behind the camera") {
   Bed bed(90, 70);
   std::mt19937 random(11);
   const auto between = [&](float lo, float hi) {
@@ -231,7 +235,7 @@ TEST_CASE(
   const vec3 ink = encoded({250, 220, 30});
   size_t drawn = 0;
   for (int round = 0; round < 120; ++round) {
-    // Free of the wall: nearer than it.
+    // In front of the wall.
     const bool behind = round % 4 == 3, outside = round % 3 == 2;
     const float m = outside ? 200.0f : 0.0f;
     const vec3 from = bed.at(between(-m, 90 + m), between(-m, 70 + m), between(0.5f, 3.9f));
@@ -259,7 +263,7 @@ TEST_CASE(
       const bool in = core > 0.2f || edge == 0;
       const float cover = 0.8f * (in ? 0.9f * core : 0.55f * dark);
       const vec3 expected = glm::mix(bytes_of(k_base), in ? 255.0f * ink : vec3(0), cover);
-      // Far ends are rounded to what floats hold; and ink and edge meet at a share of 0.2.
+      // Far ends are rounded to float precision; ink and edge meet at a share of 0.2.
       wrong += farthest(found[p], expected) > 4 && std::abs(core - 0.2f) > 0.01f;
       whole += found[p] != k_base;
     }
@@ -270,7 +274,7 @@ TEST_CASE(
   CHECK(drawn > 60);
 }
 
-TEST_CASE("a segment over a wide picture, whose length invocations share, has no gap") {
+TEST_CASE("a segment across a wide picture, divided among invocations, has no gap") {
   Bed bed(2100, 8);
   const glm::ivec3 ink(5, 250, 120);
   const std::vector<uint32_t> found =
@@ -279,7 +283,7 @@ TEST_CASE("a segment over a wide picture, whose length invocations share, has no
   for (uint32_t x = 0; x < 2100; ++x) REQUIRE(found[4 * 2100 + x] == word(ink));
 }
 
-TEST_CASE("discs: a rim on the surface that they lie on, and none behind it, beside it or turned away") {
+TEST_CASE("discs: a rim on their surface, and none behind it, beside it or turned away") {
   Bed bed(128, 64);
   const glm::ivec3 ink(255, 60, 200);
   const float pixel = k_wall / 64;  // [m] on the wall
@@ -295,28 +299,27 @@ TEST_CASE("discs: a rim on the surface that they lie on, and none behind it, bes
     const float away = distance(vec2(float(p % 128) + 0.5f, float(p / 128) + 0.5f), middle) - 40;
     const bool on = bed.wall(p % 128);
     INFO(p % 128 << ' ' << p / 128 << ": " << away);
-    // Straight pieces lie up to a fifth of a pixel inside.
+    // Straight pieces are up to a fifth of a pixel inside.
     if (std::abs(away) > 1.2f || !on) CHECK(found[p] == k_base);
     if (std::abs(away + 0.1f) > 0.3f || !on) continue;
     CHECK(farthest(found[p], vec3(ink)) < 0.6f * farthest(k_base, vec3(ink)));
     ++rim;
   }
   CHECK(rim > 20);
-  // It leans over the wall's border: there nothing is, and nothing is drawn.
+  // It extends beyond the wall's border, where there is no surface and nothing is drawn.
   CHECK(changed(bed.drawn({}, {}, {disc(k_wall, {0, 0, 1}, 60)})) > 20);
   CHECK(changed(bed.drawn({}, {}, {disc(k_wall, {0, 0, 1}, 110)})) == 0);
   CHECK(changed(bed.drawn({}, {}, {disc(1.3f * k_wall, {0, 0, 1})})) == 0);
   CHECK(changed(bed.drawn({}, {}, {disc(0.6f * k_wall, {0, 0, 1})})) == 0);
   CHECK(changed(bed.drawn({}, {}, {disc(k_wall, {1, 0, 0})})) == 0);
   CHECK(changed(bed.drawn({}, {}, {disc(k_wall, {0, 0, -1})})) == 0);
-  // Small ones fade away.
+  // Small ones fade.
   OverlayDisc small = disc(k_wall, {0, 0, 1});
   small.radius = 3.5f * pixel;
   CHECK(changed(bed.drawn({}, {}, {small})) == 0);
 }
 
-TEST_CASE(
-    "of points, segments and discs at one pixel the highest rank is seen, then the one that came first") {
+TEST_CASE("of points, segments and discs at one pixel the highest rank is shown, then the first one") {
   Bed bed(128, 64);
   const glm::ivec3 red(250, 0, 0), green(0, 250, 0), blue(0, 0, 250);
   const float pixel = k_wall / 64;
@@ -340,7 +343,7 @@ TEST_CASE(
   CHECK(seen() == word(green));
 }
 
-TEST_CASE("nothing is drawn of nothing, nor of what lies beside the picture or nowhere") {
+TEST_CASE("empty marks, and marks outside the picture or at invalid positions, draw nothing") {
   Bed bed(40, 24);
   CHECK(changed(bed.drawn({})) == 0);
   CHECK(changed(bed.picture([&] { bed.painter.draw(bed.canvas, overlay::Drawing{}); })) == 0);
@@ -359,7 +362,7 @@ TEST_CASE("nothing is drawn of nothing, nor of what lies beside the picture or n
   const std::vector<uint32_t> found = bed.drawn(points, segments, discs);
   CHECK(changed(found) == 0);
 
-  // Dimmed it is all over, and marks are as bright as ever.
+  // The whole picture is dimmed, and marks keep their brightness.
   const std::vector<uint32_t> dim =
       bed.drawn({dot(bed.at(8.5f, 9.5f, 2), {200, 100, 0})}, {}, {}, {.dimmed = true});
   const vec3 base = bytes_of(k_base);
@@ -369,4 +372,26 @@ TEST_CASE("nothing is drawn of nothing, nor of what lies beside the picture or n
       CHECK(dim[p] == word({200, 100, 0}));
     else
       CHECK(farthest(dim[p], expected) <= 1);
+}
+
+TEST_CASE(
+    "on a sheet of larger scale strokes are as wide in pixels of the sheet, and the picture is enlarged") {
+  constexpr uint32_t k_scale = 4, k_across = 48 * k_scale;
+  for (const bool orthographic : {false, true}) {
+    Bed bed(48, 32, orthographic, k_scale);
+    const auto at = [&](uint32_t x, uint32_t y, float depth) {
+      return bed.at((float(x) + 0.5f) / k_scale, (float(y) + 0.5f) / k_scale, depth);
+    };
+    std::vector<OverlayPoint> points;
+    std::vector<uint32_t> expected(bed.canvas.pixels(), k_base);
+    // Every third pixel of the sheet: before the wall, behind it, beside it.
+    for (uint32_t y = 1; y < 32 * k_scale; y += 3)
+      for (uint32_t x = 1; x < k_across; x += 3) {
+        const float depth = (x + y) % 2 ? 3.5f : 9;
+        const glm::ivec3 ink(10 + x, 20 + y, 200);
+        points.push_back(dot(at(x, y, depth), ink));
+        if (depth < k_wall || !bed.wall(x / k_scale)) expected[y * k_across + x] = word(ink);
+      }
+    CHECK(bed.drawn(points) == expected);
+  }
 }

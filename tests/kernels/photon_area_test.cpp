@@ -1,6 +1,6 @@
 // links: photons
-// How much surface there is around a place (shaders/photons/area.glsl), against closed forms and against sums
-// over points of random triangles.
+// The surface area around a point (shaders/photons/area.glsl), compared with closed forms and with sums over
+// points of random triangles.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <random>
@@ -21,7 +21,7 @@ struct Place {
   vec3 normal;
 };
 
-/// By Epanechnikov's kernel and by the flat one.
+/// Areas by Epanechnikov's kernel and by the flat one.
 std::vector<vec2> areas(const scene::Scene& scene, const std::vector<Place>& places) {
   static gpu::Device device({"", true});
   static gpu::ShaderCompiler compiler;
@@ -37,13 +37,13 @@ std::vector<vec2> areas(const scene::Scene& scene, const std::vector<Place>& pla
   frame.most_visits = shared::k_photon_most_visits;
   gpu::Buffer block(device, {"photon lookups", sizeof frame});
   block.write(&frame, sizeof frame);
-  gpu::Buffer asked(device, {"places", places.size() * sizeof(Place)});
-  asked.write(std::span<const Place>(places));
+  gpu::Buffer place_buffer(device, {"places", places.size() * sizeof(Place)});
+  place_buffer.write(std::span<const Place>(places));
   const gpu::Buffer answers(device, {"areas", places.size() * sizeof(vec2)});
   gpu::Resources resources;
   index.bind(resources);
   resources.set("PhotonBlock", block);
-  resources.set("Places", asked);
+  resources.set("Places", place_buffer);
   resources.set("Areas", answers);
   gpu::Stream stream(device);
   stream.dispatch(kernel, resources, uint32_t(places.size()), gpu::groups_for(places.size(), 64));
@@ -60,7 +60,7 @@ scene::Scene floor() {
   return s;
 }
 
-/// Of a disc of radius 1 around the origin, the part to the left of x = d, -1..1, weighed by 2 (1 - d^2) /
+/// The part to the left of x = d, -1..1, of a disc of radius 1 around the origin, weighted by 2 (1 - d^2) /
 /// pi.
 float left_of(float d) {
   double sum = 0;
@@ -72,34 +72,34 @@ float left_of(float d) {
   return float(sum);
 }
 
-/// The same of the disc itself: a segment of it.
+/// The same unweighted: a segment of the disc.
 float segment_left_of(float d) { return 0.5f + (std::asin(d) + d * std::sqrt(1 - d * d)) / k_pi; }
 
 }  // namespace
 
-TEST_CASE("within a surface there is all of a disc, at its border as much as the closed form says") {
+TEST_CASE("inside a surface the whole disc counts, at its border the share of the closed form") {
   std::vector<Place> places;
   std::vector<vec2> expected;
-  const auto ask_both = [&](const vec3& at, float radius, const vec2& area, const vec3& normal) {
+  const auto expect_both = [&](const vec3& at, float radius, const vec2& area, const vec3& normal) {
     places.push_back({at, radius, normal}), expected.push_back(area);
   };
-  const auto ask = [&](const vec3& at, float radius, float area, const vec3& normal = vec3(0, 1, 0)) {
-    ask_both(at, radius, vec2(area), normal);
+  const auto expect = [&](const vec3& at, float radius, float area, const vec3& normal = vec3(0, 1, 0)) {
+    expect_both(at, radius, vec2(area), normal);
   };
   const vec3 up(0, 1, 0);
   for (const float r : {1e-4f, 0.01f, 0.2f}) {
-    ask({0.1f, 0, 0.3f}, r, 1);
-    ask({0, 0, 0}, r, 1);  // on the diagonal that two triangles share
-    ask({1, 0, 0.1f}, r, 0.5f);
-    ask({-1, 0, 1}, r, 0.25f);
+    expect({0.1f, 0, 0.3f}, r, 1);
+    expect({0, 0, 0}, r, 1);  // on the diagonal that two triangles share
+    expect({1, 0, 0.1f}, r, 0.5f);
+    expect({-1, 0, 1}, r, 0.25f);
     for (const float d : {-0.5f, 0.2f, 0.9f})
-      ask_both({1 - d * r, 0, 0.1f}, r, {left_of(d), segment_left_of(d)}, up);
-    ask_both({0.1f, 0.1f * r, 0.3f}, r, {0.99f * 0.99f, 0.99f}, up);  // above it: (1 - c^2)^2, 1 - c^2
-    ask({0.1f, 0.3f * r, 0.3f}, r, 1.0f / 64);                        // too far above
-    ask({0.1f, 0, 0.3f}, r, 1.0f / 64, {1, 0, 0});                    // another side
-    ask({0.1f, 0, 0.3f}, r, 1, {0, -1, 0});                           // wound the other way round
+      expect_both({1 - d * r, 0, 0.1f}, r, {left_of(d), segment_left_of(d)}, up);
+    expect_both({0.1f, 0.1f * r, 0.3f}, r, {0.99f * 0.99f, 0.99f}, up);  // above it: (1 - c^2)^2, 1 - c^2
+    expect({0.1f, 0.3f * r, 0.3f}, r, 1.0f / 64);                        // too far above
+    expect({0.1f, 0, 0.3f}, r, 1.0f / 64, {1, 0, 0});                    // another side
+    expect({0.1f, 0, 0.3f}, r, 1, {0, -1, 0});                           // opposite winding
   }
-  ask_both({0, 0, 0}, 10, {2 / k_pi / 100 * 4, 1.0f / 64}, up);  // smaller than the disc
+  expect_both({0, 0, 0}, 10, {2 / k_pi / 100 * 4, 1.0f / 64}, up);  // smaller than the disc
   const std::vector<vec2> found = areas(floor(), places);
   for (size_t i = 0; i < places.size(); ++i) {
     INFO(places[i].position.x << " " << places[i].position.y << " " << places[i].position.z << ", radius "
@@ -109,13 +109,13 @@ TEST_CASE("within a surface there is all of a disc, at its border as much as the
   }
 }
 
-TEST_CASE("plates, layers and what is no place for photons") {
+TEST_CASE("plates, layers and surfaces without photons") {
   scene::Scene s = floor();
   test::add_quad(s, {-0.5f, 0.01f, 0.5f}, {1, 0, 0}, {0, 0, -1});  // a mat
   // A plate: its lower side is not part of the upper one.
   test::add_quad(s, {-1, 1, 1}, {2, 0, 0}, {0, 0, -2});
   test::add_quad(s, {-1, 0.98f, -1}, {2, 0, 0}, {0, 0, 2});
-  // A mirror that goes on where a wall ends.
+  // A mirror that continues a wall.
   s.materials.emplace_back();
   s.materials[1].metallic = 1;
   test::add_quad(s, {-1, 2, 1}, {1, 0, 0}, {0, 0, -2});
@@ -138,7 +138,7 @@ TEST_CASE("plates, layers and what is no place for photons") {
   CHECK(photons::diffuse_materials(upload::flatten(s)) == std::vector<bool>{true, true});
 }
 
-TEST_CASE("of random triangles as much as a sum over their points says") {
+TEST_CASE("for random triangles the area equals a sum over their points") {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> unit(0, 1);
   const auto point = [&](float spread) {

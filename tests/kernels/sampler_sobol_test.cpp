@@ -1,6 +1,6 @@
 // links: gpu
-// The low-discrepancy points of shaders/lib/sampler.glsl: stratified as they should be within a pixel, and
-// without any relation between pixels, halves, pads and seeds.
+// The low-discrepancy points of shaders/lib/sampler.glsl: stratified within a pixel, and independent between
+// pixels, halves, pads and seeds.
 #include <fmt/format.h>
 #include <catch2/catch.hpp>
 #include <functional>
@@ -16,7 +16,7 @@ namespace {
 
 struct Place {
   uint32_t pixel, sample, seed, pad;
-  uint32_t width = 64;  ///< of the picture; matters to coherent sampling alone
+  uint32_t width = 64;  ///< of the picture; used by coherent sampling only
 };
 struct Point {
   uint32_t bits[2];
@@ -54,7 +54,7 @@ std::vector<Place> run_of(uint32_t pixel, uint32_t half, uint32_t seed, uint32_t
   return places;
 }
 
-/// Shapes (2^-a x 2^-b, a + b = k) of which some cell does not hold exactly one of the 2^k points.
+/// Shapes (2^-a x 2^-b, a + b = k) with a cell that does not contain exactly one of the 2^k points.
 int uneven_shapes(const Point* p, int k) {
   int uneven = 0;
   std::vector<bool> seen;
@@ -72,8 +72,8 @@ int uneven_shapes(const Point* p, int k) {
   return uneven;
 }
 
-/// Histogram of pairs on a grid of `cells` x `cells` against independent uniform numbers: neither more uneven
-/// than chance would have it, nor more even (a lattice).
+/// Significance of the histogram of pairs on a grid of `cells` x `cells` for independent uniform numbers:
+/// neither less even than random, nor more even (a lattice).
 double uniform_tail(const std::vector<std::pair<uint32_t, uint32_t>>& pairs, uint32_t cells) {
   std::vector<double> observed(size_t(cells) * cells, 0.0);
   for (const auto& [x, y] : pairs)
@@ -102,7 +102,7 @@ TEST_CASE("every aligned run of 2^k points has one in each elementary interval")
         }
 }
 
-TEST_CASE("... and a run of 2^20") {
+TEST_CASE("every aligned run of 2^20 points has one in each elementary interval") {
   const auto p = points(run_of(77, 1, 3, 4, 0, 1 << 20));
   CHECK(uneven_shapes(p.data(), 20) == 0);
 }
@@ -120,8 +120,8 @@ TEST_CASE("a point is its bits, and less than 1") {
   CHECK(ends[1].unit[1] == 0);
 }
 
-TEST_CASE("pixels, halves, pads and seeds have nothing to do with each other: chi^2 over pairs") {
-  // Each pair of places gives one pair of numbers; the places differ in one respect, and a third thing
+TEST_CASE("pixels, halves, pads and seeds are independent: chi^2 over pairs") {
+  // Each pair of places gives one pair of numbers; the places differ in one respect, and another respect
   // counts.
   struct Relation {
     const char* name;
@@ -197,9 +197,9 @@ TEST_CASE("pixels, halves, pads and seeds have nothing to do with each other: ch
   CHECK(jury.verdict() == "");
 }
 
-TEST_CASE("within a pixel, pads and halves are shuffled against each other: chi^2 up to sample 2^20") {
-  // Of sixteen successive points one: then the shuffles of two pads leave nothing that the strata determine
-  // together, and pairs of sixteenths are independent and uniform.
+TEST_CASE("within a pixel, pads and halves are shuffled independently: chi^2 up to sample 2^20") {
+  // One of sixteen successive points: then the strata of two pads determine nothing together, and pairs of
+  // sixteenths are independent and uniform.
   constexpr uint32_t k_pairs = 1 << 15, k_step = 16;
   struct Pair {
     uint32_t half_a, pad_a, half_b, pad_b;
@@ -226,7 +226,8 @@ TEST_CASE("within a pixel, pads and halves are shuffled against each other: chi^
   CHECK(jury.verdict() == "");
 }
 
-TEST_CASE("coherent sampling: a pixel's points are as even, its tile's go together, its neighbour's differ") {
+TEST_CASE(
+    "coherent sampling: a pixel's points stay even, its tile's are shared, its neighbour tile's differ") {
   for (const char* side : {"3", "4"}) {
     const gpu::Defines coherent{{"LUCERNA_COHERENT", side}};
     const uint32_t tile = 1u << std::stoul(side);
@@ -236,7 +237,7 @@ TEST_CASE("coherent sampling: a pixel's points are as even, its tile's go togeth
         const auto p = points(run_of(pixel, half, 5, 5, 0, 1 << 12), coherent);
         for (const int k : {1, 2, 3, 5, 8, 12}) CHECK(uneven_shapes(p.data(), k) == 0);
       }
-    // Of one sample, all pixels of 1024 tiles in a picture 16 tiles wide.
+    // One sample of all pixels of 1024 tiles in a picture 16 tiles wide.
     const uint32_t width = 16 * tile, rows = 64 * tile;
     std::vector<Place> places;
     for (uint32_t pixel = 0; pixel < width * rows; ++pixel) places.push_back({pixel, 6, 3, 5, width});
@@ -254,7 +255,7 @@ TEST_CASE("coherent sampling: a pixel's points are as even, its tile's go togeth
       CHECK(apart == 0);
       CHECK(alike < 3);
       jury.add(fmt::format("dimension {}, digits below the shared ones", d), uniform_tail(low, 64));
-      // One pixel of each tile, against the tile to the right and the one below.
+      // One pixel of each tile, compared with the tile to the right and the one below.
       for (uint32_t y = 0; y + tile < rows; y += tile)
         for (uint32_t x = 0; x + tile < width; x += tile) {
           const uint32_t i = y * width + x;
@@ -287,4 +288,4 @@ TEST_CASE("no two purposes of a path draw from the same pad") {
   CHECK(seen.size() == places.size() + others.size());
 }
 
-TEST_CASE("the validation layers had nothing to say") { CHECK(device().validation_messages() == 0); }
+TEST_CASE("there were no validation messages") { CHECK(device().validation_messages() == 0); }

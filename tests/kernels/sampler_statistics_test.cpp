@@ -1,5 +1,5 @@
 // links: base
-// The judge is judged first: the chi-squared test that the tests of all samplers rely on.
+// Tests of the chi-squared test that the tests of all samplers use.
 #include <catch2/catch.hpp>
 #include <random>
 
@@ -21,7 +21,7 @@ TEST_CASE("the incomplete gamma function has its closed forms") {
   CHECK(chi_square_tail(0, 3) == 1);
 }
 
-TEST_CASE("quantiles as tables print them") {
+TEST_CASE("quantiles as printed in tables") {
   CHECK(chi_square_tail(3.841459, 1) == Approx(0.05).epsilon(1e-6));
   CHECK(chi_square_tail(18.307038, 10) == Approx(0.05).epsilon(1e-6));
   CHECK(chi_square_tail(135.806723, 100) == Approx(0.01).epsilon(1e-6));
@@ -30,23 +30,23 @@ TEST_CASE("quantiles as tables print them") {
   CHECK(normal_tail(-3.890592) == Approx(1e-4).epsilon(1e-5));
 }
 
-TEST_CASE("many tests share one level") {
+TEST_CASE("many tests share one significance level") {
   CHECK(significant_below(1) == Approx(k_alpha));
   CHECK(significant_below(1000) == Approx(k_alpha / 1000).epsilon(1e-3));
   CHECK(std::pow(1 - significant_below(300, 0.3), 300) == Approx(0.7));
 }
 
-TEST_CASE("cells that expect little are merged, and nothing is lost by it") {
+TEST_CASE("cells with a low expectation are merged without losing draws") {
   const ChiSquare all = chi_square({10, 1, 1, 8, 0, 2}, {10, 2, 2, 6, 1, 1});
-  // {10} {2 + 2 + 6} with the last two on top: 10 against 10, 12 against 12.
+  // {10} {2 + 2 + 6} with the last two added: 10 against 10, 12 against 12.
   CHECK(all.freedom == 1);
   CHECK(all.statistic == Approx(0));
-  // A draw where nothing may fall counts where it is merged.
+  // A draw where none is possible counts in the merged cell.
   CHECK(chi_square({10, 1000, 10}, {10, 0, 10}).p < 1e-100);
   CHECK(chi_square({3}, {3}).p == 1);
 }
 
-TEST_CASE("of right samplers the p-values are uniform, and a wrong one is caught") {
+TEST_CASE("correct samplers have uniform p-values, and a wrong one is detected") {
   std::mt19937_64 random(5);
   constexpr int k_cells = 50, k_draws = 20000, k_rounds = 400;
   std::vector<double> weights(k_cells), expected(k_cells);
@@ -64,7 +64,7 @@ TEST_CASE("of right samplers the p-values are uniform, and a wrong one is caught
     deciles[std::min(9, static_cast<int>(10 * chi_square(counts, expected).p))] += 1;
   }
   CHECK(chi_square(deciles, std::vector<double>(10, k_rounds / 10.0)).p > 1e-3);
-  // One cell in the tail a tenth too likely: with ten times the draws it shows.
+  // One cell in the tail a tenth too likely: ten times the draws reveal it.
   std::vector<double> counts(k_cells, 0);
   for (int i = 0; i < 10 * k_draws; ++i) counts[wrong(random)] += 1;
   for (double& e : expected) e *= 10;

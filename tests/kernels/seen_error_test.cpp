@@ -1,6 +1,5 @@
 // links: film
-// The error as seen (shaders/shared/seen_error.h) of pictures whose halves are known, through the real
-// shader.
+// The error as seen (shaders/shared/seen_error.h) of pictures with known halves, through the real shader.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -19,7 +18,7 @@ struct Halves {
 };
 using Pixel = std::array<Halves, 4>;
 
-/// Light of the first component alone.
+/// Light of the first component only.
 Pixel grey(float even, float odd) { return {Halves{even, odd}}; }
 
 uint32_t compact(uint32_t x) { return (x & 1u) | (x >> 1 & 2u) | (x >> 2 & 4u); }
@@ -31,7 +30,7 @@ class Bench {
     std::vector<film::TileError> tiles;  ///< of 16x16 pixels
   };
 
-  /// `samples`: a pixel, 0, 1 or 2.
+  /// `samples`: per pixel, 0, 1 or 2.
   template <class F>
   Errors estimate(uint32_t width, uint32_t height, const film::SeenRange& range, const F& pixel,
                   uint32_t samples = 2) {
@@ -87,7 +86,7 @@ float sign(uint32_t x, uint32_t y) { return (x + y) % 2 ? 1.0f : -1.0f; }
 
 }  // namespace
 
-TEST_CASE("Constant noise: the error as seen is its relative size, of picture and tiles") {
+TEST_CASE("Constant noise: the error as seen is its relative size, for picture and tiles") {
   Bench bench;
   const auto e = bench.estimate(32, 16, k_linear, [](uint32_t x, uint32_t y) {
     return grey(0.5f + 0.05f * sign(x, y), 0.5f - 0.05f * sign(x, y));
@@ -98,7 +97,7 @@ TEST_CASE("Constant noise: the error as seen is its relative size, of picture an
   CHECK(e.image.seen_degrees == Approx(3 * 512));
   CHECK(e.image.share(0) == 1);
   for (const film::TileError& tile : e.tiles) CHECK(tile.relative == Approx(0.1 * 1.2533));
-  // Exposure that puts the same picture on the display changes nothing.
+  // An exposure that gives the same displayed picture changes nothing.
   const auto brighter = bench.estimate(
       32, 16, film::seen_range(-3, shared::k_tone_linear),
       [](uint32_t x, uint32_t y) { return grey(4 + 0.4f * sign(x, y), 4 - 0.4f * sign(x, y)); });
@@ -107,10 +106,10 @@ TEST_CASE("Constant noise: the error as seen is its relative size, of picture an
   CHECK(bench.complaints() == 0);
 }
 
-TEST_CASE("A bright window over 5 % of the picture decides the error of the mean, not the error as seen") {
+TEST_CASE("A bright window over 5 % of the picture dominates the error of the mean, not the error as seen") {
   Bench bench;
-  // Walls are 10 % off by tertiary light; the window, four by eight of 640 pixels, is half off by primary.
-  // What pixels are held against, where window and wall are that bright: the mean of the 5x5 around.
+  // Walls have a 10 % error in tertiary light; the window, four by eight of 640 pixels, has a 50 % error in
+  // primary light. The scale of a pixel is the mean of the surrounding 5x5.
   const auto in_window = [](int x, int y) { return x >= 8 && x < 12 && y >= 8 && y < 16; };
   const auto squares = [&](double window, bool of_window, double off) {
     double sum = 0;
@@ -143,7 +142,7 @@ TEST_CASE("A bright window over 5 % of the picture decides the error of the mean
   CHECK(e.seen(3) > 0.08);
   CHECK(e.seen(0) == Approx(e.seen(3)));
   CHECK(e.share(2) == 1);
-  // Less exposure shows it: each pixel against its own surroundings.
+  // A lower exposure shows it: each pixel relative to its own surroundings.
   const auto dim = bench.estimate(32, 20, {0.02f, 1000}, room).image;
   CHECK(dim.white == 0);
   CHECK(std::pow(dim.seen(1), 2) == Approx(squares(20, true, 10)));
@@ -152,7 +151,7 @@ TEST_CASE("A bright window over 5 % of the picture decides the error of the mean
   CHECK(dim.seen(0) == Approx(std::hypot(dim.seen(1), dim.seen(3))));
 }
 
-TEST_CASE("What is clipped is seen as far as it reaches below white") {
+TEST_CASE("A clipped value counts by the part below white") {
   Bench bench;
   const auto one = [](float even, float odd) {
     return [=](uint32_t x, uint32_t y) { return x + y == 0 ? grey(even, odd) : grey(0.2f, 0.2f); };
@@ -170,7 +169,7 @@ TEST_CASE("What is clipped is seen as far as it reaches below white") {
   CHECK(seen(1.2f, 0.4f) == Approx(0.4 / ((0.8 + 8 * 0.2) / 9)));
 }
 
-TEST_CASE("A firefly counts no more than the bound, and does not hold its tile") {
+TEST_CASE("A firefly counts at most the bound, and does not hold its tile") {
   Bench bench;
   const auto e = bench.estimate(16, 16, {0.02f, 1e9f}, [](uint32_t x, uint32_t y) {
     return x + y == 0 ? grey(0, 1e5f) : grey(0.1f, 0.1f);
@@ -180,7 +179,7 @@ TEST_CASE("A firefly counts no more than the bound, and does not hold its tile")
   CHECK(e.tiles.at(0).relative < 0.03);
 }
 
-TEST_CASE("A dark picture is held against the floor, a black one has no error") {
+TEST_CASE("A dark picture is compared with the floor, a black one has no error") {
   Bench bench;
   const auto dark = bench.estimate(16, 16, k_linear, [](uint32_t x, uint32_t y) {
     return grey(0.001f + 0.0005f * sign(x, y), 0.001f - 0.0005f * sign(x, y));
@@ -210,7 +209,7 @@ TEST_CASE("Pictures of one pixel, of one sample, of none") {
   CHECK(film::image_error({}).share(0) == 0);
 }
 
-TEST_CASE("Shares of components add up, and their squares to the sum's where they are independent") {
+TEST_CASE("Components' shares sum to the whole, and independent ones' squares to the sum's square") {
   Bench bench;
   std::mt19937 random(11);
   std::normal_distribution<float> normal;
@@ -226,13 +225,14 @@ TEST_CASE("Shares of components add up, and their squares to the sum's where the
   CHECK(i.seen(3) == 0);
   CHECK(i.share(2) == 0);
   CHECK(i.share(0) + i.share(1) + i.share(2) + i.share(3) == Approx(1));
-  // Halves have that noise, so that the pixel's is over sqrt(2); 6144 pixels: 3.3 sigma are 6 % of a square.
+  // The halves have that noise, so the pixel's is divided by sqrt(2); 6144 pixels: 3.3 sigma are 6 % of a
+  // square.
   const double scale = 2 * 0.25;
   CHECK(std::pow(i.seen(1), 2) == Approx(0.0004 / scale).epsilon(0.06));
   CHECK(std::pow(i.seen(2), 2) == Approx(0.0016 / scale).epsilon(0.06));
   CHECK(std::pow(i.seen(4), 2) == Approx(0.0001 / scale).epsilon(0.06));
   CHECK(std::pow(i.seen(0), 2) == Approx(0.0021 / scale).epsilon(0.06));
-  // Errors that cancel in the sum stay the components' own.
+  // Errors that cancel in the sum remain in the components.
   const auto cancel = bench.estimate(8, 8, k_linear, [](uint32_t, uint32_t) {
     return Pixel{Halves{0.3f, 0.1f}, Halves{0.1f, 0.3f}};
   });
@@ -241,7 +241,7 @@ TEST_CASE("Shares of components add up, and their squares to the sum's where the
   CHECK(cancel.image.share(0) == Approx(0.5));
 }
 
-TEST_CASE("From its white on a tone curve shows a tenth of a relative change, or less") {
+TEST_CASE("Above its white a tone curve shows at most a tenth of a relative change") {
   const auto shown = [](double y, uint32_t curve) {
     const float encoded = shared::tone_map(vec3(float(y)), curve).y;
     return encoded <= 0.04045f ? double(encoded) / 12.92 : std::pow((double(encoded) + 0.055) / 1.055, 2.4);

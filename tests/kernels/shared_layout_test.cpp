@@ -1,7 +1,7 @@
 // links: gpu
-// Structs that C++ and the shaders share: every member must have the same name and offset on both sides, and
-// an array of them the same stride. A new struct in shaders/shared/ is one line in `structs()`; forgetting it
-// fails the second test.
+// Structs shared by C++ and the shaders: every member must have the same name and offset on both sides, and
+// an array of them the same stride. A new struct in shaders/shared/ needs one line in `structs()`; the second
+// test fails without it.
 #include <algorithm>
 #include <fstream>
 #include <set>
@@ -27,6 +27,7 @@
 #include "shaders/shared/ramp.h"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/scene.h"
+#include "shaders/shared/sheet.h"
 #include "shaders/shared/sight.h"
 #include "shaders/shared/sort.h"
 #include "shaders/shared/splat.h"
@@ -89,7 +90,7 @@ std::vector<SharedStruct> structs() {
              skips_unreachable, component),
       SHARED("photons/irradiance.h", IrradianceFrame, triangles, states, gathers),
       SHARED("photons/inspect.h", PhotonDensityPush, width, height, of, first, count, grid),
-      SHARED("photons/inspect.h", PhotonHeatPush, width, height, lo, hi),
+      SHARED("photons/inspect.h", PhotonHeatPush, width, height, scale, lo, hi),
       SHARED("photons/inspect.h", PhotonSmoothPush, width, height, taps, down),
       SHARED("photons/inspect.h", PhotonInspectPush, width, height, pixel, grid),
       SHARED("photons/inspect.h", PhotonInspectHeader, position, radius, normal, area, irradiance, density,
@@ -103,6 +104,8 @@ std::vector<SharedStruct> structs() {
       SHARED("photons/photons.h", PhotonContributionPush, count, step, first),
       SHARED("photons/photons.h", PhotonListPush, count),
       SHARED("photons/photons.h", PhotonPointsPush, count, step, by, round),
+      SHARED("sheet.h", EnlargePush, width, height, scale),
+      SHARED("sheet.h", SheetView, film_width, film_height, scale, surfaces_known),
       SHARED("sight.h", SeePush, first, count, across, down, stride),
       SHARED("irradiance_cache/discontinuity.h", LitPush, count),
       SHARED("irradiance_cache/discontinuity.h", DetailPush, across, down, level, first, finer, pixel,
@@ -142,7 +145,7 @@ std::vector<SharedStruct> structs() {
       SHARED("preview.h", PreviewChangePush, across, down, blocks_across, blocks_down, all),
       SHARED("preview.h", PreviewShares, all, stale, filtered),
       SHARED("preview.h", PreviewJudgePush, width, height, film_width, film_height, step),
-      SHARED("preview.h", PreviewTile, error, expected, square, noise),
+      SHARED("preview.h", PreviewTile, error, square, noise),
       SHARED("irradiance_cache/records.h", RelightPreviewPush, factor, count, sky_group),
       SHARED("irradiance_cache/records.h", CacheFrame, routes, record_count, normal_tolerance, off_plane,
              probing, off_plane_least, least_of_distance, least_most, parallel, eye, branches),
@@ -217,7 +220,7 @@ std::vector<uint32_t> compile(const SharedStruct& s, const std::filesystem::path
 
 }  // namespace
 
-TEST_CASE("shared structs are laid out alike in C++ and GLSL") {
+TEST_CASE("shared structs have the same layout in C++ and GLSL") {
   const test::Folder temporary;
   for (const SharedStruct& s : structs()) {
     INFO(s.header << ": " << s.name);

@@ -1,5 +1,5 @@
 // links: sort
-// The radix sort on the device against std::stable_sort.
+// The radix sort on the device compared with std::stable_sort.
 #include <algorithm>
 #include <random>
 
@@ -31,8 +31,8 @@ struct Sorter {
         a(silent.device, {.name = "entries", .bytes = k_bytes, .texel = true}),
         b(silent.device, {.name = "scratch", .bytes = k_bytes, .texel = true}) {}
 
-  /// Sorts entries with these keys, whose values are their places, by the lowest `bits`: differences from the
-  /// host's stable sort, and writes behind the end.
+  /// Sorts entries with these keys, whose values are their indices, by the lowest `bits`; returns the number
+  /// of differences from the host's stable sort and of writes behind the end.
   size_t wrong(const std::vector<uint64_t>& keys, uint32_t bits, const sort::Count& count) {
     std::vector<Entry> entries(a.bytes() / sizeof(Entry));
     for (uint32_t i = 0; i < entries.size(); ++i) {
@@ -72,7 +72,7 @@ std::vector<uint64_t> random_keys(size_t n, uint32_t bits) {
 
 }  // namespace
 
-TEST_CASE("pairs of all sizes around powers of two come out sorted") {
+TEST_CASE("pairs of all sizes around powers of two are sorted") {
   Sorter<shared::SortPair> sorter;
   CHECK(sorter.wrong({}, 32) == 0);
   for (const size_t n : {1, 2, 3}) CHECK(sorter.wrong(random_keys(n, 32), 32) == 0);
@@ -91,7 +91,7 @@ TEST_CASE("entries of equal keys keep their order") {
   CHECK(sorter.wrong(std::vector<uint64_t>(100001, 0xffffffffu), 32) == 0);
 }
 
-TEST_CASE("entries that are sorted already stay; reversed ones turn round") {
+TEST_CASE("sorted entries stay; reversed ones are reversed") {
   Sorter<shared::SortPair> sorter;
   std::vector<uint64_t> keys(65537);
   for (size_t i = 0; i < keys.size(); ++i) keys[i] = i * 65535;
@@ -100,7 +100,7 @@ TEST_CASE("entries that are sorted already stay; reversed ones turn round") {
   CHECK(sorter.wrong(keys, 32) == 0);
 }
 
-TEST_CASE("only the bits that are asked for count") {
+TEST_CASE("only the requested bits count") {
   Sorter<shared::SortPair> sorter;
   for (uint32_t bits = 1; bits <= 32; ++bits) {
     INFO(bits);
@@ -123,7 +123,7 @@ TEST_CASE("keys of 64 bits") {
   CHECK(sorter.wrong(std::vector<uint64_t>(10001, ~0ull), 64) == 0);
 }
 
-TEST_CASE("the number of entries may stand in a buffer, and is bounded by what there may be") {
+TEST_CASE("the number of entries can be in a buffer, limited by the capacity") {
   Sorter<shared::SortPair> sorter;
   gpu::Buffer count(sorter.silent.device, {.name = "count", .bytes = 16});
   for (const uint32_t n : {0u, 1u, 255u, 4097u, 99999u, 100000u, 100001u, 0xffffffffu}) {
@@ -134,7 +134,7 @@ TEST_CASE("the number of entries may stand in a buffer, and is bounded by what t
   }
 }
 
-TEST_CASE("pairs as a GPU would cut them into runs") {
+TEST_CASE("pairs in runs of a GPU's size") {
   const sort::RadixSort::Tuning tuning{.runs = {.group = 64, .wanted = 65536, .least = 32, .most = 65536},
                                        .digit_bits = 4};
   Sorter<shared::SortPair> sorter(&tuning);
@@ -144,8 +144,8 @@ TEST_CASE("pairs as a GPU would cut them into runs") {
   }
 }
 
-TEST_CASE("runs are cut so short that lavapipe's limit of 65535 iterations is never met") {
-  // As many entries as would make them too long.
+TEST_CASE("runs are short enough for lavapipe's limit of 65535 iterations") {
+  // Enough entries to make them too long.
   test::SilentDevice silent;
   gpu::ShaderCompiler compiler;
   gpu::Stream stream(silent.device);
@@ -167,7 +167,7 @@ TEST_CASE("runs are cut so short that lavapipe's limit of 65535 iterations is ne
   CHECK(bad == 0);
 }
 
-TEST_CASE("two sorts of the same entries are the same, byte for byte") {
+TEST_CASE("two sorts of the same entries are identical, byte for byte") {
   Sorter<shared::SortPair> sorter;
   std::vector<shared::SortPair> first;
   for (int round = 0; round < 3; ++round) {
@@ -179,7 +179,7 @@ TEST_CASE("two sorts of the same entries are the same, byte for byte") {
   }
 }
 
-TEST_CASE("a sort that does not fit is refused") {
+TEST_CASE("a sort beyond the capacity is refused") {
   Sorter<shared::SortPair> sorter;
   gpu::Buffer small(sorter.silent.device, {.name = "small", .bytes = 64, .texel = true});
   const auto sort = [&](uint32_t n) {

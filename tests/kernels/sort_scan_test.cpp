@@ -1,5 +1,5 @@
 // links: sort
-// Prefix sums on the device against std::exclusive_scan.
+// Prefix sums on the device compared with std::exclusive_scan.
 #include <numeric>
 #include <random>
 
@@ -30,7 +30,7 @@ struct Scanner {
         out(silent.device, {.name = "out", .bytes = k_words * 4, .texel = true}),
         total(silent.device, {.name = "total", .bytes = 16}) {}
 
-  /// Differences from the host's sum, the total and the elements behind the end included.
+  /// The number of differences from the host's sum, including the total and the elements behind the end.
   size_t wrong(const std::vector<uint32_t>& values, const sort::Count& count, size_t n, bool in_place) {
     const gpu::Buffer& target = in_place ? in : out;
     std::vector<uint32_t> padded(k_words, k_untouched);
@@ -77,7 +77,7 @@ TEST_CASE("prefix sums of all sizes around powers of two, into another buffer an
     }
 }
 
-TEST_CASE("prefix sums as a GPU would cut them into runs") {
+TEST_CASE("prefix sums in runs of a GPU's size") {
   const sort::Runs runs{.group = 64, .wanted = 16384, .least = 16, .most = 16384};
   Scanner scanner(&runs);
   const auto values = random_values(1000);
@@ -85,14 +85,14 @@ TEST_CASE("prefix sums as a GPU would cut them into runs") {
     CHECK(scanner.wrong(values, {.most = n}, n, true) == 0);
 }
 
-TEST_CASE("prefix sums wrap around at 2^32, as unsigned integers do") {
+TEST_CASE("prefix sums wrap around at 2^32, like unsigned integers") {
   Scanner scanner;
   CHECK(scanner.wrong(random_values(0), {.most = 100000}, 100000, false) == 0);
   CHECK(scanner.wrong(std::vector<uint32_t>(k_most, 0xffffffffu), {.most = 70001}, 70001, true) == 0);
   CHECK(scanner.wrong(std::vector<uint32_t>(k_most, 0u), {.most = k_most}, k_most, true) == 0);
 }
 
-TEST_CASE("the number of elements may stand in a buffer, and is bounded by what there may be") {
+TEST_CASE("the number of elements can be in a buffer, limited by the capacity") {
   Scanner scanner;
   gpu::Buffer count(scanner.silent.device, {.name = "count", .bytes = 16});
   const auto values = random_values(50);
@@ -120,7 +120,7 @@ TEST_CASE("prefix sums of sixteen million elements") {
   CHECK(bad == 0);
 }
 
-TEST_CASE("a prefix sum that does not fit is refused") {
+TEST_CASE("a prefix sum beyond the capacity is refused") {
   Scanner scanner;
   CHECK_THAT(
       test::error_of([&] { scanner.sum.encode(scanner.stream, scanner.in, scanner.total, {.most = 5}); }),

@@ -1,6 +1,6 @@
 #pragma once
-// Goodness of fit and its significance, for the tests of samplers. All of it is deterministic: the draws have
-// fixed seeds, so a test that passes once passes always on the same device.
+// Goodness of fit and its significance, for the tests of samplers. Everything is deterministic: draws have
+// fixed seeds, so a test that passes once always passes on the same device.
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -9,18 +9,17 @@
 
 namespace lucerna::test {
 
-/// Chance that all tests of one executable together report a difference where there is none, were the seeds
-/// drawn anew. Each of n tests is held to k_alpha shared out by Sidak's rule, see significant_below().
+/// Probability that all tests of one executable together report a false difference, over random seeds. Each
+/// of n tests gets its part of k_alpha by Sidak's rule, see significant_below().
 inline constexpr double k_alpha = 1e-4;
 
-/// The level that each of `tests` independent tests must pass so that all of them together have the level
-/// `alpha`.
+/// The level for each of `tests` independent tests such that all of them together have the level `alpha`.
 inline double significant_below(size_t tests, double alpha = k_alpha) {
   return -std::expm1(std::log1p(-alpha) / static_cast<double>(tests));
 }
 
 /// Regularized upper incomplete gamma function Q(a, x), a > 0, x >= 0; relative error about 1e-12. The series
-/// of P where it converges fast, else Legendre's continued fraction by Lentz's method.
+/// of P where it converges fast, otherwise Legendre's continued fraction by Lentz's method.
 inline double gamma_q(double a, double x) {
   if (x <= 0) return 1;
   const double front = std::exp(a * std::log(x) - x - std::lgamma(a));
@@ -45,22 +44,22 @@ inline double gamma_q(double a, double x) {
   return front * h;
 }
 
-/// Chance that a chi-squared variable of `freedom` degrees exceeds `statistic`.
+/// Probability that a chi-squared variable of `freedom` degrees exceeds `statistic`.
 inline double chi_square_tail(double statistic, double freedom) {
   return gamma_q(0.5 * freedom, 0.5 * statistic);
 }
 
-/// Two-sided chance of a standard normal variable beyond |z|.
+/// Two-sided probability of a standard normal variable beyond |z|.
 inline double normal_tail(double z) { return std::erfc(std::abs(z) * 0.70710678118654752); }
 
 struct ChiSquare {
   double statistic = 0;
   size_t freedom = 0;
-  double p = 1;  ///< chance of a statistic this large
+  double p = 1;  ///< probability of a statistic this large
 };
 
-/// Pearson's test of observed counts against expected ones (the same sum, but for rounding). Neighbouring
-/// cells are merged until each expects at least `least`; what is left at the end joins the last one.
+/// Pearson's test of observed counts against expected ones (with the same sum up to rounding). Neighbouring
+/// cells are merged until each expects at least `least`; the remainder joins the last one.
 inline ChiSquare chi_square(const std::vector<double>& observed, const std::vector<double>& expected,
                             double least = 5) {
   std::vector<double> o, e;
@@ -89,19 +88,18 @@ struct Mean {
   double error() const { return std::sqrt(std::max(0.0, squares / count - value() * value()) / (count - 1)); }
 };
 
-/// Chance of a mean this far from what it should be. `slack`: what `expected` itself, or rounding, may be off
-/// by.
+/// Probability of a mean this far from `expected`. `slack`: tolerance for errors of `expected` and rounding.
 inline double mean_tail(const Mean& mean, double expected, double slack) {
   const double off = std::max(0.0, std::abs(mean.value() - expected) - slack);
   return off == 0 ? 1 : mean.error() == 0 ? 0 : normal_tail(off / mean.error());
 }
 
-/// Collects the chances of many tests and judges them together.
+/// Collects the probabilities of many tests and evaluates them together.
 class Jury {
  public:
   void add(std::string what, double p) { tests_.emplace_back(std::move(what), p); }
   size_t size() const { return tests_.size(); }
-  /// "" when no chance is below the common level, else those that are.
+  /// "" if no probability is below the common level, otherwise those that are.
   std::string verdict(double alpha = k_alpha) const {
     const double limit = significant_below(tests_.size(), alpha);
     std::string text;

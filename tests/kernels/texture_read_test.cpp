@@ -1,6 +1,6 @@
 // links: upload
-// Textures as shaders read them from the shared pages, against a plain bilinear filter on the host: every
-// size, wrap mode, format and transform; and what the packing promises.
+// Textures read by shaders from the shared pages, compared with a bilinear filter on the host: every size,
+// wrap mode, format and transform; and the guarantees of the packing.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -44,7 +44,7 @@ glm::dvec4 reference(const scene::Scene& s, const scene::TextureUse& use, vec2 u
   return glm::mix(glm::mix(at(0, 0), at(1, 0), fx), glm::mix(at(0, 1), at(1, 1), fx), fy);
 }
 
-/// One texture of each combination, each on a material of its own, and a material without.
+/// One texture of each combination, each on its own material, and a material without a texture.
 scene::Scene make_scene(bool only_repeat) {
   std::mt19937 engine(5);
   scene::Scene s;
@@ -80,7 +80,7 @@ scene::Scene make_scene(bool only_repeat) {
 
 }  // namespace
 
-TEST_CASE("every texture reads as a plain bilinear filter would") {
+TEST_CASE("every texture reads like a bilinear filter on the host") {
   gpu::Device device({test::device_name(), true});
   gpu::ShaderCompiler compiler;
   for (const bool only_repeat : {true, false}) {
@@ -97,7 +97,7 @@ TEST_CASE("every texture reads as a plain bilinear filter would") {
     const auto materials = uint32_t(s.materials.size());
     for (size_t i = 0; i < at.size(); ++i) {
       const auto uniform = [&] { return float(engine() >> 8) * (1.0f / 16777216.0f); };
-      // A third at or just beside the borders, where neighbours on the page must not bleed in.
+      // A third at or close to the borders, where neighbours on the page must not bleed in.
       at[i] = i / materials % 3 ? vec2(uniform() * 4 - 2, uniform() * 4 - 2)
                                 : vec2(float(engine() % 5) - 2 + (uniform() - 0.5f) * 1e-3f, uniform());
     }
@@ -122,8 +122,8 @@ TEST_CASE("every texture reads as a plain bilinear filter would") {
       }
       const scene::Texture& t = s.textures[use.texture];
       const scene::Image& image = s.images[t.image];
-      // Filters weigh with 8 bits of fraction at least; between two texels that is 1/256 of their difference
-      // in each direction. A nearest texel may be its neighbour within rounding of an edge.
+      // Filters have at least 8 bits of fraction; between two texels that is 1/256 of their difference in
+      // each direction. Near an edge a nearest texel may be its neighbour by rounding.
       const double range = image.floats.empty() ? 1 : 10;
       glm::dvec4 best = reference(s, use, at[i]) - glm::dvec4(got[i]);
       if (t.nearest)
@@ -145,9 +145,9 @@ TEST_CASE("every texture reads as a plain bilinear filter would") {
   CHECK(device.validation_messages() == 0);
 }
 
-TEST_CASE("packing: nothing overlaps, equal uses share, and what does not fit is refused") {
+TEST_CASE("packing: nothing overlaps, equal uses share, and textures beyond the limit are refused") {
   scene::Scene s = make_scene(false);
-  s.textures.push_back(s.textures.front());  // the same image, used alike once more
+  s.textures.push_back(s.textures.front());  // the same image, with the same use
   std::vector<upload::Bucket> buckets;
   const upload::TextureMap map = upload::pack_textures(s, buckets);
   CHECK(map.place.back().rect == map.place.front().rect);
@@ -170,7 +170,7 @@ TEST_CASE("packing: nothing overlaps, equal uses share, and what does not fit is
                          lowi.y >= highj.y - 0.01f || lowj.y >= highi.y - 0.01f;
       if (!apart) FAIL("textures " << j << " and " << i << " overlap");
     }
-  // Small buckets: more of them, until there are too many.
+  // Small buckets: more of them, up to the limit.
   const upload::TextureMap split = upload::pack_textures(s, buckets, 4 << 20);
   CHECK(split.place.size() == map.place.size());
   CHECK_THROWS_AS(upload::pack_textures(s, buckets, 1), Error);

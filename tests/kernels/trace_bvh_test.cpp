@@ -1,5 +1,5 @@
 // links: gpu bvh_embree
-// The compute-bvh tracer through its real kernels: against the oracle, the host tracer, and leaks.
+// The compute-bvh tracer through its real kernels, compared with the oracle and the host tracer; and leaks.
 #include <catch2/catch.hpp>
 
 #include "bvh/embree/build.h"
@@ -66,7 +66,7 @@ class ComputeTracer {
   gpu::Stream stream_{device()};
 };
 
-/// Rows in which two lists of hits differ.
+/// The number of rows in which two lists of hits differ.
 size_t differences(Query query, const std::vector<Hit>& a, const std::vector<Hit>& b) {
   size_t count = 0;
   for (size_t i = 0; i < a.size(); ++i) {
@@ -94,14 +94,14 @@ TEST_CASE("compute tracer agrees with the oracle and with the host tracer") {
         tracer.trace(kernel(query, tracer.non_opaque()), c.rays, hits);
         CHECK(judge_all(c.mesh.view(), query, c.rays, hits) == "");
         host.trace(query, c.rays, from_host, nullptr, static_cast<uint32_t>(c.rays.size()), false);
-        // Division on the CPU rounds correctly, so that not a bit may differ.
+        // Division on the CPU is correctly rounded, so every bit must be equal.
         if (device().info().is_cpu) CHECK(differences(query, hits, from_host) == 0);
       }
     }
   CHECK(device().validation_messages() == 0);
 }
 
-TEST_CASE("beside slivers both tracers find the same, on the device") {
+TEST_CASE("beside slivers both tracers find the same hits, on the device") {
   Random random(27);
   const gpu::Kernel closest = kernel(Query::closest, false);
   Mesh slivers;
@@ -114,7 +114,7 @@ TEST_CASE("beside slivers both tracers find the same, on the device") {
   if (device().info().is_cpu) CHECK(differences(Query::closest, hits, from_host) == 0);
 }
 
-TEST_CASE("other ways to fetch and to keep the stack give the same hits") {
+TEST_CASE("other fetch and stack variants give the same hits") {
   Random random(21);
   const Mesh mesh = soup(random, 5000, 10, 1, vec3(0), 0.3f);
   const std::vector<Ray> rays = hard_rays(random, mesh, 20000, 10);
@@ -159,7 +159,7 @@ TEST_CASE("no ray leaks through a closed mesh, on the device: 10^7 rays") {
   }
 }
 
-TEST_CASE("far things change neither hits nor work, on the device") {
+TEST_CASE("far objects change neither hits nor work, on the device") {
   Random random(26);
   const Mesh near = soup(random, 20000, 0.05f, 0.001f);
   const std::vector<Ray> rays = hard_rays(random, near, 20000, 0.05f);
@@ -179,7 +179,7 @@ TEST_CASE("far things change neither hits nor work, on the device") {
       differ +=
           alone[i].prim != shared::k_no_hit && (alone[i].prim != beside[i].prim || alone[i].t != beside[i].t);
     CHECK(differ == 0);
-    // A dome has boxes with the middle in them.
+    // A dome has boxes that contain the centre.
     CHECK(visits(beside) < 1.1 * visits(alone) + 20.0 * double(rays.size()));
   }
 }
@@ -210,12 +210,11 @@ TEST_CASE("a wall 20 km from a room costs its rays less than a tenth more work, 
 }
 
 TEST_CASE("a tree that fills the stack") {
-  // Triangles each as large as their distance, the farthest at the root: on each level an inner node with two
-  // of them and the rest. The pair is larger than the rest, so that nodes of four children take in the pair
-  // and one level of the rest: three entries for two levels, which is the worst there is. Rays from the near
-  // end pass every box, in the half of it that its triangle does not cover, and leave three entries in every
-  // node; only the triangle `odd` covers the other half. For some `odd` it lies under the last entry that
-  // fits.
+  // Triangles as large as their distance, the farthest at the root: each level has an inner node with two of
+  // them and the rest. The pair is larger than the rest, so nodes of four children contain the pair and one
+  // level of the rest: three entries for two levels, which is the worst case. Rays from the near end pass
+  // every box in the half that its triangle does not cover, and leave three entries in every node; only the
+  // triangle `odd` covers the other half. For some `odd` it is under the last entry that fits.
   Random random(25);
   for (uint32_t odd = 0; odd < 2 * k_max_depth; ++odd) {
     Mesh mesh;

@@ -1,5 +1,5 @@
 // links: gpu
-// Sums beyond 32 bits are exact, however the additions meet.
+// Sums beyond 32 bits are exact for any order of additions.
 #include "shaders/shared/wide_sum.h"
 #include <cmath>
 
@@ -8,7 +8,7 @@
 using namespace lucerna;
 using namespace lucerna::gpu;
 
-TEST_CASE("a sum of many invocations is exact beyond 32 bits") {
+TEST_CASE("a sum over many invocations is exact beyond 32 bits") {
   test::SilentDevice silent;
   ShaderCompiler compiler;
   const Kernel kernel(silent.device, compiler, test::shader("wide_sum.comp"));
@@ -32,7 +32,7 @@ TEST_CASE("a sum of many invocations is exact beyond 32 bits") {
 
 __extension__ using Wide = unsigned __int128;
 
-TEST_CASE("a sum of three words carries from each to the next, and takes numbers of floats") {
+TEST_CASE("a sum of three words carries from each to the next, and accepts floats") {
   test::SilentDevice silent;
   ShaderCompiler compiler;
   const Kernel kernel(silent.device, compiler, test::shader("long_sum.comp"));

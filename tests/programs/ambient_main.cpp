@@ -1,4 +1,4 @@
-// The program with one more solver, which its own files do not know (support/ambient/ambient.h).
+// The program with one more solver, unknown to its own files (support/ambient/ambient.h).
 #include "app/program.h"
 #include "solvers/registry.h"
 #include "support/ambient/ambient.h"

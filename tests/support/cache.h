@@ -30,13 +30,13 @@ class CacheBed {
     return scene::load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + name + "/" + name + ".gltf");
   }
 
-  /// The same, on surfaces that face as they do.
+  /// The same places, with facets of their normals.
   static std::vector<irradiance_cache::Place> on_facets(std::vector<irradiance_cache::Place> places) {
     for (irradiance_cache::Place& p : places) p.facet = shared::facet_pack(p.normal);
     return places;
   }
 
-  /// `enabled`: components that the records' paths may bring.
+  /// `enabled`: components that the records' paths may contribute to.
   void set_frame(uint32_t enabled, transport::FrameOptions options = {}) {
     options.enabled = enabled;
     wavefront.set_frame(transport::make_frame(flat, {}, automaton, options), enabled);
@@ -73,7 +73,7 @@ inline double disk_irradiance(double d) {
 struct Moments {
   double mean = 0, deviation = 0;  ///< of the mean
 };
-/// Of a figure over `count` records.
+/// Moments of a figure over `count` records.
 template <class Value>
 Moments moments(const std::vector<irradiance_cache::Record>& records, size_t first, size_t count,
                 const Value& value) {

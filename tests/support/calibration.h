@@ -1,5 +1,5 @@
 #pragma once
-// A picture with what is told of its error, and how tiles are held against a reference that is noisy too.
+// A picture with its estimated errors, and the comparison of tiles with a noisy reference.
 #include "film/error.h"
 #include "support/render.h"
 
@@ -20,7 +20,7 @@ inline Shot shot_of(session::Renderer& renderer) {
   return shot;
 }
 
-/// The tile with the reference's noise in its own (B. L. Welch 1947).
+/// The tile with the reference's noise added to its own (B. L. Welch 1947).
 inline film::TileError with_noise_of(film::TileError tile, const film::TileError& reference) {
   const double vr = reference.standard_error * reference.standard_error,
                va = tile.standard_error * tile.standard_error;

@@ -1,6 +1,6 @@
 #pragma once
-// For tests of light that mirrors and glass bundle, whoever brings it: a scene with a closed form, and means
-// of a component with their noise.
+// For tests of light focused by mirrors and glass, by any solver: a scene with a closed form, and means of a
+// component with their noise.
 #include "support/render.h"
 #include "support/rooms.h"
 
@@ -11,7 +11,7 @@ inline Settings with(Settings settings, const Settings& more) {
   return settings;
 }
 
-/// A sun along +x that a mirror of that colour turns straight down onto a floor, which it lights evenly.
+/// A sun along +x that a mirror of that colour reflects straight down onto a floor, which it lights evenly.
 inline scene::Scene turned_sun(const vec3& mirror = {0.9f, 0.8f, 0.7f}) {
   scene::Scene s;
   s.name = "turned sun";
@@ -30,8 +30,8 @@ inline scene::Scene turned_sun(const vec3& mirror = {0.9f, 0.8f, 0.7f}) {
 struct MeanOf {
   glm::dvec3 value{0}, noise{0};
 };
-/// Of a component over some pixels; the noise from the two halves, which hold rounds of their own where light
-/// comes in rounds, so that what neighbouring pixels share is seen in the difference of the halves' means.
+/// Mean of a component over some pixels; its noise from the two halves, which contain separate passes if
+/// light comes in passes, so correlation between neighbouring pixels is included.
 inline MeanOf mean_of(const film::Image& image, int component, uint32_t x0, uint32_t y0, uint32_t x1,
                       uint32_t y1) {
   MeanOf m;

@@ -1,5 +1,5 @@
 #pragma once
-// Listens to the log.
+// Records warnings and errors of the log.
 #include <string>
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 namespace lucerna::test {
 
-/// What is logged as a warning or an error while it lives.
+/// Warnings and errors logged during its lifetime.
 struct Complaints {
   std::vector<std::string> lines;
   int token = log::add_listener([this](log::Level level, const std::string& line) {

@@ -1,5 +1,5 @@
 #pragma once
-// The device that tests of whole pictures share: made once a process, so that the second renderer finds the
+// The device shared by tests of whole pictures: created once per process, so the second renderer reuses the
 // first one's kernels.
 #include <memory>
 
@@ -8,8 +8,7 @@
 
 namespace lucerna::test {
 
-/// A device is made before its variable is: it is then destroyed before what its driver registered for the
-/// end.
+/// The device is created before its variable: it is then destroyed before the driver's own exit handlers.
 inline std::shared_ptr<gpu::Device> shared_device(bool validation) {
   const auto make = [&] {
     return std::make_shared<gpu::Device>(gpu::DeviceOptions{device_name(), validation});

@@ -1,12 +1,12 @@
 #pragma once
-// Which device the tests of kernels and pictures run on.
+// The device of the tests of kernels and pictures.
 #include <cstdlib>
 #include <string>
 
 namespace lucerna::test {
 
-/// What LUCERNA_TEST_DEVICE says, in the words of LUCERNA_DEVICE: an index, part of a name, cpu or gpu.
-/// Without it cpu, so that a result does not depend on the machine.
+/// The value of LUCERNA_TEST_DEVICE, in the form of LUCERNA_DEVICE: an index, part of a name, cpu or gpu.
+/// Default: cpu, so that a result does not depend on the machine.
 inline std::string device_name() {
   const char* chosen = std::getenv("LUCERNA_TEST_DEVICE");
   return chosen && *chosen ? chosen : "cpu";

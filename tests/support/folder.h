@@ -8,7 +8,7 @@
 
 namespace lucerna::test {
 
-/// An empty folder of its own, which goes away with the object and all that it holds.
+/// An empty separate folder, removed with its content by the destructor.
 struct Folder {
   std::filesystem::path path;
   Folder() {

@@ -1,6 +1,6 @@
 #pragma once
-// Where the sources and the program lie. Kept out of the compiler's command line, so that what one clone has
-// compiled serves another. Included by the precompiled header of all tests.
+// Paths of the sources and the program. Not on the compiler's command line, so clones share compiled files.
+// Included by the precompiled header of all tests.
 
 namespace lucerna::test {
 

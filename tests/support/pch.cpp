@@ -1,1 +1,1 @@
-// Only here so that the precompiled header, which every test reuses, has a source to be built with.
+// Source of the precompiled header that every test reuses.

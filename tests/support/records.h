@@ -1,5 +1,5 @@
 #pragma once
-// Records of an irradiance cache in tests: places for them, and whether two caches hold the same.
+// Records of an irradiance cache in tests: places for them, and comparison of two caches.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -10,8 +10,8 @@
 
 namespace lucerna::test {
 
-/// Points on the inner walls of a box of 4 x 3 x 5 m, `offset` away from the origin; facets and origins are
-/// all there are.
+/// Points on the inner walls of a box of 4 x 3 x 5 m, `offset` away from the origin, with all facets and
+/// origins.
 inline std::vector<irradiance_cache::Place> box_points(size_t count, float offset = 0, float reach = 0) {
   std::mt19937 random(5);
   const auto unit = [&] { return float(random() >> 8) / 16777216.0f; };
@@ -33,14 +33,15 @@ inline std::vector<irradiance_cache::Place> box_points(size_t count, float offse
   return points;
 }
 
-/// How far a place is from a record, over its reach there: 1 at the border of its ellipse.
+/// Distance of a place from a record relative to its radius in that direction: 1 at the border of its
+/// ellipse.
 inline float far_of(const irradiance_cache::Record& record, const vec3& at) {
   const vec3 away = at - record.place.position;
   const float along = dot(away, record.along), squared = dot(away, away) - along * along;
   return std::hypot(along / record.radius, std::sqrt(std::max(0.0f, squared)) / record.lesser_radius);
 }
 
-/// Whether the first of `all` are `some`, to the bit.
+/// True if `all` begins with `some`, bit for bit.
 inline bool begins_with(const std::vector<vec4>& all, const std::vector<vec4>& some) {
   return all.size() >= some.size() &&
          (some.empty() || std::memcmp(all.data(), some.data(), some.size() * sizeof(vec4)) == 0);
@@ -52,7 +53,7 @@ inline bool begins_with(const irradiance_cache::RawRecords& all, const irradianc
 inline bool identical(const irradiance_cache::RawRecords& a, const irradiance_cache::RawRecords& b) {
   return begins_with(a, b) && begins_with(b, a) && a.groups == b.groups;
 }
-/// Those of `all` that hold light: where the camera comes nearer others may go.
+/// The records of `all` with light: others may disappear when the camera comes nearer.
 inline irradiance_cache::RawRecords lit(irradiance_cache::RawRecords all) {
   std::vector<uint32_t> kept;
   for (uint32_t r = 0; r < all.size(); ++r)
@@ -60,8 +61,8 @@ inline irradiance_cache::RawRecords lit(irradiance_cache::RawRecords all) {
   all.keep(kept);
   return all;
 }
-/// Whether the first of `all` are those of `some`, light aside: places, normals, origins, facets and passes,
-/// to the bit. They may serve less far.
+/// True if `all` begins with the records of `some`, except for their light: places, normals, origins, facets
+/// and passes, bit for bit. Their radii may shrink.
 inline bool keeps_places(const irradiance_cache::RawRecords& all, const irradiance_cache::RawRecords& some) {
   bool same = all.size() >= some.size();
   for (size_t r = 0; same && r < some.size(); ++r) {

@@ -1,6 +1,6 @@
 #pragma once
-// Renders a scene through the real program, for tests: one renderer a call, small pictures, fixed samples;
-// and what of pictures is compared.
+// Renders a scene through the real renderer, for tests: one renderer per call, small pictures, fixed samples;
+// and comparisons of pictures.
 #include <array>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -15,8 +15,8 @@ namespace lucerna::test {
 
 using Settings = std::map<std::string, std::string>;
 
-/// Pictures of more samples do the same things more often, and the validation layers take half of the time.
-/// So does a case that renders once more what another one has rendered validated.
+/// Maximum of samples with validation: more samples repeat the same commands, and the validation layers take
+/// half of the time. Pictures that another test case renders with validation need none either.
 inline constexpr uint32_t k_validated_samples = 16;
 
 struct Render {
@@ -32,24 +32,24 @@ struct Result {
   film::Image image;
   film::ImageError error;
   transport::TransportStats stats;
-  uint64_t prepared_rays = 0;  ///< of stats.rays those before the first sample: of records
+  uint64_t prepared_rays = 0;  ///< part of stats.rays before the first sample: of records
   uint64_t validation_messages = 0;
   std::string tracer;
-  irradiance_cache::CacheStatus cache;  ///< of the one that was looked up, if one was
+  irradiance_cache::CacheStatus cache;  ///< of the cache in use, if any
   std::array<bool, 4> bias_known{};
 };
 
-/// As many paths at once as small pictures have work for, and as many records as they may need. With the
-/// defaults every renderer that is made fills (MALLOC_PERTURB_) half a gigabyte for records and a fifth for
-/// paths, which takes longer than the picture; and pictures depend on neither.
+/// Paths in flight and records sufficient for small pictures, which do not depend on them. With the defaults
+/// every new renderer fills (MALLOC_PERTURB_) half a gigabyte for records and a fifth for paths, which takes
+/// longer than the picture.
 inline constexpr const char *k_batch = "32768", *k_room = "20000";
 
-/// Records that stand closely, are calm and gather along edges: of the cache more is at work in a small
-/// picture than with its defaults, which make few of them at first.
+/// Dense, low-noise records with gathering along edges: small pictures use more of the cache than with its
+/// defaults, which place few records at first.
 inline const Settings k_dense_records{
     {"cache.gather", "true"}, {"cache.min_radius", "3"}, {"cache.noise", "0.03"}, {"cache.stop", "0.002"}};
 
-/// These, and dense records where they do not say otherwise.
+/// These settings, and those of dense records where they are not set.
 inline Settings dense_records(Settings settings) {
   settings.insert(k_dense_records.begin(), k_dense_records.end());
   return settings;
@@ -66,7 +66,7 @@ inline film::Image finish(session::Renderer& renderer) {
   return renderer.image();
 }
 
-/// `made`: the scene, instead of the one that is named.
+/// `made`: the scene, instead of the named one.
 inline Result render(const Render& r, const scene::Scene* made = nullptr) {
   session::Renderer renderer(
       test::renderer_options(r.validated && r.samples <= k_validated_samples, r.defines));
@@ -97,8 +97,8 @@ inline Result render(const Render& r, const scene::Scene* made = nullptr) {
   return result;
 }
 
-/// A scene made by the test, in a square picture; nothing is dropped, and the device has nothing to say (of
-/// up to k_validated_samples).
+/// A scene made by the test, in a square picture; checks that nothing is dropped, and that there are no
+/// validation messages (up to k_validated_samples).
 inline Result render(const scene::Scene& scene, const Settings& settings, uint32_t samples, uint32_t size,
                      bool validated = true) {
   const Result r = render({.scene = {},
@@ -120,7 +120,7 @@ inline vec3 sum_at(const film::Image& image, size_t pixel) {
   return sum;
 }
 
-/// To the bit.
+/// Compares bit for bit.
 inline bool identical(const std::vector<vec3>& a, const std::vector<vec3>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(vec3)) == 0;
 }
@@ -131,7 +131,7 @@ inline bool identical(const film::Image& a, const film::Image& b) {
   return a.samples == b.samples && identical(a.albedo, b.albedo) && identical(a.normal, b.normal);
 }
 
-/// Of the luminance of a layer.
+/// Mean luminance of a layer.
 inline double mean(const std::vector<vec3>& layer) {
   double sum = 0;
   for (const vec3& v : layer) sum += luminance(v);
@@ -142,8 +142,8 @@ struct Mean {
   double value = 0, noise = 0;  ///< standard error, from the two halves
 };
 
-/// Of the luminance of a component over a block of 8x8 pixels, without the `middle` columns on either side of
-/// the picture's middle.
+/// Mean luminance of a component over a block of 8x8 pixels, without the `middle` columns on either side of
+/// the picture's centre.
 inline Mean block_mean(const film::Image& image, int component, uint32_t across, uint32_t down,
                        uint32_t middle = 0) {
   Mean m;

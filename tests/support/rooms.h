@@ -1,5 +1,5 @@
 #pragma once
-// Scenes that tests make themselves, of quads and boxes: rooms in which light goes to and fro.
+// Scenes made by tests from quads and boxes: rooms with interreflections.
 #include <array>
 #include <cmath>
 
@@ -16,7 +16,7 @@ inline scene::Material diffuse(const vec3& color, const vec3& emission = vec3(0)
   return m;
 }
 
-/// A mesh and an instance of its own.
+/// Adds a mesh with one instance.
 inline void add_mesh(scene::Scene& s, const char* name, const scene::Primitive& p) {
   s.meshes.push_back({name, {p}});
   s.instances.push_back({name, scene::Id(s.meshes.size() - 1), mat4(1), false});
@@ -34,7 +34,7 @@ inline void add_quad(scene::Scene& s, const vec3& a, const vec3& u, const vec3& 
   add_mesh(s, "quad", p);
 }
 
-/// The six sides of a box face inwards, as a room's do. `open`: without the upper one.
+/// The six sides of a box face inwards, like a room's. `open`: without the upper one.
 inline void add_box(scene::Scene& s, const vec3& lo, const vec3& hi, uint32_t material = 0,
                     bool open = false) {
   scene::Primitive p;
@@ -82,8 +82,8 @@ inline scene::Camera looking_down(const vec3& eye, float yfov) {
 }
 
 /// A room of four metres with a block in it and a lamp under its ceiling; its cameras are "front" and,
-/// looking down, "above". `open`: no ceiling but an uneven sky, and the block is of material 1, which may
-/// shine.
+/// looking down, "above". `open`: an uneven environment instead of a ceiling, and the block has material 1,
+/// which can be emissive.
 inline scene::Scene block_room(bool open = false) {
   scene::Scene s;
   s.name = "room", s.file = "room.gltf";
@@ -109,9 +109,9 @@ inline scene::Scene block_room(bool open = false) {
   return s;
 }
 
-/// A closed room of 2 x 1 x 2 m around `at`, the middle of its floor, with a lit panel `below` the ceiling's
-/// right half; the camera is under the ceiling and looks down: right is +x, up in the picture -z. Its
-/// materials: 0 walls, 1 panel; its meshes: floor, ceiling, back, front, left, right, panel.
+/// A closed room of 2 x 1 x 2 m around `at`, the middle of its floor, with an emissive panel `below` the
+/// ceiling's right half; the camera is under the ceiling and looks down: right is +x, up in the picture -z.
+/// Its materials: 0 walls, 1 panel; its meshes: floor, ceiling, back, front, left, right, panel.
 struct PanelRoom {
   scene::Scene s;
   vec3 at;
@@ -129,7 +129,7 @@ struct PanelRoom {
   void quad(const vec3& a, const vec3& u, const vec3& v, uint32_t material = 0) {
     add_quad(s, at + a, u, v, material);
   }
-  /// A wall in the middle, from z0 to z1 and up to `height`, so thick; with 0 a single sheet.
+  /// A wall in the middle, from z0 to z1 and up to `height`, of that thickness; 0 gives a single sheet.
   void wall(float z0, float z1, float height, float thickness) {
     const vec3 w(0, 0, z1), z(0, 0, z0 - z1), h(0, height, 0), t(thickness / 2, 0, 0);
     quad(w - t, h, z);
@@ -140,8 +140,8 @@ struct PanelRoom {
   }
 };
 
-/// That room with another wall before its back wall, all that its camera sees, which has material 2 and a
-/// normal map of 8 x 8 texels: a quarter of them straight, the others tilted by `degrees` in different
+/// That room with another wall in front of its back wall, which fills the camera's view and has material 2
+/// with a normal map of 8 x 8 texels: a quarter of them untilted, the others tilted by `degrees` in different
 /// directions.
 inline scene::Scene mapped_room(float degrees) {
   PanelRoom room;

@@ -1,5 +1,5 @@
 #pragma once
-// Runs a program as a person would, for tests of the command line.
+// Runs the program, for tests of the command line.
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -12,7 +12,7 @@ namespace lucerna::test {
 
 struct Run {
   int status;       ///< exit status, or 128 + the signal that ended it
-  std::string out;  ///< standard output and error, as they came
+  std::string out;  ///< standard output and error, in order
 };
 
 inline Run run_command(const std::string& command) {
@@ -25,12 +25,12 @@ inline Run run_command(const std::string& command) {
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), out};
 }
 
-/// The program with arguments; `wrapper` goes in front of it ("timeout 5").
+/// Runs the program with arguments; `wrapper` is put in front of it ("timeout 5").
 inline Run run(const std::string& arguments, const std::string& wrapper = "") {
   return run_command(wrapper + " " + LUCERNA_BINARY + " " + arguments);
 }
 
-/// The program while it runs; when this goes, it is killed unless it has ended.
+/// The running program; the destructor kills it unless it has ended.
 class Running {
  public:
   explicit Running(const std::string& arguments) {
@@ -41,7 +41,7 @@ class Running {
     if (pid_ == 0) {
       dup2(ends[1], 1), dup2(ends[1], 2);
       close(ends[0]), close(ends[1]);
-      // Tests that are started in the background or by nohup have these ignored, and so would the program.
+      // Tests started in the background or by nohup have these signals ignored, and so would the program.
       for (const int ignored : {SIGINT, SIGHUP, SIGPIPE}) signal(ignored, SIG_DFL);
       execl("/bin/sh", "sh", "-c", (std::string("exec ") + LUCERNA_BINARY + " " + arguments).c_str(),
             nullptr);
@@ -57,14 +57,14 @@ class Running {
   Running(const Running&) = delete;
   Running& operator=(const Running&) = delete;
 
-  /// Waits, however long, until it has written this; false: it has ended without.
+  /// Waits without limit until it has printed this text; false: it has ended without.
   bool says(const std::string& text) {
     while (out_.find(text) == std::string::npos)
       if (!read_some()) return false;
     return true;
   }
   void send(int signal) const { kill(pid_, signal); }
-  /// Nobody reads what it writes from now on.
+  /// Closes the reading end of its output.
   void stop_reading() { close(from_), from_ = -1; }
   Run finish() {
     while (read_some()) {

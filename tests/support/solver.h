@@ -1,5 +1,5 @@
 #pragma once
-// The irradiance cache that a renderer has at work, for tests that look into it.
+// The irradiance cache in use by a renderer, for tests that inspect it.
 #include <memory>
 
 #include "session/renderer.h"
@@ -7,7 +7,7 @@
 
 namespace lucerna::test {
 
-/// Null where nothing is cached.
+/// Null if no cache is in use.
 inline irradiance_cache::Cache* cache(session::Renderer& r) {
   solvers::Solver* solver = r.solver("cache");
   return solver ? &dynamic_cast<irradiance_cache::CacheSolver&>(*solver).cache() : nullptr;
@@ -17,7 +17,7 @@ inline const irradiance_cache::Cache* cache(const session::Renderer& r) {
   return solver ? &dynamic_cast<const irradiance_cache::CacheSolver&>(*solver).cache() : nullptr;
 }
 
-/// What its report is made of; null where nothing is cached.
+/// The data of its report; null if no cache is in use.
 inline std::shared_ptr<const irradiance_cache::CacheReport> cache_report(session::Renderer& r) {
   std::shared_ptr<const irradiance_cache::CacheReport> report;
   r.visit_solvers(

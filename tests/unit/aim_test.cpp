@@ -1,5 +1,5 @@
 // links: transport
-// What light paths are aimed at, and with which shares.
+// Aim targets of light paths, and their shares.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <numeric>
@@ -13,7 +13,7 @@
 
 using namespace lucerna;
 
-TEST_CASE("things that lie apart are clusters of their own, and one thing is one") {
+TEST_CASE("separate objects form separate clusters, and one object forms one") {
   std::vector<Box> things;
   for (int i = 0; i < 300; ++i) {
     const vec3 at(i % 3 * 10, i / 3 % 10 * 0.1f, i / 30 * 0.1f);
@@ -25,12 +25,12 @@ TEST_CASE("things that lie apart are clusters of their own, and one thing is one
   const std::vector<uint32_t> two = transport::cluster(things, 2);
   CHECK(std::set<uint32_t>(two.begin(), two.end()) == std::set<uint32_t>{0, 1});
   CHECK(transport::cluster({}, 8).empty());
-  // In one place: nothing to cut.
+  // All in one place: one cluster.
   const std::vector<Box> same(100, Box{vec3(0), vec3(1)});
   for (const uint32_t c : transport::cluster(same, 8)) CHECK(c == 0);
 }
 
-TEST_CASE("metals and solid glass cast, smooth ones; walls, panes and varnish do not") {
+TEST_CASE("smooth metals and solid glass are casters; walls, panes and varnish are not") {
   scene::Scene s;
   s.materials.assign(7, test::diffuse(vec3(0.5f)));
   s.materials[1].metallic = 1, s.materials[1].roughness = 0.1f;
@@ -53,7 +53,7 @@ TEST_CASE("metals and solid glass cast, smooth ones; walls, panes and varnish do
   }
 }
 
-TEST_CASE("boxes stand around where light arrives first, and not around what little comes from far off") {
+TEST_CASE("boxes enclose the areas where light arrives first, without sparse outliers far away") {
   std::vector<transport::FirstHit> hits;
   for (int i = 0; i < 400; ++i) {
     const vec3 patch = i % 2 == 0 ? vec3(0) : vec3(5, 1, 0);
@@ -72,7 +72,7 @@ TEST_CASE("boxes stand around where light arrives first, and not around what lit
     CHECK(within >= 380);
     for (const Box& b : boxes) {
       CHECK(b.size().y > 0);
-      CHECK(b.size().x < 1.2f);  // neither over both patches nor out to what lies far off
+      CHECK(b.size().x < 1.2f);  // neither across both patches nor out to the outliers
       CHECK(b.lo.x > -1);
     }
   };
@@ -86,7 +86,7 @@ TEST_CASE("boxes stand around where light arrives first, and not around what lit
   CHECK(one[0].size().x > 0);
 }
 
-TEST_CASE("lamps are groups of their own, triangles lie together, and many lamps share one") {
+TEST_CASE("lamps form separate groups, triangles are clustered, and many lamps share a group") {
   scene::Scene s;
   s.materials = {test::diffuse(vec3(0.5f), vec3(1))};
   test::add_quad(s, {0, 0, 0}, {1, 0, 0}, {0, 0, -1});
@@ -103,7 +103,7 @@ TEST_CASE("lamps are groups of their own, triangles lie together, and many lamps
       n.push_back(members.size());
       every.insert(members.begin(), members.end());
     }
-    CHECK(every.size() == 8);  // each light that shines is in one
+    CHECK(every.size() == 8);  // each emissive light is in one group
     return n;
   };
   CHECK(sizes(64) == std::vector<size_t>{2, 2, 1, 1, 1, 1});
@@ -113,15 +113,15 @@ TEST_CASE("lamps are groups of their own, triangles lie together, and many lamps
   CHECK(sizes(1) == std::vector<size_t>{8});
 }
 
-TEST_CASE("shares follow the root of what a pair has brought, and leave none out") {
+TEST_CASE("shares follow the square root of a pair's contribution, and none is zero") {
   const std::vector<double> contribution{1, 1e12, 4, 0, 1};
   const std::vector<double> s = transport::aim_shares(contribution, transport::k_least_unaimed_of_caustics);
   CHECK(std::accumulate(s.begin(), s.end(), 0.0) == Approx(1));
   CHECK(s[0] == Approx(1.0 / 7));
   CHECK(s[1] > s[2]);
   CHECK(s[2] > s[3]);
-  CHECK(s[4] > 0.1 * (1 - s[0]) / 1.5);  // the floor of what has been found
-  CHECK(s[3] > 0.02 * (1 - s[0]));       // ... and of what has not
+  CHECK(s[4] > 0.1 * (1 - s[0]) / 1.5);  // the minimum for pairs with a contribution
+  CHECK(s[3] > 0.02 * (1 - s[0]));       // the minimum for pairs without
   CHECK(transport::aim_shares(contribution, transport::k_least_unaimed_of_all)[0] == Approx(0.5));
   const std::vector<double> nothing =
       transport::aim_shares(std::vector<double>{5, 0, 0}, transport::k_least_unaimed_of_caustics);
@@ -131,21 +131,21 @@ TEST_CASE("shares follow the root of what a pair has brought, and leave none out
         std::vector<double>{1});
 }
 
-TEST_CASE("lights are chosen by what they bring, and none is starved by another one's power") {
+TEST_CASE("lights are chosen by contribution, and a strong light starves no other") {
   const std::vector<std::vector<uint32_t>> groups{{0, 1}, {2}, {3}};
   const std::vector<double> power{1, 3, 1e9, 2};
   const std::vector<double> pilot = transport::light_weights(groups, power, {});
   CHECK(std::accumulate(pilot.begin(), pilot.end(), 0.0) == Approx(1));
-  CHECK(pilot[1] == Approx(3 * pilot[0]));  // within a group by power
+  CHECK(pilot[1] == Approx(3 * pilot[0]));  // by power within a group
   CHECK(pilot[0] + pilot[1] == Approx(0.5 / 3).epsilon(1e-6));
   CHECK(pilot[2] == Approx(0.5 + 0.5 / 3).epsilon(1e-6));
-  // The strong one has brought nothing, the last one four times as much as both of the first group.
+  // The strong light contributed nothing, the last one four times as much as both of the first group.
   const std::vector<double> found = transport::light_weights(groups, power, std::vector<double>{1, 0, 0, 4});
   CHECK(std::accumulate(found.begin(), found.end(), 0.0) == Approx(1));
   CHECK(found[2] == Approx(0.2 + 0.1 / 3).epsilon(1e-6));
   CHECK(found[0] + found[1] == Approx(0.1 / 3 + 0.1 + 0.5 / 3).epsilon(1e-6));
   CHECK(found[3] == Approx(0.1 / 3 + 0.1 + 1.0 / 3).epsilon(1e-6));
   CHECK(found[1] == Approx(3 * found[0]));
-  // Nothing found at all: as for the pilot.
+  // No contribution at all: as in the pilot.
   CHECK(transport::light_weights(groups, power, std::vector<double>(4, 0.0)) == pilot);
 }

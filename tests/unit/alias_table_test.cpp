@@ -1,5 +1,5 @@
 // links: upload
-// Alias tables: their probabilities are those with which the device's coins choose, whatever the weights.
+// Alias tables: their stated probabilities are those with which the device chooses, for any weights.
 #include "upload/alias_table.h"
 
 #include <bit>
@@ -11,14 +11,14 @@ using namespace lucerna;
 
 namespace {
 
-/// Of coin_below() in shaders/lib/sampler.glsl: the share of all 32 bits that lie below.
+/// The probability of coin_below() in shaders/lib/sampler.glsl: the share of all 32-bit values below p.
 double coin(float p) {
   return p < 0.5f ? std::ceil(double(p) * 0x1p32) / 0x1p32 : std::ceil(double(p) * 0x1p24) / 0x1p24;
 }
 
 }  // namespace
 
-TEST_CASE("what a table says is what its coins do, for weights of any proportion") {
+TEST_CASE("a table's probabilities equal those of its coins, for weights of any ratio") {
   std::mt19937 random(2);
   std::vector<std::vector<double>> lists{
       {1e-16, 1}, {1e-8, 1e8, 1, 1e-30}, {1e-300, 1e300}, {0, 1e-12, 0, 1}, {3e7, 1, 2, 1e-9, 0.5}};

@@ -1,5 +1,5 @@
 // links: bench
-// The figures of the bench from made-up measurements whose answer is known.
+// The figures of the bench, computed from synthetic measurements with known answers.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -19,7 +19,7 @@ std::vector<Point> curve(double c, double exponent, double from, double to) {
 
 }  // namespace
 
-TEST_CASE("Time to an error is interpolated on the curve's own power law") {
+TEST_CASE("Time to an error is interpolated with the curve's own power law") {
   for (const double exponent : {0.5, 0.8, 1.0}) {
     const auto c = curve(0.3, exponent, 0.1, 100);
     const Reach r = time_to(c, 0.0777);
@@ -28,15 +28,16 @@ TEST_CASE("Time to an error is interpolated on the curve's own power law") {
   }
 }
 
-TEST_CASE("Time to an error that is not reached is foretold by error^2 t = constant") {
+TEST_CASE("Time to an error that was not reached is extrapolated with error^2 t = constant") {
   const auto c = curve(0.3, 0.5, 0.1, 8);
   const Reach r = time_to(c, 0.01);
   CHECK(r.kind == ReachKind::extrapolated);
   CHECK(r.seconds == Approx(900));
-  // Noisy: the mean over the last points, never before the end.
+  // Noisy: the mean over the last points, never before the end of the curve.
   const std::vector<Point> noisy = {{1, 0.30}, {2, 0.18}, {4, 0.19}, {8, 0.10}};
   CHECK(time_to(noisy, 0.0999).seconds >= 8);
-  // A cache that is built for 20 s: what its samples do is seen from then on, too late to say how they go on.
+  // A cache that is built for 20 s: its samples are measured only from then on, too late for the power of
+  // their decrease.
   CHECK(time_to(curve(0.3, 0.5, 2, 8), 0.01).kind == ReachKind::extrapolated);
   const std::vector<Point> built = {{20, 0.10}, {21, 0.07}, {24, 0.04}};
   CHECK(time_to(built, 0.05).kind == ReachKind::measured);
@@ -45,9 +46,9 @@ TEST_CASE("Time to an error that is not reached is foretold by error^2 t = const
   CHECK(error_after(built, 100).kind == ReachKind::unknown);
 }
 
-TEST_CASE("Time to an error: bounds, going up again, nothing") {
+TEST_CASE("Time to an error: bounds, an error that rises again, no data") {
   const std::vector<Point> c = {{1, 0.4}, {2, 0.1}, {4, 0.3}, {8, 0.05}};
-  // 0.2 is passed at 1..2, but for good only after 4.
+  // 0.2 is reached at 1..2, but permanently only after 4.
   const Reach r = time_to(c, 0.2);
   CHECK(r.kind == ReachKind::measured);
   CHECK(r.seconds > 4);
@@ -58,7 +59,7 @@ TEST_CASE("Time to an error: bounds, going up again, nothing") {
   CHECK(time_to(c, 0).kind == ReachKind::unknown);
 }
 
-TEST_CASE("Error after a time that was not rendered is foretold by error^2 t = constant") {
+TEST_CASE("The error after a longer time is extrapolated with error^2 t = constant") {
   const auto c = curve(0.3, 0.5, 1, 64);
   CHECK(error_after(c, 10).kind == ReachKind::measured);
   CHECK(error_after(c, 10).error == Approx(0.3 / std::sqrt(10)));
@@ -68,10 +69,10 @@ TEST_CASE("Error after a time that was not rendered is foretold by error^2 t = c
   CHECK(error_after({}, 1).kind == ReachKind::unknown);
 }
 
-TEST_CASE("The power of the time that error^2 falls with") {
+TEST_CASE("The exponent of time with which error^2 falls") {
   for (const double exponent : {0.25, 0.5, 0.6})
     CHECK(*power_of_time(curve(0.3, exponent, 1, 64)) == Approx(-2 * exponent));
-  // What was before the last factor of 16 has no say.
+  // Points before the last factor of 16 are ignored.
   std::vector<Point> late = curve(0.3, 0.5, 4, 64);
   late.insert(late.begin(), {3.9, 7});
   CHECK(*power_of_time(late) == Approx(-1));
@@ -130,7 +131,7 @@ TEST_CASE("Nine in ten ratios of equal settings are within the noise ratio") {
   CHECK_FALSE(noise_ratio(std::vector<std::vector<double>>{{1.0}, {2.0}}, 1));
 }
 
-TEST_CASE("Curves of repeats are brought to common times") {
+TEST_CASE("Curves of repeats are resampled at common times") {
   const std::vector<std::vector<Point>> curves = {curve(0.2, 0.5, 1, 64), curve(0.3, 0.5, 1.5, 96),
                                                   curve(0.4, 0.5, 0.5, 32)};
   const auto bands = common_curve(curves, 10);
@@ -138,7 +139,7 @@ TEST_CASE("Curves of repeats are brought to common times") {
   CHECK(bands.front().seconds == 1.5);
   CHECK(bands.back().seconds == 64);
   for (const Band& b : bands) {
-    // The third one ends at 32 s.
+    // The third curve ends at 32 s.
     CHECK(b.error.count == (b.seconds <= 32 ? 3 : 2));
     if (b.seconds <= 32) CHECK(b.error.median == Approx(0.3 / std::sqrt(b.seconds)));
     CHECK(b.error.low == Approx(0.2 / std::sqrt(b.seconds)));

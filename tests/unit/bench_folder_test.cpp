@@ -1,6 +1,6 @@
 // links: bench
-// The report folder and the references in it: what is gone on with, what is refused, what is measured again,
-// and that nothing of a person's is overwritten.
+// The report folder and its references: what is continued, refused or measured again. No file of the user is
+// overwritten.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -26,7 +26,7 @@ struct Reported {
 
 }  // namespace
 
-TEST_CASE("A result survives being written and read, to the bit") {
+TEST_CASE("A result is unchanged after write and read, bit for bit") {
   const Matrix m = test::small_matrix();
   Result r = test::fake_result(m, m.cells()[3], 0.3, 7.7);
   r.records = 1234, r.record_rays = 5'000'000'000;
@@ -37,7 +37,7 @@ TEST_CASE("A result survives being written and read, to the bit") {
   Result without = r;
   without.forecast.reset();
   CHECK_FALSE(parse_result(to_json(without).dump(), "x").forecast);
-  // Before records were counted files were without them; a wrong number of them is wrong all the same.
+  // Files from before records were counted have none; a wrong number of records is an error anyway.
   json.erase("records"), json.erase("record_rays");
   CHECK(parse_result(json.dump(), "x").records == 0);
   CHECK(parse_result(json.dump(), "x").record_rays == 0);
@@ -45,7 +45,7 @@ TEST_CASE("A result survives being written and read, to the bit") {
   CHECK_THROWS_WITH(parse_result(json.dump(), "x"), Contains("records"));
 }
 
-TEST_CASE("Half a result and a wrong one are told apart from a whole one") {
+TEST_CASE("A partial or invalid result is distinguished from a complete one") {
   const Matrix m = test::small_matrix();
   const std::string whole = to_json(test::fake_result(m, m.cells()[0], 0.3, 7.7)).dump();
   for (size_t length = 0; length < whole.size(); length += 97)
@@ -58,14 +58,14 @@ TEST_CASE("Half a result and a wrong one are told apart from a whole one") {
   for (const char* key : {"scene", "wall_s", "true", "curve", "tiles_decile"})
     CHECK_THROWS_WITH(parse_result(without(key), "x"), Contains(key));
   auto j = nlohmann::ordered_json::parse(whole);
-  j["wall_s"] = nullptr;  // what a NaN is written as
+  j["wall_s"] = nullptr;  // JSON has no NaN, so it is written as null
   CHECK_THROWS_WITH(parse_result(j.dump(), "x"), Contains("wall_s"));
   j = nlohmann::ordered_json::parse(whole);
   j["curve"][1]["wall_s"] = 0;
   CHECK_THROWS_WITH(parse_result(j.dump(), "x"), Contains("forward"));
 }
 
-TEST_CASE("A bench goes on with the cells that are whole and measures the others again") {
+TEST_CASE("A bench keeps the complete cells and measures the others again") {
   const test::Folder temporary;
   const Matrix m = test::small_matrix();
   const auto cells = m.cells();
@@ -79,7 +79,7 @@ TEST_CASE("A bench goes on with the cells that are whole and measures the others
   Reported reported;
   CHECK(folder.load(m, hashes, reported.message).size() == 6);
   CHECK(reported.lines.empty());
-  // Half a file, one of another cell.
+  // Half a file, and the file of another cell.
   const auto file = [&](size_t i) { return temporary / ("r/cells/" + m.id(cells[i]) + ".json"); };
   const std::string whole = read_file(file(0));
   std::ofstream(file(0)) << whole.substr(0, whole.size() / 2);
@@ -99,7 +99,7 @@ TEST_CASE("A bench goes on with the cells that are whole and measures the others
     CHECK(entry.path().extension() == ".json");
 }
 
-TEST_CASE("A folder that is not this bench's is refused and left as it was") {
+TEST_CASE("The folder of another bench is refused and stays unchanged") {
   const test::Folder temporary;
   const Matrix m = test::small_matrix();
   { const Folder folder(temporary / "mine", m, k_identity); }
@@ -126,7 +126,7 @@ TEST_CASE("A folder that is not this bench's is refused and left as it was") {
   refused(temporary / "mine", m, k_identity, "another bench is at work");
 }
 
-TEST_CASE("The scene's hash sees every file that the scene is made of") {
+TEST_CASE("The scene's hash includes every file of the scene") {
   const test::Folder temporary;
   const auto write = [&](const char* name, const std::string& text) {
     std::ofstream(temporary / name) << text;
@@ -151,7 +151,7 @@ TEST_CASE("The scene's hash sees every file that the scene is made of") {
   CHECK_THROWS_AS(scene_hash(temporary / "no.gltf"), Error);
 }
 
-TEST_CASE("A reference serves when it is whole and made of the same; otherwise it is set aside") {
+TEST_CASE("A reference is used if it is complete and from the same inputs; otherwise it is moved aside") {
   const test::Folder temporary;
   Matrix m = test::small_matrix();
   SceneEntry scene = m.scenes[0];
@@ -179,7 +179,7 @@ TEST_CASE("A reference serves when it is whole and made of the same; otherwise i
   REQUIRE(found);
   CHECK(found->samples == 128);
   CHECK(found->noise[0] == Approx(0.05));
-  // Halves that are 2 apart: their variance is 2 everywhere, over a mean of 2 squared.
+  // Halves that differ by 2: their variance is 2 everywhere, over a mean of 2 squared.
   CHECK(found->relmse_noise == Approx(2 / 4.01 / std::sqrt(3) / 16));
   CHECK(reported.lines.empty());
 
@@ -210,13 +210,13 @@ TEST_CASE("A reference serves when it is whole and made of the same; otherwise i
   std::ofstream(reference_file(temporary.path, scene)) << bytes.substr(0, bytes.size() / 2);
   set_aside("cornell-16x16.exr");
 
-  // What makes another picture makes another key.
+  // Inputs that change the picture change the key.
   CHECK(reference_key(m, scene, "other") != key);
   SceneEntry changed = scene;
   changed.set["path.max_depth"] = "3";
   CHECK(reference_key(m, changed, "hash") != key);
   changed.set = scene.set;
-  changed.set["cache.noise"] = "0.3";  // references have no cache
+  changed.set["cache.noise"] = "0.3";  // references use no cache
   CHECK(reference_key(m, changed, "hash") == key);
   changed.set["path.max_depth"] = "3";
   m.set["path.max_depth"] = "3";

@@ -1,5 +1,5 @@
 // links: bench
-// How far a shown picture is from a reference, and what is told of a row of them.
+// The distance between a displayed picture and a reference, and the figures of a series of them.
 #include <catch2/catch.hpp>
 
 #include "bench/latency.h"
@@ -8,7 +8,7 @@ using namespace lucerna;
 using namespace lucerna::bench;
 using Catch::Contains;
 
-TEST_CASE("the distance of a picture is its mean relative error after a mean over 3x3 pixels") {
+TEST_CASE("the distance of a picture is its mean relative error, averaged over 3x3 pixels") {
   constexpr uint32_t k_width = 12, k_height = 9;
   const std::vector<float> grey(k_width * k_height, 0.5f);
   CHECK(picture_distance(grey, grey, k_width).error == 0);
@@ -17,25 +17,24 @@ TEST_CASE("the distance of a picture is its mean relative error after a mean ove
   std::vector<float> brighter(grey.size(), 0.6f);
   CHECK(picture_distance(brighter, grey, k_width).error == Approx(0.2).epsilon(1e-5));
 
-  // Noise of one pixel in nine is its ninth; at a border there are fewer neighbours.
+  // Noise of one pixel in nine counts as its ninth; at a border there are fewer neighbours.
   std::vector<float> speck = grey;
   speck[4 * k_width + 5] = 1.4f;
   CHECK(picture_distance(speck, grey, k_width).error ==
         Approx(9 * (0.9 / 9) / 0.5 / double(grey.size())).epsilon(1e-4));
 
-  // What is darker than k_dark is held against that.
+  // Values darker than k_dark are compared with k_dark.
   const std::vector<float> dark(grey.size(), 0.001f), lighter(grey.size(), 0.003f);
   CHECK(picture_distance(lighter, dark, k_width).error == Approx(0.002 / k_dark).epsilon(1e-4));
 }
 
-TEST_CASE("a reference's own noise is not the picture's error") {
-  // Halves that are off by 40 % each, alike in no two pixels; the mean is off by 28 %, and of 3x3 pixels by a
-  // third of that.
+TEST_CASE("a reference's noise does not count as the picture's error") {
+  // Halves with independent errors of 40 % each; the mean is off by 28 %, and 3x3 pixels by a third of that.
   constexpr uint32_t k_width = 128, k_height = 128;
   std::vector<float> reference, half;
   uint32_t state = 1;
   const auto noise = [&] {
-    float sum = 0;  // of twelve even numbers: variance 1
+    float sum = 0;  // of twelve uniform numbers: variance 1
     for (int i = 0; i < 12; ++i) state = state * 1664525u + 1013904223u, sum += float(state >> 8) * 0x1p-24f;
     return 0.4f * 0.3f * (sum - 6);
   };
@@ -50,7 +49,7 @@ TEST_CASE("a reference's own noise is not the picture's error") {
   CHECK(picture_distance(off, reference, k_width, half).error == Approx(0.2).epsilon(0.05));
 }
 
-TEST_CASE("black is what shows no light where the reference has some") {
+TEST_CASE("black pixels show no light where the reference has some") {
   constexpr uint32_t k_width = 10;
   std::vector<float> reference(100, 0.4f), shown(100, 0.3f);
   for (size_t i = 0; i < 50; ++i) shown[i] = 0;  // the upper half; its last row has lit neighbours
@@ -59,7 +58,7 @@ TEST_CASE("black is what shows no light where the reference has some") {
   CHECK(picture_distance(shown, reference, k_width).black == 0);
 }
 
-TEST_CASE("published bytes are read as sRGB") {
+TEST_CASE("published bytes are decoded as sRGB") {
   const std::vector<uint8_t> rgba{255, 255, 255, 255, 0, 0, 0, 255, 188, 188, 188, 255, 0, 255, 0, 255};
   const std::vector<float> y = shown_luminance(rgba);
   REQUIRE(y.size() == 4);
@@ -69,7 +68,7 @@ TEST_CASE("published bytes are read as sRGB") {
   CHECK(y[3] == Approx(0.7152).epsilon(1e-3));
 }
 
-TEST_CASE("a picture counts as usable from when it stays so, and every step back is told") {
+TEST_CASE("a picture counts as usable once it stays usable, and every step back is reported") {
   const auto moment = [](double seconds, double median, double worst, double black) {
     return Moment{
         seconds, {.error = median, .black = black, .tile_median = median, .worst_tenth = worst}, {}};
@@ -92,7 +91,7 @@ TEST_CASE("a picture counts as usable from when it stays so, and every step back
   CHECK(*r.reported[2] == 0.04);
   CHECK(*r.reported_worst[2] == 0.2);
   CHECK_FALSE(r.reported[1]);
-  CHECK_FALSE(r.error[3]);  // it was not watched for ten seconds
+  CHECK_FALSE(r.error[3]);  // the run is shorter than ten seconds
 
   const std::vector<Moment> worse{moment(0, 0.1, 0.1, 0), moment(1, 0.5, 0.6, 0.5)};
   CHECK_FALSE(latency_of(worse, 5).usable_s);
@@ -100,7 +99,7 @@ TEST_CASE("a picture counts as usable from when it stays so, and every step back
   CHECK(latency_row(latency_of(worse, 5)).size() >= latency_heading().size());
 }
 
-TEST_CASE("of several runs each figure's middle one is told; what was not reached comes last") {
+TEST_CASE("of several runs the median of each figure is reported; unreached targets come last") {
   LatencyResult a, b, c;
   a.scene = "hall", a.usable_s = 0.4, a.error[1] = 0.2, a.rise = 0.3;
   b.usable_s = 2, b.error[1] = 0.1, b.rise = 0.1, b.lit_s = 1;
@@ -108,15 +107,15 @@ TEST_CASE("of several runs each figure's middle one is told; what was not reache
   const LatencyResult m = median_of(std::vector{a, b, c});
   CHECK(m.scene == "hall");
   CHECK(m.usable_s == 2.0);
-  CHECK_FALSE(m.lit_s);  // two of three never were
+  CHECK_FALSE(m.lit_s);  // two of three runs never reached it
   CHECK(m.error[1] == 0.2);
   CHECK_FALSE(m.error[2]);
   CHECK(m.rise == 0.2);
   CHECK(median_of(std::vector{a, c}).rise == 0.3);
 }
 
-TEST_CASE("the error of tiles: their median, and what a tenth of them exceed") {
-  // Nine tiles in ten are off by a tenth or less, the others by more.
+TEST_CASE("the error of tiles: their median, and the value that a tenth of them exceed") {
+  // Nine tiles in ten have an error of a tenth or less, the others more.
   constexpr uint32_t k_width = 160, k_height = 32;
   std::vector<float> reference(k_width * k_height, 0.5f), shown = reference;
   for (size_t i = 0; i < shown.size(); ++i) {
@@ -142,7 +141,7 @@ TEST_CASE("reported errors are compared with the true ones of the same pictures"
   CHECK(e.ratio[2] == Approx(3));
 }
 
-TEST_CASE("an edit is taken back to the values before it; seeds draw other amounts") {
+TEST_CASE("an edit is undone to the previous values, and seeds give other amounts") {
   scene::Scene s;
   scene::Light lamp;
   lamp.intensity = vec3(3);
@@ -162,7 +161,7 @@ TEST_CASE("an edit is taken back to the values before it; seeds draw other amoun
   CHECK(drawn->light->second.intensity == again->light->second.intensity);
 }
 
-TEST_CASE("edits are known by their names") {
+TEST_CASE("edits are identified by their names") {
   for (size_t i = 0; i < k_edit_names.size(); ++i) CHECK(size_t(edit_of(k_edit_names[i])) == i);
   CHECK_THROWS_WITH(edit_of("lamp"), Contains("'lamp'") && Contains("strength") && Contains("solver"));
 }

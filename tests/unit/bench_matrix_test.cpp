@@ -1,5 +1,5 @@
 // links: bench
-// The matrix: what it means, in which order it is measured, and that bad ones are refused with their place.
+// The matrix: its meaning, the order of measurements, and located errors in invalid ones.
 #include <catch2/catch.hpp>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -29,7 +29,7 @@ const char* const k_good = R"({
   ]
 })";
 
-/// The good one with one part replaced.
+/// The valid matrix with one part replaced.
 std::string with(const std::string& from, const std::string& to) {
   std::string text = k_good;
   const size_t at = text.find(from);
@@ -41,7 +41,7 @@ void refused(const std::string& text, const std::string& where, const std::strin
   INFO(text);
   try {
     parse_matrix(text, "m.json", k_scenes);
-    FAIL("was taken");
+    FAIL("was accepted");
   } catch (const Error& e) {
     INFO(e.what());
     CHECK(e.where() == where);
@@ -51,7 +51,7 @@ void refused(const std::string& text, const std::string& where, const std::strin
 
 }  // namespace
 
-TEST_CASE("A matrix file says what is measured") {
+TEST_CASE("A matrix file states what is measured") {
   const Matrix m = parse_matrix(k_good, "m.json", k_scenes);
   CHECK(m.repeats == 4);
   CHECK(m.warmup == 2);
@@ -63,7 +63,7 @@ TEST_CASE("A matrix file says what is measured") {
   CHECK(m.scenes[0].reference_samples == 500);
   CHECK(m.scenes[1].reference_samples == 700);
   CHECK(m.scenes[1].set.at("path.max_depth") == "12");
-  // Smallest effort first, whatever the order in the file; a scene's own list replaces the common one.
+  // The smallest effort first, whatever the order in the file; a scene's own list replaces the common one.
   CHECK(m.budgets(0, 0) == std::vector<double>{16, 64});
   CHECK(m.budgets(0, 1) == std::vector<double>{0.2, 0.1});
   CHECK(m.budgets(1, 0) == std::vector<double>{8});
@@ -75,13 +75,13 @@ TEST_CASE("A matrix file says what is measured") {
   CHECK(Budget{BudgetKind::seconds, 2.5}.text() == "2.5 s");
 }
 
-TEST_CASE("A matrix survives being written and read") {
+TEST_CASE("A matrix is unchanged after write and read") {
   const Matrix m = parse_matrix(k_good, "m.json", k_scenes);
   const auto json = to_json(m);
   CHECK(to_json(parse_matrix(json.dump(), "again", "/")) == json);
 }
 
-TEST_CASE("Settings may be points of a curve") {
+TEST_CASE("Settings can be points of a curve") {
   const std::string text = with("{\"name\": \"plain\"}",
                                 "{\"name\": \"plain\"}, {\"name\": \"a\", \"curve\": \"split sphere\", "
                                 "\"set\": {\"cache.error\": 0.5}}");
@@ -91,11 +91,11 @@ TEST_CASE("Settings may be points of a curve") {
   const auto json = to_json(m);
   CHECK(json["settings"][1]["curve"] == "split sphere");
   CHECK(parse_matrix(json.dump(), "again", "/").settings[1].curve == "split sphere");
-  // A folder of a bench from before there were curves is gone on with: its matrix is the same.
+  // The folder of a bench without curves can be continued: its matrix is the same.
   CHECK_FALSE(json["settings"][0].contains("curve"));
 }
 
-TEST_CASE("The matrix of the cache holds both metrics against one another, and cached light alone") {
+TEST_CASE("The matrix of the cache compares both metrics, and measures cached light alone") {
   const Matrix m = builtin_matrix("cache", k_scenes);
   std::map<std::string, std::set<std::string>> errors;
   for (const Setting& s : m.settings) {
@@ -113,7 +113,7 @@ TEST_CASE("The matrix of the cache holds both metrics against one another, and c
   CHECK(m.scenes.size() == 3);
 }
 
-TEST_CASE("The built-in matrices are good ones") {
+TEST_CASE("The built-in matrices are valid") {
   for (const char* name : {"quick", "full", "cache", "indirect", "caustics", "caustic-pictures", "deep"}) {
     const Matrix m = builtin_matrix(name, k_scenes);
     CHECK(m.name == name);
@@ -130,7 +130,7 @@ TEST_CASE("The built-in matrices are good ones") {
   CHECK_THROWS_AS(builtin_matrix("slow", k_scenes), Error);
 }
 
-TEST_CASE("Cells: every one once, settings taking turns within a repeat, every second round backwards") {
+TEST_CASE("Cells: each once, settings alternate within a repeat, every second repeat is reversed") {
   const Matrix m = parse_matrix(k_good, "m.json", k_scenes);
   const std::vector<Cell> cells = m.cells();
   REQUIRE(cells.size() == 4 * (2 + 2) + 4 * (1 + 2));
@@ -144,7 +144,7 @@ TEST_CASE("Cells: every one once, settings taking turns within a repeat, every s
   for (size_t i = 1; i < cells.size(); ++i) CHECK(cells[i].scene >= cells[i - 1].scene);
 }
 
-TEST_CASE("Bad matrices are refused with their place") {
+TEST_CASE("Invalid matrices are refused with the location of the error") {
   refused("{\n  \"name\": \"m\",\n  oops\n}", "m.json", "line 3");
   refused("[1]", "m.json", "expected an object");
   refused(with("\"warmup\"", "\"warm\""), "m.json: ", "unknown key 'warm'");
@@ -185,7 +185,7 @@ TEST_CASE("Bad matrices are refused with their place") {
   CHECK_THROWS_WITH(read_matrix("/tmp"), Catch::Contains("/tmp"));
 }
 
-TEST_CASE("Time left: from renders of the same kind, else from the pace of the scene") {
+TEST_CASE("Remaining time: from renders of the same kind, otherwise from the scene's speed") {
   const Matrix m = parse_matrix(k_good, "m.json", k_scenes);
   TimeLeft left(m);
   const TimeLeft::Unit small{0, 0, 0}, large{0, 0, 1}, reference{0, TimeLeft::k_reference, 0};

@@ -1,5 +1,5 @@
 // links: bench
-// From results to figures, table, page and comparison: made-up results whose figures are known.
+// From results to figures, table, page and comparison: synthetic results with known figures.
 #include <catch2/catch.hpp>
 #include <fstream>
 #include <regex>
@@ -24,7 +24,7 @@ Json report(double gain = 4, size_t cells = ~size_t{0}) {
   return make_report(m, test::fake_summary(m, gain, cells), test::fake_about());
 }
 
-/// The first tag that is not closed or closed twice; "" when all are in order.
+/// The first tag that is not closed or is closed twice; "" if there is none.
 std::string unbalanced(const std::string& html) {
   std::vector<std::string> open;
   const std::regex tag("<(/?)([a-zA-Z0-9]+)([^<>]*)>");
@@ -48,7 +48,7 @@ size_t count(const std::string& text, const std::string& what) {
 
 }  // namespace
 
-TEST_CASE("Figures: times, ratios, index and forecast are those of the made-up renders") {
+TEST_CASE("Figures: times, ratios, index and forecast match the synthetic renders") {
   const Json r = report();
   CHECK(r["complete"] == true);
   CHECK(r["cells"]["done"] == 18);
@@ -68,7 +68,7 @@ TEST_CASE("Figures: times, ratios, index and forecast are those of the made-up r
   CHECK(adaptive["tiles_time_to"][0]["seconds"]["median"].get<double>() == Approx(14.44).epsilon(0.05));
   CHECK(adaptive["time_common"]["error"].get<double>() == Approx(0.048));
   CHECK(adaptive["time_common"]["ratio"].get<double>() == Approx(4));
-  // Relative squared errors are made a hundredth of .19^2 / t: .0004 after .9025 s, adaptive after a quarter.
+  // Relative squared errors are a hundredth of .19^2 / t: .0004 after .9025 s, adaptive after a quarter.
   CHECK(plain["relmse_time_to"][2]["error"].get<double>() == Approx(0.0004));
   CHECK(plain["relmse_time_to"][2]["seconds"]["median"].get<double>() == Approx(0.9025));
   CHECK(adaptive["relmse_time_to"][2]["kind"] == "at_once");
@@ -95,7 +95,7 @@ TEST_CASE("Figures: times, ratios, index and forecast are those of the made-up r
   CHECK(plain["error_at"].size() == 2);
 }
 
-TEST_CASE("A gain within the noise is not told as a gain") {
+TEST_CASE("A gain within the noise is not reported as a gain") {
   const auto reported = findings(report(1.01));
   REQUIRE(reported.size() == 6);
   for (const std::string& line : reported) CHECK_THAT(line, Contains("by more than the measurement’s noise"));
@@ -112,7 +112,7 @@ TEST_CASE("A gain within the noise is not told as a gain") {
   CHECK_THAT(loss[2], Contains("times more"));
 }
 
-TEST_CASE("Gains of one repeat are told, with what they lack; what is foretold is said to be") {
+TEST_CASE("Gains from one repeat are reported as such, and extrapolated figures are marked") {
   Json r = report(4);
   r["matrix"]["repeats"] = 1;
   for (Json& scene : r["scenes"]) {
@@ -129,7 +129,7 @@ TEST_CASE("Gains of one repeat are told, with what they lack; what is foretold i
   CHECK_THAT(reported[6], Contains("one repeat"));
 }
 
-TEST_CASE("An error lost in the reference's noise counts as not measured") {
+TEST_CASE("An error below the reference's noise counts as not measured") {
   const Matrix m = test::small_matrix();
   bench::RunSummary s = test::fake_summary(m, 4);
   s.references[0].noise[0] = 0.06;  // 0.7 of it is 4.2 %: adaptive ends at 2.4 %
@@ -142,7 +142,8 @@ TEST_CASE("An error lost in the reference's noise counts as not measured") {
   CHECK_THAT(make_page(r, "/no/pictures"), Contains("in the reference’s noise"));
 }
 
-TEST_CASE("What the first setting comes to in a longer time is foretold; older reports are shown without") {
+TEST_CASE(
+    "The first setting's error after a longer time is extrapolated; older reports are shown without it") {
   const Matrix m = test::small_matrix();
   bench::RunSummary s = test::fake_summary(m, 4);
   std::erase_if(s.results, [](const auto& r) { return r.first.starts_with("cornell.plain.1"); });
@@ -158,7 +159,7 @@ TEST_CASE("What the first setting comes to in a longer time is foretold; older r
   CHECK_THAT(make_page(r, "/no/pictures"), !Contains(heading));
 }
 
-TEST_CASE("The table has a line for each cell and repeat and as many fields everywhere") {
+TEST_CASE("The table has a line for each cell and repeat, all with the same fields") {
   const std::string csv = make_csv(report());
   CHECK(count(csv, "\n") == 19);
   const auto fields = [&](size_t from) { return count(csv.substr(from, csv.find('\n', from) - from), ","); };
@@ -166,7 +167,7 @@ TEST_CASE("The table has a line for each cell and repeat and as many fields ever
   CHECK_THAT(csv, Contains("\ncornell,adaptive,error 5 %,2,3,host,16"));
 }
 
-TEST_CASE("The page stands alone, is well-formed and holds every number of its tables") {
+TEST_CASE("The page is self-contained, well-formed and holds every number of its tables") {
   const test::Folder folder;
   film::write_png(folder / "cornell.plain.png", 16, 16, std::vector<uint8_t>(16 * 16 * 4, 128));
   film::FilmImage error{.width = 16, .height = 16};
@@ -216,8 +217,8 @@ const char* const k_curves_matrix = R"({
                {"name": "lone", "curve": "of one"}]
 })";
 
-/// Records on cornell alone; the second setting of a curve has four times the first's, of the smaller budget
-/// a thousand more. Repeats differ in both.
+/// Records on cornell only; the second setting of a curve has four times the first one's records, the smaller
+/// budget a thousand more. Repeats differ in both.
 Json report_of_curves(bool with_records = true) {
   const Matrix m = parse_matrix(k_curves_matrix, "m", std::string(LUCERNA_SOURCE_DIR) + "/scenes");
   RunSummary s = test::fake_summary(m, 1);
@@ -233,7 +234,7 @@ Json report_of_curves(bool with_records = true) {
   return make_report(m, s, test::fake_about());
 }
 
-/// The plots against records: from <svg to </svg>.
+/// The plots of error against records: from <svg to </svg>.
 std::vector<std::string> record_plots(const std::string& html) {
   std::vector<std::string> found;
   for (size_t at = html.find("<svg"); at != std::string::npos; at = html.find("<svg", at + 1)) {
@@ -245,7 +246,7 @@ std::vector<std::string> record_plots(const std::string& html) {
 
 }  // namespace
 
-TEST_CASE("Error against records: a line for each curve, on the scenes that have them") {
+TEST_CASE("Error against records: a line for each curve, on scenes with records") {
   const Json r = report_of_curves();
   const Json& cell = r["scenes"][0]["settings"][2]["cells"][1];
   CHECK(cell["records"]["median"] == 2000);
@@ -264,7 +265,7 @@ TEST_CASE("Error against records: a line for each curve, on the scenes that have
         "<title>hessian-60: 300 records, 4.80 %<", "<title>hessian-30: 1200 records, 2.40 %<"})
     CHECK_THAT(svg, Contains(dot));
   CHECK(count(svg, "<circle") == 4);
-  // A line and a band each; their names at their ends. One point makes no curve, no curve no line.
+  // A line and a band each, with their names at their ends. One point makes no curve; no curve makes no line.
   CHECK(count(svg, "fill=\"none\"") == 2);
   CHECK(count(svg, "fill-opacity=\"0.16\"") == 2);
   CHECK_THAT(svg, Contains(">split sphere</text>") && Contains(">hessian</text>"));
@@ -277,7 +278,7 @@ TEST_CASE("Error against records: a line for each curve, on the scenes that have
   CHECK_THAT(html, Contains("<th>records</th>") && Contains("<td>2000</td><td>512 k</td>"));
 }
 
-TEST_CASE("Of a curve's settings the best is told, and what records it takes to the error of another") {
+TEST_CASE("A curve's best setting is reported, and the number of records for the other curve's error") {
   const std::vector<std::string> reported = findings(report_of_curves());
   const auto line = [&](const char* what) {
     for (const std::string& l : reported)
@@ -297,14 +298,14 @@ TEST_CASE("Of a curve's settings the best is told, and what records it takes to 
   }));
 }
 
-TEST_CASE("A curve goes from few records to many, its band over the repeats") {
+TEST_CASE("A curve runs from few records to many, with a band over the repeats") {
   Json r = report_of_curves();
   Json& settings = r["matrix"]["settings"];
   std::swap(r["scenes"][0]["settings"][1], r["scenes"][0]["settings"][2]);
   const std::string svg = record_plots(make_page(r, "/no/pictures")).at(0);
   CHECK(settings[1]["name"] == "split-60");
   CHECK(svg.find("split-60: ") < svg.find("split-30: "));
-  // An error that the reference's noise hides is no point: one of the two is left, and no line.
+  // An error below the reference's noise is no point: one of two remains, and no line.
   r["scenes"][0]["settings"][1]["cells"][1]["in_reference_noise"] = true;
   const std::string one = record_plots(make_page(r, "/no/pictures")).at(0);
   CHECK(one.find("split") == std::string::npos);
@@ -323,7 +324,7 @@ TEST_CASE("Without records, or in a report from before they were counted, there 
   CHECK(record_plots(make_page(report(), "/no/pictures")).empty());
 }
 
-TEST_CASE("A page of a bench that is not complete says so; an empty one is a page too") {
+TEST_CASE("The page of an unfinished bench is marked; an empty bench has a page too") {
   const std::string part = make_page(report(4, 7), "/no/pictures");
   CHECK_THAT(part, Contains("Not complete: 7 of 18"));
   CHECK(unbalanced(part.substr(part.find('\n'))) == "");
@@ -333,7 +334,7 @@ TEST_CASE("A page of a bench that is not complete says so; an empty one is a pag
   CHECK_THROWS_AS(make_page(Json{{"what", "else"}}, "/no/pictures"), Error);
 }
 
-TEST_CASE("Reports are written and read; others are refused") {
+TEST_CASE("Reports are written and read; other files are refused") {
   const test::Folder folder;
   const Json r = report();
   std::filesystem::create_directories(folder / "pictures");
@@ -348,11 +349,11 @@ TEST_CASE("Reports are written and read; others are refused") {
   CHECK_THROWS_WITH(read_report(folder / "none"), Contains("cannot be read"));
 }
 
-TEST_CASE("Two reports: ratios, marks of noise, what is missing") {
+TEST_CASE("Two reports: ratios, marks of noise, missing settings") {
   const Json before = report(1), after = report(4);
   const std::string text = compare_reports(before, after);
   INFO(text);
-  // Plain is as it was; adaptive four times sooner.
+  // Plain is unchanged; adaptive is four times faster.
   CHECK(std::regex_search(text, std::regex("cornell +plain +~?1.00x= +~1.00x= +~1.00x= +1.00x= +1.00x=")));
   CHECK(std::regex_search(text, std::regex("glass +adaptive +~4.00x  +~4.00x  +~4.00x  +4.00x  +1.00x=")));
   CHECK(text.find("missing") == std::string::npos);
@@ -386,7 +387,7 @@ TEST_CASE("Small parts of the page") {
   CHECK(log_ticks(0.09, 0.6) == std::vector<double>{0.1, 0.2, 0.5});
   CHECK(magma(0) == std::array<uint8_t, 3>{0, 0, 4});
   CHECK(magma(2) == std::array<uint8_t, 3>{252, 253, 191});
-  // Labels keep their order, a distance and the frame.
+  // Labels keep their order and distance, and stay inside the frame.
   const auto at = spread_labels({100, 101, 50, 102, 10}, 16, 10, 120);
   CHECK(at[2] == 50);
   CHECK(at[4] == 10);
@@ -395,7 +396,7 @@ TEST_CASE("Small parts of the page") {
   CHECK(at[3] <= 120.01);
   CHECK(make_plot({}, {}, "t", "e").empty());
   CHECK(make_plot({{"none", "#fff", {}, {}}}, {}, "t", "e").empty());
-  // A short axis has more ticks than 1, 2 and 5.
+  // A short axis has ticks beyond 1, 2 and 5.
   const PlotLine line{"a", "#fff", {{2100, {0.04, 0.03, 0.05, 3}}, {6100, {0.02, 0.02, 0.02, 3}}}, {}};
   CHECK_THAT(make_plot({line}, {}, "t", "e", Across::records), Contains(">3 k<") && Contains(">7 k<"));
   CHECK_THAT(make_plot({line}, {}, "t", "e"), Contains(">3000<") && Contains("seconds of rendering"));

@@ -1,6 +1,6 @@
 // links: bench
-// The bench of photons without a device: slopes and their intervals on made-up pictures, the law of the
-// radius, and what text and page say.
+// The bench of photons without a device: slopes and their intervals on synthetic pictures, the law of the
+// radius, and the text and page.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -18,8 +18,8 @@ namespace {
 constexpr size_t k_pixels = 2000;
 const std::vector<double> k_rounds = {4, 8, 16, 32, 64, 128, 256};
 
-/// Pictures of luminance 1 and 3 in turns, with noise of deviation `noise` rounds^noise_power in every pixel
-/// and a bias of `bias` rounds^bias_power in every other one; truths with noise of 0.5.
+/// Pictures of alternating luminance 1 and 3, with noise of deviation `noise` rounds^noise_power in every
+/// pixel and a bias of `bias` rounds^bias_power in every other one; truths with noise of 0.5.
 std::vector<SeedPictures> made_up(size_t seeds, double noise, double noise_power, double bias,
                                   double bias_power) {
   std::mt19937 random(7);
@@ -42,18 +42,18 @@ bool holds(const std::optional<Slope>& s, double slope) { return s && s->low <= 
 
 }  // namespace
 
-TEST_CASE("slopes on log axes are exact for powers, and unknown where there is nothing to fit") {
+TEST_CASE("slopes on log axes are exact for powers, and unknown without enough points") {
   const std::vector<double> x = {1, 2, 7, 30}, flat = {2, 2};
   std::vector<double> y;
   for (const double v : x) y.push_back(5 * std::pow(v, -1.0 / 3));
   CHECK(log_slope(x, y).value() == Approx(-1.0 / 3));
   CHECK_FALSE(log_slope(std::span(x).first(1), std::span(y).first(1)));
   CHECK_FALSE(log_slope(flat, std::span(y).first(2)));
-  y[3] = 0;  // left out
+  y[3] = 0;  // excluded
   CHECK(log_slope(x, y).value() == Approx(-1.0 / 3));
 }
 
-TEST_CASE("noise, bias and error of made-up pictures come out as they were put in") {
+TEST_CASE("noise, bias and error of synthetic pictures are recovered") {
   std::vector<SeedPictures> renders = made_up(8, 0.8, -1.0 / 3, 0.6, -0.5);
   std::vector<uint8_t> mask(k_pixels, 1);
   const ErrorCurves curves = error_curves(renders, mask);
@@ -68,14 +68,14 @@ TEST_CASE("noise, bias and error of made-up pictures come out as they were put i
           Approx(bias * bias).margin(4 * mean_noise * std::sqrt(2.0 / k_pixels)).epsilon(0.02));
     CHECK(curves.error[k] == Approx(std::hypot(noise, bias)).epsilon(0.05));
   }
-  // The truths' noise is not in it, nor that of pixels that do not count.
+  // The truths' noise and the masked pixels are excluded.
   for (SeedPictures& s : renders)
     for (auto& picture : s.after) picture[0] = 1e6f;
   mask[0] = 0;
   CHECK(error_curves(renders, mask).noise[0] == Approx(curves.noise[0]).epsilon(0.01));
 }
 
-TEST_CASE("a slope's interval holds the true slope and excludes others") {
+TEST_CASE("a slope's interval contains the true slope and excludes others") {
   const std::vector<uint8_t> mask(k_pixels, 1);
   const std::vector<SeedPictures> renders = made_up(8, 0.8, -1.0 / 3, 0.9, -0.5);
   const auto slopes = error_slopes(k_rounds, renders, mask);
@@ -85,12 +85,12 @@ TEST_CASE("a slope's interval holds the true slope and excludes others") {
   CHECK(holds(slopes[1], -0.5));
   CHECK_FALSE(holds(slopes[1], -0.25));
   CHECK(slopes[2]->low < slopes[2]->high);
-  // A bias that is not there is lost in noise and has no slope; two renders have no interval.
+  // A bias of zero is hidden by noise and has no slope; two renders have no interval.
   CHECK_FALSE(error_slopes(k_rounds, made_up(8, 0.8, -1.0 / 3, 0, 0), mask)[1]);
   CHECK_FALSE(error_slopes(k_rounds, std::span(renders).first(2), mask)[0]);
 }
 
-TEST_CASE("the law of the radius: -alpha / 2 for noise, alpha - 1 for bias, -1/2 where it rests") {
+TEST_CASE("the law of the radius: -alpha / 2 for noise, alpha - 1 for bias, -1/2 for a constant radius") {
   const std::vector<double> late = {1 << 14, 1 << 15, 1 << 16};
   const auto slope = [&](const RadiusLaw& law, bool noise) {
     std::vector<double> y;
@@ -108,14 +108,14 @@ TEST_CASE("the law of the radius: -alpha / 2 for noise, alpha - 1 for bias, -1/2
   CHECK(shrinking.bias(1) == 1);
 }
 
-TEST_CASE("intervals: Student's t and the median's by the sign test") {
+TEST_CASE("intervals: Student's t, and the median's by the sign test") {
   // Tables: 4.303, 2.776, 2.365, 2.045 for 2, 4, 7, 29 degrees.
   CHECK(student_t95(2) == Approx(4.303).epsilon(0.03));
   CHECK(student_t95(4) == Approx(2.776).epsilon(0.01));
   CHECK(student_t95(7) == Approx(2.365).epsilon(0.01));
   CHECK(student_t95(29) == Approx(2.045).epsilon(0.001));
   CHECK(std::isinf(student_t95(0)));
-  // Of 15 values the 4th and the 12th hold the median in 96.5 %; of three, only all.
+  // Of 15 values the 4th and the 12th enclose the median with 96.5 %; of three, only all do.
   std::vector<double> values;
   for (int i = 15; i >= 1; --i) values.push_back(i);
   const Slope m = median95(values), few = median95({3, 1, 2});
@@ -128,7 +128,7 @@ TEST_CASE("intervals: Student's t and the median's by the sign test") {
   CHECK_FALSE(slope_kept(-0.29, -1.0 / 3));
 }
 
-TEST_CASE("text and page tell what was measured beside what was expected") {
+TEST_CASE("text and page show the measured values beside the expected ones") {
   using Json = nlohmann::ordered_json;
   const auto row = [](const char* what, int n, double cost, double bytes) {
     return Json{{what, n},

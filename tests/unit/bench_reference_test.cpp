@@ -1,5 +1,5 @@
 // links: bench
-// The two halves of a reference, which are references of their own.
+// The two halves of a reference, each a reference itself.
 #include "bench/reference.h"
 
 #include <catch2/catch.hpp>
@@ -9,7 +9,7 @@ using Catch::Contains;
 
 namespace {
 
-/// Two pixels of one component: the even samples of the first have 3, 1, its odd one 8.
+/// Two pixels of one component: the even samples of the first are 3, 1, its odd one is 8.
 film::Image image() {
   film::Image i{.width = 2, .height = 1};
   for (int c = 0; c < film::k_components; ++c) {
@@ -50,7 +50,7 @@ TEST_CASE("Either half of a reference is the mean of its own samples") {
   CHECK(halves.second == std::vector<vec3>{vec3(2, 0, 0), vec3(4)});
 }
 
-TEST_CASE("A picture that does not tell its halves is no reference") {
+TEST_CASE("A picture without halves is no reference") {
   film::FilmImage p = picture();
   CHECK_THAT(error_of(p), Contains("a.exr: no channel 'odd.R'"));
   bench::add_odd_half(p, image());

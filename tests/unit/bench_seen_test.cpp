@@ -1,6 +1,6 @@
 // links: bench
-// The bench of interiors without a device: which rooms and settings it measures, what another program is
-// started with, and what report, page and findings make of made-up results whose figures are known.
+// The bench of interiors without a device: its rooms and settings, the command line of another program, and
+// report, page and findings of synthetic results with known figures.
 #include <signal.h>
 
 #include <catch2/catch.hpp>
@@ -46,9 +46,9 @@ std::vector<std::string> names(const auto& list) {
   return all;
 }
 
-/// Two rooms, path and learned, each by two programs, after 4 and 16 s, twice. Squared errors as seen are
-/// c / t with c 0.04 and 0.16; learned has a quarter, the other program twice as much; the seeds' spread is
-/// 2 % of the root either way.
+/// Two rooms, path and learned, each by two programs, after 4 and 16 s, twice. Squared errors as seen are c
+/// / t with c 0.04 and 0.16; learned has a quarter, the other program twice as much; the seeds' spread is 2 %
+/// of the root in either direction.
 struct MadeUp {
   test::Folder place;
   Matrix matrix;
@@ -89,7 +89,7 @@ struct MadeUp {
 
 }  // namespace
 
-TEST_CASE("Rooms are those of a folder, by name, turned where their camera is upright") {
+TEST_CASE("Rooms are those of a folder, by name, rotated where their camera is upright") {
   const test::Folder place;
   write_scene(place / "kitchen/kitchen.gltf", "1.7");
   write_scene(place / "old/kitchen.gltf", "0.5");
@@ -112,7 +112,7 @@ TEST_CASE("Rooms are those of a folder, by name, turned where their camera is up
   CHECK(m.settings[0].set.at("components.tertiary") == "path");
   CHECK(m.settings[3].set.at("components.tertiary") == "cache");
   CHECK(m.settings[3].set.at("lights.sampling") == "learned");
-  // Named twice it is measured once; a file stands for itself.
+  // A duplicate is measured once; a file stands for itself.
   InteriorsOptions o = options(place.path);
   o.folders.push_back(place / "kitchen/kitchen.gltf");
   CHECK(interiors_matrix(o, "", left_out).scenes.size() == 3);
@@ -122,7 +122,7 @@ TEST_CASE("Rooms are those of a folder, by name, turned where their camera is up
   CHECK_THROWS_WITH(interiors_matrix(options(place / "empty"), "", left_out), Contains("no .gltf or .glb"));
 }
 
-TEST_CASE("The project's own interiors are there, and three of them in the quick form") {
+TEST_CASE("The project's own interiors are found, and three of them in the quick form") {
   InteriorsOptions o = options(k_own);
   std::vector<std::string> left_out;
   CHECK(names(interiors_matrix(o, "", left_out).scenes) == k_own_interiors);
@@ -140,7 +140,7 @@ TEST_CASE("The project's own interiors are there, and three of them in the quick
   CHECK(times.front() * 1.2 <= times.back() / 4);
 }
 
-TEST_CASE("Another program has the settings that it knows, each beside its like") {
+TEST_CASE("Another program has the settings that it supports, each beside its counterpart") {
   const test::Folder place;
   write_scene(place / "a.gltf", "1.5");
   InteriorsOptions o = options(place.path);
@@ -154,18 +154,18 @@ TEST_CASE("Another program has the settings that it knows, each beside its like"
   CHECK(m.settings[3].name == "before-learned");
   CHECK(m.settings[3].program == "/bin/false");
   CHECK(m.settings[3].set == m.settings[2].set);
-  // One from before lights were learned: they were chosen by power.
+  // A version without learned lights chooses lights by power.
   const std::string old = std::string(k_help).substr(0, std::string(k_help).find("  lights."));
   const Matrix before = interiors_matrix(o, old, left_out);
   CHECK(left_out == std::vector<std::string>{"learned", "cache-learned"});
   CHECK(names(before.settings) ==
         std::vector<std::string>{"path", "before-path", "learned", "cache", "before-cache", "cache-learned"});
   CHECK_FALSE(before.settings[1].set.contains("lights.sampling"));
-  // The matrix survives being written and read.
+  // The matrix is unchanged after write and read.
   CHECK(to_json(parse_matrix(to_json(m).dump(), "m", "/")) == to_json(m));
 }
 
-TEST_CASE("Another program is started with what ends a render, whatever the scene says itself") {
+TEST_CASE("Another program gets options that end a render, whatever the scene sets") {
   const test::Folder place;
   write_scene(place / "a.gltf", "1.5");
   InteriorsOptions o = options(place / "a.gltf");
@@ -190,7 +190,7 @@ TEST_CASE("Another program is started with what ends a render, whatever the scen
                  !Contains("--time") && !Contains("max_samples"));
 }
 
-TEST_CASE("A program's words and status are reported, and it ends when the bench does") {
+TEST_CASE("A program's output and exit status are reported, and it ends when the bench does") {
   const ProgramResult said = run_program("/bin/sh", {"-c", "echo one; echo two >&2; exit 3"}, {});
   CHECK(said.status == 3);
   CHECK(said.text == "one\ntwo\n");
@@ -202,7 +202,7 @@ TEST_CASE("A program's words and status are reported, and it ends when the bench
   CHECK_FALSE(out_of_time({.status = 1, .text = "lucerna: --set: '1': unknown setting\n"}));
   CHECK_FALSE(out_of_time({.status = 0, .text = "lucerna: --time: after 1 s 20 % of the picture\n"}));
   int queries = 0;
-  // What does not listen to SIGTERM is ended all the same.
+  // A program that ignores SIGTERM is killed.
   const ProgramResult stopped = run_program("/bin/sh", {"-c", "trap '' TERM; while :; do sleep 0.05; done"},
                                             {.interrupted = [&] { return ++queries > 2; }});
   CHECK(stopped.interrupted);
@@ -210,7 +210,7 @@ TEST_CASE("A program's words and status are reported, and it ends when the bench
   CHECK_THROWS_WITH(run_program("/no/such/program", {}, {}), Contains("/no/such/program: cannot be run"));
 }
 
-TEST_CASE("Figures of the error as seen: after a time, to an error, factors with their intervals") {
+TEST_CASE("Figures of the error as seen: after a time, to an error, factors with intervals") {
   const Json r = MadeUp().report();
   REQUIRE(r["scenes"].size() == 2);
   const Json &path = r["scenes"][0]["settings"][0], &before = r["scenes"][0]["settings"][1],
@@ -225,8 +225,7 @@ TEST_CASE("Figures of the error as seen: after a time, to an error, factors with
   CHECK(path["cells"][0]["seen_beside"]["ratio"].get<double>() == Approx(2));
   CHECK(learned["cells"][1]["seen_beside"]["ratio"].get<double>() == Approx(2));
   CHECK_FALSE(before["cells"][0].contains("seen_beside"));
-  // sqrt(.04 / t): 5 % at 16 s, which is the end; 2 % at 100 s by 1 / t, for the ends of 4 and 16 s are a
-  // curve.
+  // sqrt(.04 / t): 5 % at 16 s, which is the end; 2 % at 100 s by 1 / t, because 4 and 16 s make a curve.
   CHECK(path["seen_time_to"][1]["kind"] == "extrapolated");
   CHECK(path["seen_time_to"][1]["seconds"]["median"].get<double>() == Approx(100).epsilon(0.002));
   CHECK(learned["seen_time_to"][0]["kind"] == "at_once");
@@ -244,7 +243,7 @@ TEST_CASE("Figures of the error as seen: after a time, to an error, factors with
   CHECK(r["seen_besides"].size() == 4);
 }
 
-TEST_CASE("Page and findings of the error as seen hold factors, and what is noise") {
+TEST_CASE("Page and findings of the error as seen show factors, and mark noise") {
   MadeUp made;
   const Json r = made.report();
   const std::string html = make_page(r, made.place.path);
@@ -259,7 +258,7 @@ TEST_CASE("Page and findings of the error as seen hold factors, and what is nois
   for (auto& [id, result] : made.summary.results)
     result.seen = 0.04 / result.wall_s * (result.repeat ? 1.5 : 0.6);
   CHECK_THAT(findings(made.report())[2], Contains("no difference from path beyond"));
-  // Half of it is a page, too; without repeats nothing is claimed to be known.
+  // An unfinished bench has a page too; without repeats no interval is claimed.
   std::erase_if(made.summary.results, [](const auto& entry) { return entry.second.repeat == 1; });
   made.summary.complete = false;
   const Json half = made.report();

@@ -1,5 +1,5 @@
 #pragma once
-// Made-up results of a bench: the error falls as c / sqrt(t), a setting of its own c.
+// Synthetic results of a bench: the error falls as c / sqrt(t), with a c for each setting.
 #include <unistd.h>
 
 #include <cmath>
@@ -54,8 +54,8 @@ inline bench::Result fake_result(const bench::Matrix& m, const bench::Cell& cell
   return r;
 }
 
-/// Plain: c 0.19 on cornell, 0.4 on glass. Adaptive: `gain` times sooner (c falls with its root). Render
-/// times are 4 s for the small budget, 16 s for the others; `cells` of them are done.
+/// Plain: c 0.19 on cornell, 0.4 on glass. Adaptive: `gain` times faster (c falls with its root). Render
+/// times are 4 s for the small budget, 16 s for the others; `cells` of them are finished.
 inline bench::RunSummary fake_summary(const bench::Matrix& m, double gain, size_t cells = ~size_t{0}) {
   bench::RunSummary s;
   for (const bench::Cell& c : m.cells()) {

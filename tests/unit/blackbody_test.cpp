@@ -1,5 +1,5 @@
 // links: base
-// The colour of black bodies against published chromaticities, and the way back.
+// The colour of black bodies compared with published chromaticities, and the inverse.
 #include <catch2/catch.hpp>
 
 #include "base/blackbody.h"
@@ -35,11 +35,11 @@ TEST_CASE("black bodies have the chromaticities of the tables") {
   CHECK(blackbody_color(0) == blackbody_color(1000));
 }
 
-TEST_CASE("the temperature of a colour is found again, and how far it is off") {
+TEST_CASE("the temperature of a colour is recovered, with its distance from a black body") {
   for (const float kelvin : {1200.0f, 1900.0f, 2700.0f, 5000.0f, 6500.0f, 15000.0f, 39000.0f}) {
     const NearestKelvin found = nearest_kelvin(7.0f * blackbody_color(kelvin));
     INFO(kelvin);
-    if (kelvin > 1900) CHECK(found.kelvin == Approx(kelvin).epsilon(2e-3));  // below there is no blue
+    if (kelvin > 1900) CHECK(found.kelvin == Approx(kelvin).epsilon(2e-3));  // blue is zero below
     CHECK(found.off < (kelvin > 1900 ? 1e-3f : 0.3f));
   }
   CHECK(nearest_kelvin(vec3(0, 1, 0)).off > 0.3f);

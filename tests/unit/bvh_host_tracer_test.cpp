@@ -1,5 +1,5 @@
 // links: bvh_embree
-// The host tracer against the oracle, and against leaks.
+// The host tracer compared with the oracle, and leaks.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cstring>
@@ -37,7 +37,7 @@ std::vector<PackedTriangles> packed(const Mesh& mesh) {
   return all;
 }
 
-/// By the same test, without a tree.
+/// The closest hit by the same triangle test, without a tree.
 Hit closest_of_all(const std::vector<PackedTriangles>& all, const Ray& ray) {
   Hit hit{0, shared::k_no_hit, 0, 0};
   const ShearedRay sheared(ray);
@@ -83,7 +83,7 @@ TEST_CASE("of exact copies the first is hit") {
   }
 }
 
-TEST_CASE("trees find exactly what the test of triangles accepts") {
+TEST_CASE("trees find exactly the hits that the triangle test accepts") {
   Random random(19);
   size_t differ = 0, blocked_differ = 0, found = 0;
   for (int i = 0; i < 202; ++i) {
@@ -123,7 +123,7 @@ TEST_CASE("no ray leaks through a closed mesh: 10^7 rays") {
   }
 }
 
-TEST_CASE("far things change neither hits nor work") {
+TEST_CASE("far objects change neither hits nor work") {
   Random random(16);
   const Mesh near = soup(random, 20000, 0.05f, 0.001f);
   const std::vector<Ray> rays = hard_rays(random, near, 20000, 0.05f);
@@ -138,7 +138,7 @@ TEST_CASE("far things change neither hits nor work") {
     for (size_t i = 0; i < rays.size(); ++i)
       differ += alone[i].prim != shared::k_no_hit && std::memcmp(&alone[i], &beside[i], sizeof(Hit)) != 0;
     CHECK(differ == 0);
-    // Each ray that goes on meets what is far away, and a dome has boxes with the middle in them.
+    // Each ray that continues hits a far object; a dome has boxes that contain the centre.
     CHECK(double(second.leaf_tests()) < 1.1 * double(first.leaf_tests()) + 2.0 * double(rays.size()));
   }
 }
@@ -162,7 +162,7 @@ TEST_CASE("queues, threads and dead rays") {
       CHECK(a[3].prim == shared::k_no_hit);
       CHECK(a[4].prim == shared::k_no_hit);
     }
-  // A queue in any order gives each ray the hit that it has alone; rays outside it keep theirs.
+  // A queue in any order gives each ray the hit that it has alone; rays outside the queue keep their hits.
   const Hit untouched{7, 7, 7, 7};
   std::vector<Hit> expected(rays.size()), queued(rays.size(), untouched);
   one.trace(Query::closest, rays, expected, nullptr, 5001, false);
@@ -177,7 +177,7 @@ TEST_CASE("queues, threads and dead rays") {
   CHECK(same(queued, expected));
 }
 
-TEST_CASE("rays of a camera have the hits that each has alone") {
+TEST_CASE("rays traced as a packet have the hits that each has alone") {
   Random random(18);
   const Mesh mesh = soup(random, 20000, 10, 0.5f, vec3(0), 0.3f);
   const HostTracer tracer(mesh.view());
@@ -191,7 +191,7 @@ TEST_CASE("rays of a camera have the hits that each has alone") {
       }
   };
   add(vec3(1, 2, 14), vec3(1));    // from outside
-  add(vec3(0.1f, 0, 1), vec3(4));  // from within
+  add(vec3(0.1f, 0, 1), vec3(4));  // from inside
   add(vec3(-3, 1, 12), vec3(1, 1e-4f, 1));
   for (size_t i = 0; i < rays.size(); ++i) {
     rays[i].origin += 0.1f * random.in_box(1);  // as through a lens
@@ -205,14 +205,14 @@ TEST_CASE("rays of a camera have the hits that each has alone") {
     tracer.trace(query, rays, alone, nullptr, count, false);
     const uint64_t tests = tracer.leaf_tests();
     tracer.trace(query, rays, together, nullptr, count - 13, true);
-    // The last ones are not there.
+    // The last slots are empty.
     std::copy(alone.end() - 13, alone.end(), together.end() - 13);
     CHECK(same(alone, together));
     CHECK(tracer.leaf_tests() - tests < 3 * tests);
   }
 }
 
-TEST_CASE("the bench's yardstick sees the same scene") {
+TEST_CASE("the bench's reference tracer sees the same scene") {
   Random random(15);
   const Mesh mesh = soup(random, 2000, 10, 2);
   std::vector<Ray> rays;
@@ -226,7 +226,7 @@ TEST_CASE("the bench's yardstick sees the same scene") {
     reference.trace(query, rays, b);
     size_t differ = 0;
     for (size_t i = 0; i < rays.size(); ++i) differ += a[i].prim != b[i].prim;
-    CHECK(differ <= 2);  // rays within rounding of an edge: some 10^-6 of random ones
+    CHECK(differ <= 2);  // rays within rounding of an edge: about 10^-6 of random ones
   }
   CHECK_THROWS(reference.trace(Query::closest_non_opaque, rays, b));
 }

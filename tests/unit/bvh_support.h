@@ -1,5 +1,5 @@
 #pragma once
-// Triangles and rays that tracers find hard, and the rules by which their hits are judged against the oracle.
+// Triangles and rays that are difficult for tracers, and the rules for comparing hits with the oracle.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -109,7 +109,7 @@ inline Mesh icosphere(int levels, float radius, const vec3& centre = vec3(0)) {
   for (int level = 0; level < levels; ++level) {
     std::vector<Face> next;
     for (const Face& f : list) {
-      // a + b is the same float whichever face asks, so shared vertices stay identical.
+      // a + b gives the same float for both faces, so shared vertices stay identical.
       const vec3 ab = glm::normalize(f.a + f.b), bc = glm::normalize(f.b + f.c),
                  ca = glm::normalize(f.c + f.a);
       next.insert(next.end(), {{f.a, ab, ca}, {ab, f.b, bc}, {ca, bc, f.c}, {ab, bc, ca}});
@@ -121,9 +121,9 @@ inline Mesh icosphere(int levels, float radius, const vec3& centre = vec3(0)) {
   return mesh;
 }
 
-/// Rays at a mesh: from around it towards random points, and straight at points of its triangles: inside, on
-/// edges, on vertices; along the axes too, and from the surface itself. `half` is the size of the region that
-/// rays start in.
+/// Rays at a mesh: from around it towards random points, and exactly at points of its triangles: inside, on
+/// edges, on vertices; also along the axes and from the surface itself. `half` is half the size of the region
+/// in which rays start.
 inline std::vector<Ray> hard_rays(Random& random, const Mesh& mesh, size_t count, float half,
                                   const vec3& centre = vec3(0)) {
   std::vector<Ray> rays;
@@ -175,7 +175,7 @@ inline std::vector<Ray> hard_rays(Random& random, const Mesh& mesh, size_t count
   return rays;
 }
 
-/// A sliver along an axis, so that its box is as thin as itself.
+/// A sliver along an axis, so its box is as thin as itself.
 inline Mesh sliver(Random& random) {
   const vec3 p = random.in_box(1);
   vec3 along(0);
@@ -198,8 +198,8 @@ inline std::vector<Ray> rays_beside(Random& random, const Mesh& mesh, size_t cou
   return rays;
 }
 
-/// How far single-precision rounding can move a crossing, in world units: a few units in the last place of
-/// the coordinates as seen from the ray.
+/// How far single-precision rounding can move a hit point, in world units: a few units in the last place of
+/// the coordinates relative to the ray.
 inline double slack(const Triangles& triangles, const Ray& ray, uint32_t prim) {
   double reach = 0;
   for (int k = 0; k < 3; ++k)
@@ -226,8 +226,8 @@ inline double slack_t(const Triangles& triangles, const Ray& ray, uint32_t prim)
   return slack(triangles, ray, prim) / std::max(1e-12, cosine * std::min(1.0, thin));
 }
 
-/// "" when `hit` is what `query` asks for, allowing what the tracers' headers state: rounding at edges, and
-/// equal distances to within rounding. Otherwise what is wrong.
+/// "" if `hit` answers `query` within what the tracers' headers state: rounding at edges, and equal distances
+/// up to rounding. Otherwise a description of the error.
 inline std::string judge(const Triangles& triangles, Query query, const Ray& ray, const Hit& hit) {
   const Hit truth = oracle(triangles, query, ray);
   const auto inside_by = [&](uint32_t prim) {
@@ -244,7 +244,7 @@ inline std::string judge(const Triangles& triangles, Query query, const Ray& ray
   if (query == Query::any_opaque) {
     if (found == there) return {};
     if (there) return unsure(truth.prim) ? "" : "blocker missed";
-    // Something must come within rounding of blocking.
+    // A hit must come within rounding of blocking.
     for (size_t i = 0; i < triangles.count(); ++i) {
       if (!triangles.opaque(i)) continue;
       const auto prim = static_cast<uint32_t>(i);
@@ -273,8 +273,8 @@ inline std::string judge(const Triangles& triangles, Query query, const Ray& ray
   return {};
 }
 
-/// Things that stand far away from a scene of metres, each alone: the tracers' work and hits near the origin
-/// must not depend on them.
+/// Objects far away from a scene of metres, each alone: the tracers' work and hits near the origin must not
+/// depend on them.
 inline std::vector<Mesh> far_things() {
   std::vector<Mesh> things;
   for (const float away : {2e4f, 1e5f}) {
@@ -288,14 +288,14 @@ inline std::vector<Mesh> far_things() {
   return things;
 }
 
-/// `mesh`, and behind its triangles those of `more`.
+/// `mesh`, followed by the triangles of `more`.
 inline Mesh joined(Mesh mesh, const Mesh& more) {
   mesh.vertices.insert(mesh.vertices.end(), more.vertices.begin(), more.vertices.end());
   mesh.non_opaque.insert(mesh.non_opaque.end(), more.non_opaque.begin(), more.non_opaque.end());
   return mesh;
 }
 
-/// A mesh with rays that are hard on it.
+/// A mesh with rays that are difficult for it.
 struct Case {
   std::string name;
   Mesh mesh;
@@ -357,7 +357,7 @@ inline std::vector<Case> hard_cases(size_t rays_each) {
   return cases;
 }
 
-/// A mesh and its rays seen `copies` times: every triangle again, in another order, after all the first ones.
+/// A mesh repeated `copies` times: every triangle again, in another order, after all the first ones.
 inline Mesh with_copies(const Mesh& once, int copies) {
   Mesh mesh = once;
   for (int copy = 0; copy < copies; ++copy)
@@ -368,7 +368,7 @@ inline Mesh with_copies(const Mesh& once, int copies) {
   return mesh;
 }
 
-/// A closed mesh and where to stand inside it.
+/// A closed mesh and a region inside it.
 struct Closed {
   Mesh mesh;
   vec3 centre;
@@ -382,11 +382,11 @@ inline std::vector<Closed> closed_meshes() {
           {star(random, 60, 2, 0.2f), vec3(0), 0.5f},
           {icosphere(3, 3, far), far, 1},
           {joined(star(random, 60, 2, 0.2f), far_things()[2]), vec3(0), 0.5f},
-          // Seen from far outside, whence its triangles are hardly larger than rounding.
+          // Seen from far outside, where its triangles are hardly larger than rounding.
           {joined(icosphere(2, 1e5f), icosphere(4, 2)), vec3(0), 5e4f}};
 }
 
-/// Rays from inside a closed mesh, half of them straight at its edges and vertices, where leaks would be.
+/// Rays from inside a closed mesh, half of them exactly at its edges and vertices, where leaks would be.
 inline void rays_inside(Random& random, const Closed& closed, std::vector<Ray>& rays) {
   for (Ray& ray : rays) {
     const vec3 origin = closed.centre + random.in_box(closed.half);
@@ -398,7 +398,7 @@ inline void rays_inside(Random& random, const Closed& closed, std::vector<Ray>& 
   }
 }
 
-/// Judges all hits; "" or a line on how many are wrong and the first of them.
+/// Checks all hits; "" or a line with the number of errors and the first of them.
 inline std::string judge_all(const Triangles& triangles, Query query, const std::vector<Ray>& rays,
                              const std::vector<Hit>& hits) {
   size_t wrong = 0;

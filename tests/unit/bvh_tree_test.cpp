@@ -1,5 +1,5 @@
 // links: bvh_embree
-// Building and layout: every promise of layout.h, for usual and for pathological input; the oracle itself.
+// Building and layout: every guarantee of layout.h, for usual and for pathological input; the oracle itself.
 #include <catch2/catch.hpp>
 #include <sstream>
 
@@ -35,7 +35,7 @@ void holds(const Mesh& mesh, bool splits) {
 
 }  // namespace
 
-TEST_CASE("layout keeps its promises") {
+TEST_CASE("layout keeps its guarantees") {
   Random random(1);
   for (const bool splits : {false, true}) {
     CAPTURE(splits);
@@ -49,7 +49,7 @@ TEST_CASE("layout keeps its promises") {
   }
 }
 
-TEST_CASE("spatial splits add references and keep their budget") {
+TEST_CASE("spatial splits add references within their budget") {
   Random random(2);
   const Mesh mesh = soup(random, 4000, 10, 8);
   BuildOptions options;
@@ -64,7 +64,7 @@ TEST_CASE("spatial splits add references and keep their budget") {
   CHECK(with.sah_cost < without.sah_cost);
 }
 
-TEST_CASE("depth is held for any input") {
+TEST_CASE("depth is limited for any input") {
   for (const bool diagonal : {false, true}) {
     const Mesh mesh = progression(100000, 1.0004, diagonal);  // 1e-15 .. 200
     const Tree tree = build_tree(mesh.view(), {});
@@ -72,9 +72,9 @@ TEST_CASE("depth is held for any input") {
     holds(mesh, false);
   }
   const Mesh steep = progression(400, 1.4, true, 1e-30);
-  CHECK(depth(build_tree(steep.view(), {})) > k_max_depth);  // or the next line proves nothing
+  CHECK(depth(build_tree(steep.view(), {})) > k_max_depth);  // otherwise the next check proves nothing
   holds(steep, false);
-  Mesh same;  // no plane tells these apart
+  Mesh same;  // no plane separates these
   for (int i = 0; i < 20000; ++i) same.add({0, 0, 0}, {1, 0, 0}, {0, 1, 0});
   holds(same, false);
   holds(same, true);
@@ -87,8 +87,8 @@ TEST_CASE("depth is held for any input") {
   holds(flat, false);
 }
 
-TEST_CASE("limit_depth: a list becomes a tree of the depth asked for") {
-  // The worst tree there is: every inner node splits one triangle off.
+TEST_CASE("limit_depth: a list becomes a tree of the requested depth") {
+  // The worst possible tree: every inner node splits off one triangle.
   Tree list;
   constexpr uint32_t k_count = 3000;
   for (uint32_t i = 0; i < k_count; ++i) {
@@ -135,7 +135,7 @@ TEST_CASE("least depth") {
   }
 }
 
-TEST_CASE("words survive as floats") {
+TEST_CASE("words are preserved as floats") {
   for (const uint32_t value : {0u, 1u, 2u, 1234567u, k_word_limit - 1})
     for (const bool flag : {false, true}) {
       const float f = encode(Word{flag, value});
@@ -145,13 +145,13 @@ TEST_CASE("words survive as floats") {
     }
 }
 
-TEST_CASE("check() sees damage") {
+TEST_CASE("check() detects damage") {
   Random random(4);
   const Mesh mesh = soup(random, 200, 10, 1);
   const BvhData good = build(mesh.view());
   REQUIRE(check(good, mesh.view()) == "");
   BvhData bad = good;
-  bad.nodes[1].x |= 0x80808080u;  // boxes of the root start in its upper half
+  bad.nodes[1].x |= 0x80808080u;  // the root's boxes start in its upper half
   CHECK(check(bad, mesh.view()) != "");
   bad = good, bad.triangles[3].y += 1e-3f;
   CHECK(check(bad, mesh.view()) != "");

@@ -1,6 +1,6 @@
 // links: irradiance_cache
-// Files of irradiance caches, without a device: what is written is what is read, to the bit; whatever is not
-// whole, not of this format or not made of the same is refused, with what was expected and what was found.
+// Files of irradiance caches, without a device: a file is read back bit for bit; an incomplete file, another
+// format or another scene is refused with the expected and the actual value.
 #include <sys/stat.h>
 
 #include <catch2/catch.hpp>
@@ -21,11 +21,11 @@ using Catch::Contains;
 
 namespace {
 
-/// Of a record in a file: place, light and sphere.
+/// A record in a file: position, light and sphere.
 constexpr uint32_t k_stored_bytes =
     16 * (shared::k_record_texels + shared::k_part_count * shared::k_part_texels + 1);
 
-/// Every texel another value; infinities, negative zeros and the bits of a NaN among them.
+/// Every texel differs; infinities, negative zeros and NaN bits are included.
 CacheFile some_cache(uint32_t records) {
   CacheFile c;
   c.program = "1.2.3";
@@ -46,7 +46,7 @@ CacheFile some_cache(uint32_t records) {
   fill(c.records.places, size_t{records} * shared::k_record_texels);
   fill(c.records.lights, size_t{records} * shared::k_part_count * shared::k_part_texels);
   fill(c.records.spheres, records);
-  // Some keep shares of groups of lights, two texels a record.
+  // Some have shares of light groups, two texels per record.
   c.grouping = records % 2 == 1 ? 0x123456789abcdefull : 0;
   for (uint32_t i = 0; records % 2 == 1 && i < 2 * records; ++i)
     c.records.groups.emplace_back(i, ~i, 0x80000000u, 7 * i);
@@ -73,7 +73,7 @@ std::string refusal(const std::string& bytes) {
 
 }  // namespace
 
-TEST_CASE("a cache that is written and read is the same to the bit") {
+TEST_CASE("a cache is unchanged after write and read, bit for bit") {
   const test::Folder folder;
   for (const uint32_t records : {0u, 1u, 3u, 1000u}) {
     INFO(records);
@@ -100,11 +100,11 @@ TEST_CASE("a cache that is written and read is the same to the bit") {
     CHECK(test::identical(d.records, c.records));
     CHECK(encode(d) == encode(c));
   }
-  // Nothing temporary is left.
+  // No temporary file remains.
   CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
 }
 
-TEST_CASE("the format is what its header says, byte for byte") {
+TEST_CASE("the format matches its header comment, byte for byte") {
   const std::string bytes = encode(some_cache(2));
   const std::string head("LUCCACHE\3\0\0\0\5\0\0\0", 16);
   CHECK(bytes.substr(0, 16) == head);
@@ -120,7 +120,7 @@ TEST_CASE("the format is what its header says, byte for byte") {
   CHECK(number(bytes.size() - 8 - 2 * k_stored_bytes - 8, 4) == 2);
 }
 
-TEST_CASE("a file that is cut short is refused at every length") {
+TEST_CASE("a truncated file is refused at every length") {
   const std::string bytes = encode(some_cache(3));
   for (size_t n = 0; n < bytes.size(); ++n) {
     const std::string reported = refusal(bytes.substr(0, n));
@@ -132,7 +132,7 @@ TEST_CASE("a file that is cut short is refused at every length") {
   CHECK_THAT(refusal(bytes + "x"), Contains("a.cache: damaged: ") && Contains("its header states"));
 }
 
-TEST_CASE("a file with one byte changed is refused, wherever it is and however") {
+TEST_CASE("a file with one byte changed is refused, for every byte and change") {
   const std::string bytes = encode(some_cache(3));
   for (size_t n = 0; n < bytes.size(); ++n)
     for (const int change : {1, 0x80, 0xff}) {
@@ -156,9 +156,7 @@ TEST_CASE("a file with one byte changed is refused, wherever it is and however")
   CHECK_THAT(refusal("glTF and so on"), Contains("not an irradiance cache"));
 }
 
-TEST_CASE(
-    "contents that make no sense under a right checksum are refused or read, never followed out of the "
-    "file") {
+TEST_CASE("invalid contents with a valid checksum are refused or read, never followed outside the file") {
   const std::string bytes = encode(some_cache(2));
   size_t refused = 0, read = 0;
   for (size_t n = 28; n + 8 < bytes.size(); ++n)
@@ -177,7 +175,7 @@ TEST_CASE(
   CHECK(read > 2000);   // the records' own numbers
 }
 
-TEST_CASE("what cannot be read or written says so, and leaves what was there") {
+TEST_CASE("a failed read or write is reported, and existing files stay") {
   const test::Folder folder;
   const fs::path file = folder.path / "a.cache";
   CHECK_THAT(complaint([&] { read_cache(file); }),
@@ -185,14 +183,14 @@ TEST_CASE("what cannot be read or written says so, and leaves what was there") {
   CHECK_THAT(complaint([&] { read_cache(folder.path); }), Contains("it is a folder"));
   CHECK_THAT(complaint([&] { write_cache(folder.path / "no" / "a.cache", some_cache(1)); }),
              Contains("no/a.cache: cannot be written: "));
-  // A folder of the name cannot be replaced by a file; what was written so far goes.
+  // A folder of that name cannot be replaced by a file; the partial file is removed.
   fs::create_directories(file / "inner");
   CHECK_THAT(complaint([&] { write_cache(file, some_cache(1)); }), Contains("is a folder"));
   CHECK(fs::is_directory(file / "inner"));
   CHECK(std::distance(fs::directory_iterator(folder.path), fs::directory_iterator()) == 1);
 }
 
-TEST_CASE("a cache serves what it was made of, and says what differs") {
+TEST_CASE("a cache fits what it was built from, and reports what differs") {
   const CacheFile c = some_cache(20);
   const auto fits = [&](const std::function<void(MadeWith&)>& change, uint32_t room = 20) {
     MadeWith wanted = c.made_with;
@@ -213,12 +211,12 @@ TEST_CASE("a cache serves what it was made of, and says what differs") {
              }),
              Contains("made with cache.error = 0.3 (now 1), cache.metric = unknown (now hessian), "
                       "path.max_depth = 64 (now unknown)"));
-  // Parts that nobody asks for do no harm.
+  // Components that are not looked up need no match.
   CHECK(fits([](MadeWith& m) { m.parts = 0b0100; }).empty());
   CHECK(fits([](MadeWith& m) { m.parts = 0b1111; }) ==
         "a.cache: its records hold secondary, tertiary light; the components that are looked up need "
         "environment, caustic light too");
-  // Who gathered tertiary light matters where that is read, and there alone.
+  // The way tertiary light was gathered matters only if it is looked up.
   CHECK(c.made_with.recursive);
   CHECK(fits([](MadeWith& m) { m.recursive = false; }) ==
         "a.cache: the tertiary light of its records was gathered by 'cache', here it is by 'path'; set "

@@ -1,5 +1,5 @@
 // links: irradiance_cache
-// How long building is told to go on, against what it took where it was measured.
+// The forecast of the remaining build time, compared with measured builds.
 #include <array>
 #include <catch2/catch.hpp>
 #include <vector>
@@ -20,7 +20,7 @@ struct Pass {
   double ms;
 };
 
-/// What the building of the cache took, pass by pass: interiors at 900x600.
+/// Measured builds, pass by pass: interiors at 900x600.
 const std::vector<std::vector<Pass>> k_measured = {
     // classroom
     {{0.9491, 11571, 6393472, 13775},
@@ -53,7 +53,7 @@ CachePass pass(const Pass& p, uint32_t number, double part) {
   return r;
 }
 
-/// That building when so much of that pass is done.
+/// The state of a build at that share of that pass.
 CacheStatus at(const std::vector<Pass>& all, uint32_t number, double part) {
   CacheStatus s;
   for (uint32_t i = 0; i <= number; ++i) {
@@ -65,7 +65,7 @@ CacheStatus at(const std::vector<Pass>& all, uint32_t number, double part) {
 
 }  // namespace
 
-TEST_CASE("what is left of building a cache is told while it is built") {
+TEST_CASE("the remaining time of a cache build is forecast") {
   for (const auto& all : k_measured) {
     double whole = 0, before = 0;
     for (const Pass& p : all) whole += p.ms;
@@ -77,7 +77,7 @@ TEST_CASE("what is left of building a cache is told while it is built") {
         const double done = before + part * all[i].ms;
         CHECK(reported->done > 0);
         CHECK(reported->done < 1);
-        // Of the whole: small scenes are done sooner than the first pass lets one think.
+        // The total: small scenes finish earlier than the first pass suggests.
         const double predicted = done + reported->left_ms;
         CHECK(predicted < (i == 0 ? 2.3 : 1.7) * whole);
         CHECK(predicted > whole / 1.7);
@@ -88,7 +88,7 @@ TEST_CASE("what is left of building a cache is told while it is built") {
   }
 }
 
-TEST_CASE("before a record has light, and when building has stopped, nothing is told") {
+TEST_CASE("before a record has light, and after building has stopped, there is no forecast") {
   CacheStatus s;
   CHECK_FALSE(forecast_of(s, k_stop));
   s = at(k_measured[0], 0, 0.5);
@@ -99,10 +99,10 @@ TEST_CASE("before a record has light, and when building has stopped, nothing is 
   CHECK_FALSE(forecast_of(s, k_stop));
 }
 
-TEST_CASE("relighting is as far as the rays that records had before") {
+TEST_CASE("progress of relighting is measured in the records' previous rays") {
   CacheStatus s;
   s.relighting = {.records = 100, .share = 0.5f, .rays = 4000};
-  CHECK_FALSE(forecast_of(s, k_stop));  // none has a ray yet
+  CHECK_FALSE(forecast_of(s, k_stop));  // no record has rays yet
   CachePass p;
   p.relit = true, p.records = 100, p.rays = 1000;
   p.ms[size_t(BuildStep::evaluate)] = 50;
@@ -111,32 +111,32 @@ TEST_CASE("relighting is as far as the rays that records had before") {
   REQUIRE(reported);
   CHECK(reported->done == Approx(0.25));
   CHECK(reported->left_ms == Approx(150));
-  // Rays are counted before their time is known, and what is set up before them does not scale.
+  // Rays are counted before their time is known, and set-up time does not scale.
   s.passes[0].ms = {};
   s.passes[0].ms[size_t(BuildStep::measure)] = 500;
   CHECK_FALSE(forecast_of(s, k_stop));
   s.passes[0].ms[size_t(BuildStep::evaluate)] = 50;
   CHECK(forecast_of(s, k_stop)->left_ms == Approx(150));
   CHECK(forecast_of(s, k_stop)->done == Approx(0.25));
-  // More rays than before: nearly done, never more than all.
+  // More rays than before: nearly finished, never above 1.
   s.rays = s.passes[0].rays = 5000;
   CHECK(forecast_of(s, k_stop)->done < 1);
   s.relighting.rays = 0;
   CHECK_FALSE(forecast_of(s, k_stop));
-  s.relighting = {};  // all are relit, and the next pass has not begun
+  s.relighting = {};  // all are relit, and the next pass has not started
   CHECK_FALSE(forecast_of(s, k_stop));
 }
 
-TEST_CASE("building that goes on after relighting is as far as it was") {
+TEST_CASE("building that continues after relighting resumes its progress") {
   CacheStatus built = at(k_measured[0], 3, 0.5), relit = built;
   for (uint32_t i = 0; i < 3; ++i) relit.passes[i].relit = true;
   CHECK(forecast_of(relit, k_stop)->left_ms == Approx(forecast_of(built, k_stop)->left_ms));
 }
 
-TEST_CASE("what comes into view takes its part of what the cache took") {
+TEST_CASE("records for a new view take their share of the whole build") {
   CacheStatus s = at(k_measured[0], 6, 1);
   CachePass p;
-  s.passes.push_back(p);  // the camera has moved, and nothing is known yet
+  s.passes.push_back(p);  // the camera has moved; there is no data yet
   CHECK_FALSE(forecast_of(s, k_stop));
   double last = 0;
   for (const double asked : {0.0005, 0.002, 0.02, 0.3, 0.9}) {

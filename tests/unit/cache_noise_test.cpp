@@ -1,5 +1,5 @@
 // links: irradiance_cache
-// Which records get more rays: judged by those around, so that what is left is not biased.
+// Which records get more rays: decided by their neighbours, so the remaining light is unbiased.
 #include "solvers/irradiance_cache/noise.h"
 
 #include <catch2/catch.hpp>
@@ -8,18 +8,18 @@
 
 using namespace lucerna::irradiance_cache;
 
-TEST_CASE("records are judged by the error and light of those around, and by their own bound") {
+TEST_CASE("records are judged by their neighbours' error and light and by their own bound") {
   CHECK(too_noisy({}, 1).empty());
-  // Alone by itself.
+  // A single record is judged by itself.
   CHECK(too_noisy(std::vector<Noise>{{.error = 0.3f, .light = 2, .bound = 0.1f}}, 0) ==
         std::vector<uint32_t>{0});
   CHECK(too_noisy(std::vector<Noise>{{.error = 0.3f, .light = 2, .bound = 0.2f}}, 0).empty());
-  // Darker ones are held against `darkest`.
+  // Darker ones are compared with `darkest`.
   CHECK(too_noisy(std::vector<Noise>{{.error = 0.3f, .light = 2, .bound = 0.1f}}, 4).empty());
 
   std::vector<Noise> list(20, {.error = 0.1f, .light = 1, .bound = 0.2f});
   CHECK(too_noisy(list, 0).empty());
-  // One that has found much: those around it look, it does not.
+  // A record with a very bright sample: its neighbours get more rays, it does not.
   list[9].error = 10;
   CHECK(too_noisy(list, 0) == std::vector<uint32_t>{5, 6, 7, 8, 10, 11, 12, 13});
   // Root mean square of eight over their mean light: 10 / sqrt(8) = 3.54.
@@ -29,14 +29,14 @@ TEST_CASE("records are judged by the error and light of those around, and by the
   CHECK(too_noisy(list, 0) == std::vector<uint32_t>{7});
   for (Noise& n : list) n.light = 2;
   CHECK(too_noisy(list, 0).empty());
-  // At the ends there are fewer around: of the second five, of the last four.
+  // At the ends there are fewer neighbours: five for the second, four for the last.
   list.assign(20, {.error = 0, .light = 1, .bound = 0.48f});
   list[3].error = 1, list[16].error = 1;
   CHECK(too_noisy(list, 0) == std::vector<uint32_t>{0, 19});
 }
 
-TEST_CASE("records that stop are right on average, be their noise what it may") {
-  // Estimates of 1 by few samples of what is rarely bright: error and light go together.
+TEST_CASE("records that stop are unbiased on average, whatever their noise") {
+  // Estimates of 1 by few samples of a rarely bright value: error and light are correlated.
   constexpr int k_records = 200000, k_samples = 16;
   std::mt19937 random(7);
   std::vector<Noise> list;
@@ -69,7 +69,7 @@ TEST_CASE("records that stop are right on average, be their noise what it may") 
   REQUIRE(stopped < 3 * k_records / 4);
   // Five standard errors, 6e-7.
   CHECK(std::abs(mean - 1) < 5 * 0.75 / std::sqrt(double(stopped)));
-  // Judged each by itself they are not.
+  // If each is judged by itself they are biased.
   std::vector<uint32_t> alone;
   for (uint32_t i = 0; i < list.size(); ++i)
     if (!too_noisy(std::span(list).subspan(i, 1), 0.1f).empty()) alone.push_back(i);

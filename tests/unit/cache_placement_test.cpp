@@ -1,5 +1,5 @@
 // links: irradiance_cache
-// Which of the records that are tried are needed.
+// Which of the tested candidates become records.
 #include "solvers/irradiance_cache/placement.h"
 
 #include <catch2/catch.hpp>
@@ -19,7 +19,7 @@ std::vector<float> off_planes(const std::vector<float>& radii) {
 }
 }  // namespace
 
-TEST_CASE("thinning keeps what nothing wider covers, and nothing else") {
+TEST_CASE("thinning keeps what no wider record covers, and nothing else") {
   const std::vector<Place> points = test::box_points(3000);
   std::mt19937 random(9);
   std::vector<float> radii;
@@ -39,7 +39,7 @@ TEST_CASE("thinning keeps what nothing wider covers, and nothing else") {
   };
   for (uint32_t i = 0; i < points.size(); ++i) {
     const bool stays = std::binary_search(kept.begin(), kept.end(), i);
-    // Wider ones, or as wide and earlier, go first.
+    // Wider ones, or earlier ones of the same radius, have priority.
     const bool covered = std::any_of(kept.begin(), kept.end(), [&](uint32_t k) {
       return k != i && (radii[k] > radii[i] || (radii[k] == radii[i] && k < i)) && covers(k, i);
     });
@@ -48,12 +48,12 @@ TEST_CASE("thinning keeps what nothing wider covers, and nothing else") {
   CHECK(thin_out({}, {}, {}, options).empty());
 }
 
-TEST_CASE("thinning leaves a panel above a ceiling its own record") {
+TEST_CASE("thinning keeps a separate record for a panel above a ceiling") {
   // Both face down; the ceiling's record is as wide as a lamp.
   const std::vector<Place> points{{vec3(0), vec3(0, -1, 0)}, {vec3(0.2f, 0.03f, 0), vec3(0, -1, 0)}};
   const std::vector<float> radii{0.6f, 0.05f};
   CHECK(thin_out(points, radii, off_planes(radii), {}).size() == 2);
-  // Below the ceiling, hanging from it, too; in its plane not.
+  // Also for a panel below the ceiling; but not in its plane.
   CHECK(thin_out(std::vector<Place>{points[0], {vec3(0.2f, -0.03f, 0), vec3(0, -1, 0)}}, radii,
                  off_planes(radii), {})
             .size() == 2);

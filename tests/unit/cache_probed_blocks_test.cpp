@@ -1,5 +1,5 @@
 // links: irradiance_cache
-// Which blocks of the picture a pass looks along, and that what it finds there says how much of all asks.
+// Which blocks of the picture a pass probes, and the estimate of gaps in the whole picture from them.
 #include "solvers/irradiance_cache/probed_blocks.h"
 
 #include <catch2/catch.hpp>
@@ -20,7 +20,8 @@ double stood_for(const ProbedBlocks& blocks) {
 }  // namespace
 
 TEST_CASE(
-    "the first passes look all over, later ones where paths asked, around it, and at a part of the rest") {
+    "the first passes probe all blocks, later ones blocks with gaps, their neighbours, and a part of the "
+    "rest") {
   ProbedBlocks blocks;
   for (uint32_t pass = 0; pass < ProbedBlocks::k_all_over; ++pass) {
     blocks.begin(20, 10, pass);
@@ -43,12 +44,12 @@ TEST_CASE(
     blocks.note(0), blocks.note(5 * 20 + 7);
     blocks.end();
   }
-  CHECK(seen.size() == 200);  // in turns all
+  CHECK(seen.size() == 200);  // all blocks in turn
   blocks.begin(10, 20, 6);    // another picture
   CHECK(blocks.list().size() == 200);
 }
 
-TEST_CASE("a pass that was given up leaves what the one before it has told") {
+TEST_CASE("a cancelled pass keeps the estimate of the previous one") {
   ProbedBlocks blocks;
   blocks.begin(8, 8, 1);
   blocks.note(9);
@@ -60,12 +61,12 @@ TEST_CASE("a pass that was given up leaves what the one before it has told") {
   CHECK(blocks.list() == list);
 }
 
-TEST_CASE("what is found says how much of the picture asks, in the mean over the turns") {
-  // Blocks that nothing has been known of ask by chance, some often.
+TEST_CASE("the estimated share of gaps is unbiased over the turns") {
+  // Unknown blocks have random gaps, some many.
   std::mt19937 random(5);
-  std::vector<double> asks(40 * 24);
-  for (double& a : asks) a = random() % 50 == 0 ? double(random() % 30) : 0;
-  const double truth = std::accumulate(asks.begin(), asks.end(), 0.0);
+  std::vector<double> gaps(40 * 24);
+  for (double& a : gaps) a = random() % 50 == 0 ? double(random() % 30) : 0;
+  const double truth = std::accumulate(gaps.begin(), gaps.end(), 0.0);
   ProbedBlocks blocks;
   double sum = 0;
   for (uint32_t turn = 0; turn < 4; ++turn) {
@@ -74,12 +75,12 @@ TEST_CASE("what is found says how much of the picture asks, in the mean over the
     blocks.end();
     blocks.begin(40, 24, 4 + turn);
     for (uint32_t i = 0; i < blocks.list().size(); ++i)
-      sum += blocks.stands_for(i) * asks[blocks.list()[i]] / 4;
+      sum += blocks.stands_for(i) * gaps[blocks.list()[i]] / 4;
   }
   CHECK(sum == Approx(truth).epsilon(0.02));
 }
 
-TEST_CASE("pictures of a block or a row are looked at too") {
+TEST_CASE("pictures of one block or one row are probed too") {
   ProbedBlocks blocks;
   for (uint32_t pass = 0; pass < 8; ++pass) {
     blocks.begin(1, 1, pass);

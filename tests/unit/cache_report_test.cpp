@@ -1,6 +1,6 @@
 // links: irradiance_cache
-// What is told of an irradiance cache as plain data: texts for the bar, sections of the panel, legends, the
-// card of a point.
+// The report of an irradiance cache as plain data: texts of the status bar, sections of the panel, legends,
+// the card of a point.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -15,7 +15,7 @@ namespace {
 
 OptionValues settings() { return OptionValues(info().options); }
 
-/// A cache that is complete, of two passes.
+/// A complete cache of two passes.
 CacheReport complete() {
   CacheReport c;
   c.room = 1000, c.placed = 120;
@@ -53,7 +53,7 @@ std::string value_of(const solvers::PanelSection& s, const std::string& name) {
   return "";
 }
 
-/// The card's words where there is much room, or little.
+/// The card's text with much or little room.
 std::string words_of(const solvers::Card& card, solvers::Card::Room room) {
   std::string text;
   for (const auto& line : card.lines) {
@@ -71,7 +71,7 @@ std::string words_of(const solvers::Card& card, solvers::Card::Room room) {
 
 }  // namespace
 
-TEST_CASE("the bar's text follows the building") {
+TEST_CASE("the status bar's text follows the build") {
   CacheReport c = complete();
   solvers::Report r = make_report(c, settings());
   CHECK(r.solver == info().name);
@@ -92,7 +92,7 @@ TEST_CASE("the bar's text follows the building") {
   CHECK(r.figure("nothing of that name") == 0);
 }
 
-TEST_CASE("the panel tells numbers, steps and passes, each step by its own text") {
+TEST_CASE("the panel shows numbers, steps and passes, each step with its text") {
   CacheReport c = complete();
   OptionValues s = settings();
   solvers::Report r = make_report(c, s);
@@ -154,7 +154,7 @@ TEST_CASE("the panel tells numbers, steps and passes, each step by its own text"
   CHECK(rows() == 4);
 }
 
-TEST_CASE("every view that is on has its legend") {
+TEST_CASE("every active view has its legend") {
   CacheReport c = complete();
   OptionValues s = settings();
   CHECK(make_report(c, s).legends.empty());
@@ -178,12 +178,11 @@ TEST_CASE("every view that is on has its legend") {
   CHECK(all[1].marks[4].text == "40 clusters");
 }
 
-TEST_CASE(
-    "the card tells the record under a point and what serves there, in short where there is little room") {
+TEST_CASE("the card shows the record under a point and the records it reads, shortened in little room") {
   using Room = solvers::Card::Room;
   CacheReport c = complete();
   c.inspection.solid = true, c.inspection.lookup = shared::k_lookup_possible;
-  CHECK_FALSE(make_report(c, settings()).card);  // nobody looks
+  CHECK_FALSE(make_report(c, settings()).card);  // no point is inspected
   c.looked_at = vec2(0.5f);
   const auto reported = [&](Room room = Room::much) {
     return words_of(*make_report(c, settings()).card, room);

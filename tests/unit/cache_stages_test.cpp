@@ -1,5 +1,5 @@
 // links: irradiance_cache
-// Where building waits for somebody who watches, and what of the placement is drawn.
+// Where building pauses for a user who watches, and which part of the placement is drawn.
 #include "solvers/irradiance_cache/stages.h"
 
 #include <catch2/catch.hpp>
@@ -13,7 +13,7 @@ using namespace lucerna::irradiance_cache;
 
 namespace {
 
-/// Ends stages of passes of `each` as long as nothing waits; how many have ended.
+/// Ends stages of passes of `each` stages until building waits; returns how many have ended.
 int go(Pauses& pauses, int& at, int each, int most = 100) {
   int ended = 0;
   while (!pauses.waits() && ended < most) pauses.ended(++at % each == 0), ++ended;
@@ -28,13 +28,13 @@ std::vector<Place> row(size_t count, uint32_t origin) {
 
 }  // namespace
 
-TEST_CASE("building waits after every stage, every pass, or never, as it is set") {
+TEST_CASE("building waits after every stage, every pass, or never, as set") {
   Pauses pauses;
   int at = 0;
   CHECK(go(pauses, at, 5) == 100);
   at = 0;
   pauses.set(PauseAfter::stage);
-  CHECK_FALSE(pauses.waits());  // from the next end on
+  CHECK_FALSE(pauses.waits());  // applies from the next end of a stage
   for (int i = 0; i < 12; ++i) {
     CHECK(go(pauses, at, 5) == 1);
     pauses.step();
@@ -43,7 +43,7 @@ TEST_CASE("building waits after every stage, every pass, or never, as it is set"
   pauses.set(PauseAfter::pass);
   CHECK(pauses.waits());  // where it does
   pauses.step();
-  CHECK(go(pauses, at, 5) == 1);  // a step is a stage, whatever is set
+  CHECK(go(pauses, at, 5) == 1);  // a step is one stage, whatever is set
   CHECK(at == 14);
   pauses.dropped();
   CHECK(go(pauses, at, 5) == 1);
@@ -56,12 +56,12 @@ TEST_CASE("building waits after every stage, every pass, or never, as it is set"
   CHECK(go(pauses, at, 5) == 100);
 }
 
-TEST_CASE("a step waits at the next end of a stage where nothing else would; run goes through to the end") {
+TEST_CASE("a step waits at the next end of a stage; run continues to the end") {
   Pauses pauses;
   int at = 0;
   pauses.step();
   CHECK(go(pauses, at, 5) == 1);
-  pauses.set(PauseAfter::off);  // as it was: no reason to go on
+  pauses.set(PauseAfter::off);  // no change: building does not continue
   CHECK(pauses.waits());
   pauses.step();
   CHECK(go(pauses, at, 5) == 1);
@@ -70,20 +70,20 @@ TEST_CASE("a step waits at the next end of a stage where nothing else would; run
   CHECK(go(pauses, at, 5) == 100);
   pauses.complete();
   CHECK_FALSE(pauses.waits());
-  CHECK(go(pauses, at, 5) == 1);  // what is set holds for the next building
+  CHECK(go(pauses, at, 5) == 1);  // the setting applies to the next build
   pauses.run();
-  pauses.step();  // whoever asks last is heard
+  pauses.step();  // the last request wins
   CHECK(go(pauses, at, 5) == 1);
   pauses.complete();
   CHECK_FALSE(pauses.waits());
 }
 
-TEST_CASE("a stage is told with its level and pass") {
+TEST_CASE("a stage is named with its level and pass") {
   CHECK(stage_words({.stage = BuildStage::choose, .pass = 1}) == "choose, pass 2");
   CHECK(stage_words({.stage = BuildStage::evaluate, .level = 3}) == "evaluate level 3, pass 1");
 }
 
-TEST_CASE("as much of the placement is drawn as is known and asked for") {
+TEST_CASE("the known and requested part of the placement is drawn") {
   const std::vector<Place> candidates = row(6, shared::k_origin_world),
                            tried = row(3, shared::k_origin_world);
   const std::vector<uint32_t> cluster{0, 0, 1, 1, 2, 2}, kept{1};
@@ -114,7 +114,7 @@ TEST_CASE("as much of the placement is drawn as is known and asked for") {
   CHECK(kind(points[0]) == shared::k_placed_tried);
   CHECK(kind(points[8]) == shared::k_placed_candidate);
   CHECK(points[8].bits >> shared::k_placed_cluster_shift == 3);
-  // Measured, not thinned out yet: rings for all of them.
+  // Measured but not thinned: rings for all of them.
   points = placement_points(PlacementShow::chosen, placement, 100, rings);
   REQUIRE(points.size() == 3);
   CHECK(rings == 3);
@@ -127,7 +127,7 @@ TEST_CASE("as much of the placement is drawn as is known and asked for") {
   CHECK(points[0].position.x == 1);
   CHECK(points[0].radius == 0.25f);
   CHECK(kind(points[1]) == shared::k_placed_rejected);
-  // No more than there is room for: what is tried stays, candidates are left out evenly.
+  // Limited by the room: tested candidates stay, others are dropped evenly.
   points = placement_points(PlacementShow::clusters, placement, 6, rings);
   REQUIRE(points.size() == 6);
   CHECK(kind(points[2]) == shared::k_placed_tried);

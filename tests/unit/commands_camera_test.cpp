@@ -30,7 +30,7 @@ bool is_rigid(const mat4& m) {
          std::abs(glm::dot(x, y)) < 1e-4f;
 }
 
-/// Where a point lands in a picture of that height, pixels from its centre, y down.
+/// The position of a point in a picture of that height, in pixels from its centre, y down.
 vec2 project(const scene::Camera& camera, const vec3& p, float height) {
   const vec3 d = p - eye_of(camera);
   const float z = glm::dot(d, forward_of(camera));
@@ -58,7 +58,7 @@ TEST_CASE("orbit keeps the pivot and the distance, and stops at the poles") {
   CHECK(is_rigid(view.camera.to_world));
   for (int i = 0; i < 50; ++i) orbit(view, {0, 0.5f});
   CHECK(forward_of(view.camera).y == Approx(-std::sin(89 * k_pi / 180)).margin(1e-4));
-  CHECK(std::abs(right_of(view.camera).y) < 1e-3f);  // no roll came in
+  CHECK(std::abs(right_of(view.camera).y) < 1e-3f);  // no roll was introduced
 
   Viewpoint front = make_viewpoint(camera_at({0, 1, 5}, {0, 1, 0}), room());
   orbit(front, {k_pi / 2, 0});  // a quarter turn counter-clockwise from above: +Z goes to +X
@@ -76,7 +76,7 @@ TEST_CASE("look turns about the eye") {
   CHECK(forward_of(view.camera).y == Approx(std::sin(0.4f)).margin(1e-4));
 }
 
-TEST_CASE("a pan carries the pivot with the cursor, pixel for pixel") {
+TEST_CASE("a pan moves the pivot with the cursor, pixel for pixel") {
   Viewpoint view = make_viewpoint(camera_at({2, 2, 5}, {0, 1, 0}), room());
   const vec3 grabbed = pivot_of(view);
   pan(view, {120, -45}, 600);
@@ -85,7 +85,7 @@ TEST_CASE("a pan carries the pivot with the cursor, pixel for pixel") {
   CHECK(at.y == Approx(-45).margin(0.05));
 }
 
-TEST_CASE("dolly takes a tenth a step and does not stall at the pivot") {
+TEST_CASE("dolly moves a tenth per step and does not stall at the pivot") {
   Viewpoint view = make_viewpoint(camera_at({0, 1, 6}, {0, 1, 0}), room());
   const vec3 pivot = pivot_of(view);
   dolly(view, 1);
@@ -94,7 +94,7 @@ TEST_CASE("dolly takes a tenth a step and does not stall at the pivot") {
   dolly(view, -1);
   CHECK(view.distance == Approx(6).epsilon(1e-4));
   for (int i = 0; i < 20000; ++i) dolly(view, 1);
-  CHECK(eye_of(view.camera).z < -1.0f);  // walked through the pivot
+  CHECK(eye_of(view.camera).z < -1.0f);  // passed through the pivot
   CHECK(view.distance > 0);
   view.camera.orthographic = true, view.camera.ymag = 2, view.camera.xmag = 3;
   dolly(view, 1);

@@ -1,6 +1,6 @@
 // links: commands
-// Moving about in rooms: walls stop and are slid along, stairs are climbed, tables are no floor, framing
-// stays on this side of walls, turning keeps the point under the pointer.
+// Navigation in rooms: walls stop the camera, which slides along them; stairs can be climbed; tables are no
+// floor; framing stays in front of walls; orbiting keeps the point under the pointer.
 #include "commands/interior.h"
 
 #include <catch2/catch.hpp>
@@ -26,13 +26,13 @@ void add_box(scene::Scene& s, const vec3& lo, const vec3& hi) {
   s.meshes.push_back({.name = "", .primitives = {p}});
 }
 
-/// A room of 8 x 3 x 6 metres about the origin, 0.2 m of wall around it; in it a wall across with a way past
-/// it at z > 1, a table, and stairs of five steps along +z in the corner at +x.
+/// A room of 8 x 3 x 6 metres around the origin, with walls of 0.2 m; inside a dividing wall with a passage
+/// at z > 1, a table, and stairs of five steps along +z in the corner at +x.
 struct Room {
   scene::Scene scene;
   std::unique_ptr<session::Probe> probe;
   enum : uint32_t { floor, ceiling, west, east, north, south, across, table };
-  /// `far`: a wall stands so far away, if that is not 0.
+  /// `far`: adds a wall at that distance, if not 0.
   explicit Room(float far = 0) {
     add_box(scene, {-4.2f, -0.2f, -3.2f}, {4.2f, 0, 3.2f});
     add_box(scene, {-4.2f, 3, -3.2f}, {4.2f, 3.2f, 3.2f});
@@ -77,31 +77,31 @@ void walk_far(Viewpoint& v, const Look& look, const vec2& metres, bool through =
 
 }  // namespace
 
-TEST_CASE("walking stays on the floor, before the wall ahead, and goes along it") {
+TEST_CASE("walking stays on the floor, stops in front of a wall, and slides along it") {
   const Room room;
-  Viewpoint v = room.view({-3, 1.65f, 2}, {-3, 1.2f, -2});  // looks down a little, to the north
+  Viewpoint v = room.view({-3, 1.65f, 2}, {-3, 1.2f, -2});  // looks slightly down, to the north
   walk_far(v, room.look(), {0, 9});
   CHECK(eye_of(v.camera).z == Approx(-3 + clearance(v.extent)).margin(0.01));
   CHECK(eye_of(v.camera).y == Approx(1.65).margin(1e-3));
   CHECK(eye_of(v.camera).x == Approx(-3).margin(1e-3));
-  // Aslant: what leads along the wall is walked, what leads into it is not.
+  // At an angle: only the part along the wall is walked.
   walk_far(v, room.look(), {2, 2});
   CHECK(eye_of(v.camera).x == Approx(-1).margin(0.02));
   CHECK(eye_of(v.camera).z >= -3 + 0.9f * clearance(v.extent));
-  // A corner holds.
+  // A corner stops the walk.
   walk_far(v, room.look(), {9, 9});
   CHECK(eye_of(v.camera).x == Approx(-clearance(v.extent)).margin(0.02));
   CHECK(eye_of(v.camera).z >= -3 + 0.9f * clearance(v.extent));
-  // A step larger than the room does not leap over its wall.
+  // A step larger than the room does not cross its wall,
   Viewpoint leap = room.view({-3, 1.65f, 2}, {-3, 1.65f, -2});
   CHECK(walk(leap, room.look(), {0, 100}, k_eye_height, false));
   CHECK(eye_of(leap.camera).z > -3);
-  // Unless somebody wants to.
+  // except with collisions off.
   CHECK_FALSE(walk(leap, room.look(), {0, 100}, k_eye_height, true));
   CHECK(eye_of(leap.camera).z < -90);
 }
 
-TEST_CASE("stairs are climbed and come down again; a table is walked under the eye, not onto") {
+TEST_CASE("stairs can be climbed in both directions; walking crosses a table's place below it, not on top") {
   const Room room;
   Viewpoint v = room.view({3.5f, 1.65f, -2.5f}, {3.5f, 1.65f, 2});  // to the south, up the stairs
   float highest = 0;
@@ -120,17 +120,17 @@ TEST_CASE("stairs are climbed and come down again; a table is walked under the e
     REQUIRE(eye_of(v.camera).y == Approx(1.65f).margin(1e-3));
   }
   CHECK(eye_of(v.camera).z == Approx(-1).margin(0.01));
-  // Nothing below: level.
+  // Without a floor the height stays.
   Viewpoint outside = room.view({20, 1.65f, 0}, {20, 1, -5});
   walk_far(outside, room.look(), {0, 3});
   CHECK(eye_of(outside.camera).y == Approx(1.65f));
   CHECK(floor_below(room.look(), {-2, 1.65f, 0}, 0.8f, 5) == Approx(0.9f).margin(1e-3));  // the table
   CHECK(floor_below(room.look(), {-2, 1.65f, 0}, 1.25f, 5) ==
-        Approx(1.65f).margin(1e-3));  // what is below it
+        Approx(1.65f).margin(1e-3));  // the floor under the table
   CHECK_FALSE(floor_below(room.look(), {20, 1.65f, 0}, 1, 5));
 }
 
-TEST_CASE("turning about a point leaves it where it is in the picture") {
+TEST_CASE("orbiting about a point keeps its place in the picture") {
   const Room room;
   Viewpoint v = room.view({-3, 1.65f, 2}, {-2, 1, -2});
   const vec3 point(-2.2f, 0.75f, 0.4f);
@@ -145,7 +145,7 @@ TEST_CASE("turning about a point leaves it where it is in the picture") {
   CHECK(forward_of(v.camera).y == Approx(-std::sin(89 * k_pi / 180)).margin(1e-3));
 }
 
-TEST_CASE("coming closer goes towards the point, and always gets on") {
+TEST_CASE("moving closer goes towards the point, and always makes progress") {
   const Room room;
   Viewpoint v = room.view({-3, 1.65f, 2}, {-2, 1, -2});
   const vec3 point(-2.2f, 0.75f, 0.4f), from = eye_of(v.camera), ahead = forward_of(v.camera);
@@ -158,7 +158,7 @@ TEST_CASE("coming closer goes towards the point, and always gets on") {
   CHECK(glm::length(eye_of(v.camera) - point) < 0.1f);
 }
 
-TEST_CASE("framing ends neither behind a wall nor inside one") {
+TEST_CASE("framing never ends behind a wall or inside one") {
   const Room room;
   const auto free_between = [&](const Viewpoint& v, const vec3& centre, uint32_t but) {
     const vec3 way = centre - eye_of(v.camera);
@@ -179,13 +179,13 @@ TEST_CASE("framing ends neither behind a wall nor inside one") {
     CHECK(glm::dot(glm::normalize(table.centre() - eye_of(v.camera)), forward_of(v.camera)) > 0.999f);
     CHECK(glm::length(table.centre() - eye_of(v.camera)) > 0.5f);
   }
-  // Where there is room nothing differs from plain framing.
+  // With enough room it equals plain framing.
   Viewpoint a = room.view({-2, 1.5f, 0.3f}, {-2, 0.72f, 0}), b = a;
   const Box small = box_of({-2.05f, 0.75f, -0.05f}, {-1.95f, 0.8f, 0.05f});
   frame_clear(a, small, 1.5f, room.look(Room::table));
   frame(b, small, 1.5f);
   CHECK(glm::length(eye_of(a.camera) - eye_of(b.camera)) < 1e-4f);
-  // The whole scene, from inside it: as far back as there is room.
+  // The whole scene, from inside: as far back as there is room.
   Viewpoint whole = room.view({-2, 1.65f, 0}, {-3.9f, 1.65f, 0});
   CHECK(enclosed(room.look(), eye_of(whole.camera), whole.extent));
   frame_inside(whole, scene::bounds(room.scene), 1.5f, room.look());
@@ -194,7 +194,7 @@ TEST_CASE("framing ends neither behind a wall nor inside one") {
   CHECK_FALSE(enclosed(room.look(), {12, 1, 0}, whole.extent));
 }
 
-TEST_CASE("something far away changes neither speed, nor steps, nor what is framed") {
+TEST_CASE("a far object changes neither speed, nor steps, nor framing") {
   const Room alone;
   const Look look = alone.look();
   for (const float far : {2e3f, 2e4f, 1e5f}) {

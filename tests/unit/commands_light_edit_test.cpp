@@ -1,5 +1,5 @@
 // links: commands
-// A lamp that is dragged in the picture stays under the pointer.
+// A lamp dragged in the picture stays under the pointer.
 #include "commands/light_edit.h"
 
 #include <catch2/catch.hpp>
@@ -20,7 +20,7 @@ scene::Camera camera_at(const vec3& eye, const vec3& target, bool orthographic =
   return camera;
 }
 
-/// Pixels from the middle, y down, of a picture `height` pixels high.
+/// Pixels from the centre, y down, of a picture `height` pixels high.
 vec2 pixel_of(const scene::Camera& camera, const vec3& point, float height) {
   const vec3 d = point - eye_of(camera);
   const float half =
@@ -30,7 +30,7 @@ vec2 pixel_of(const scene::Camera& camera, const vec3& point, float height) {
 
 }  // namespace
 
-TEST_CASE("a dragged lamp stays under the pointer, and as far from the camera's plane") {
+TEST_CASE("a dragged lamp stays under the pointer and in its plane parallel to the picture") {
   for (const bool orthographic : {false, true}) {
     const scene::Camera camera = camera_at({3, 2, 5}, {0, 1, -1}, orthographic);
     const vec3 from(0.5f, 2.2f, -0.7f);
@@ -44,7 +44,7 @@ TEST_CASE("a dragged lamp stays under the pointer, and as far from the camera's 
   }
 }
 
-TEST_CASE("with Shift it moves straight up and down, as the pointer does") {
+TEST_CASE("with Shift it moves vertically, following the pointer's height") {
   for (const vec3 eye : {vec3(3, 2, 5), vec3(1, 6, 3)}) {
     // Far away, where height changes the distance little.
     const scene::Camera camera = camera_at(100.0f * eye, {0, 1, -1});
@@ -56,19 +56,19 @@ TEST_CASE("with Shift it moves straight up and down, as the pointer does") {
     const vec2 moved = pixel_of(camera, to, 540) - pixel_of(camera, from, 540);
     CHECK(moved.y == Approx(-3).epsilon(0.03));
   }
-  // From straight above there is no such way; it must not go off.
+  // Seen from exactly above there is no vertical motion; the lamp must not jump.
   scene::Camera above;
   above.to_world = glm::inverse(glm::lookAt(vec3(0, 10, 0), vec3(0), vec3(0, 0, -1)));
   above.yfov = 0.8f;
   const vec3 to = dragged(above, vec3(0), {0, 100}, 500, true);
   CHECK(std::abs(to.y) < 20);
-  // Of a head down camera too it follows the pointer.
+  // It also follows the pointer with an upside-down camera.
   scene::Camera rolled = camera_at({0, 1, 8}, {0, 1, 0});
   rolled.to_world[0] = -rolled.to_world[0], rolled.to_world[1] = -rolled.to_world[1];
   CHECK(dragged(rolled, vec3(0), {0, -40}, 500, true).y < 0);
 }
 
-TEST_CASE("a lamp at the camera's place or behind it does not jump") {
+TEST_CASE("a lamp at the camera's position or behind it does not jump") {
   const scene::Camera camera = camera_at({0, 1, 4}, {0, 1, 0});
   for (const vec3 from : {vec3(0, 1, 4), vec3(0, 1, 9)})
     CHECK(dragged(camera, from, {50, 20}, 500, false) == from);

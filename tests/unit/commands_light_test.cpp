@@ -1,5 +1,5 @@
 // links: commands
-// Lights edited by commands: lamps, materials that emit, the environment, the light mix.
+// Light edits by command: lamps, emissive materials, the environment, the light mix.
 #include "base/blackbody.h"
 #include "unit/workspace_bench.h"
 
@@ -8,7 +8,7 @@ using namespace lucerna::commands;
 using namespace lucerna::test;
 using Catch::Contains;
 
-TEST_CASE("materials are edited like lights, and keep what is not given") {
+TEST_CASE("materials are edited like lights, and keep properties that are not given") {
   WorkspaceBench b;
   b.open();
   const Document before = b.work.document();
@@ -34,23 +34,23 @@ TEST_CASE("materials are edited like lights, and keep what is not given") {
   CHECK_THAT(b.failure("material.set 1 color=1,2,0"), Contains("color"));
 }
 
-TEST_CASE("a lamp's colour, power, cone, place and direction are edited") {
+TEST_CASE("a lamp's colour, power, cone, position and direction are edited") {
   WorkspaceBench b;
   b.open();
   const Document before = b.work.document();
-  // A sun: by its place in the sky, from the east and 30 degrees up.
+  // A sun by its position in the sky: from the east and 30 degrees up.
   b.run("light.set Sun azimuth=90 elevation=30 kelvin=5000");
   const scene::Light sun = b.work.light(0);
   CHECK(glm::length(sun.direction - vec3(-std::cos(k_pi / 6), -0.5f, 0)) < 1e-6f);
   CHECK(glm::length(sun.intensity - 3.1f * blackbody_color(5000)) < 1e-5f);
-  b.run("light.set Sun azimuth=180");  // from the south; its height stays
+  b.run("light.set Sun azimuth=180");  // from the south; its elevation stays
   CHECK(glm::length(b.work.light(0).direction - vec3(0, -0.5f, -std::cos(k_pi / 6))) < 1e-6f);
   // A point lamp: 100 W in all directions.
   b.run("light.set 2 power=100 position=1,2,3");
   CHECK(b.work.light(1).intensity.x == Approx(100 / (4 * k_pi)));
   CHECK(b.work.light(1).intensity.y / b.work.light(1).intensity.x == Approx(9.0 / 12));  // the colour stays
   CHECK(b.work.light(1).position == vec3(1, 2, 3));
-  // A spot: the sum over its cone, by quadrature of what the shader does.
+  // A spot: the integral over its cone, by quadrature of the shader's formula.
   b.run("light.set 3 cone=40 inner_cone=20 power=10 direction=0,-2,0");
   const scene::Light spot = b.work.light(2);
   double sr = 0;
@@ -61,7 +61,7 @@ TEST_CASE("a lamp's colour, power, cone, place and direction are edited") {
   }
   CHECK(spot.intensity.x * sr == Approx(10).epsilon(1e-4));
   CHECK(spot.direction == vec3(0, -1, 0));
-  b.run("light.set 3 cone=10");  // takes the inner one with it
+  b.run("light.set 3 cone=10");  // reduces the inner cone too
   CHECK(b.work.light(2).inner_cone == b.work.light(2).outer_cone);
   b.run("light.set 3 inner_cone=15");
   CHECK(b.work.light(2).outer_cone * 180 / k_pi == Approx(15));
@@ -93,7 +93,7 @@ TEST_CASE("a lamp's colour, power, cone, place and direction are edited") {
   CHECK(b.work.document() == before);
 }
 
-TEST_CASE("what a surface emits is edited as a lamp is, and switched off without being forgotten") {
+TEST_CASE("a surface's emission is edited like a lamp, and switched off without losing its values") {
   WorkspaceBench b;
   b.open();
   const Document before = b.work.document();
@@ -129,7 +129,7 @@ TEST_CASE("what a surface emits is edited as a lamp is, and switched off without
   CHECK_THAT(b.failure("material.set Filament emission_color=0,0,0"), Contains("at least one channel"));
 }
 
-TEST_CASE("a dropped image lights the scene until it is undone, unless it cannot be read") {
+TEST_CASE("a dropped image lights the scene until undone, unless it cannot be read") {
   WorkspaceBench b;
   b.open();
   const auto folder = std::filesystem::temp_directory_path();
@@ -153,7 +153,7 @@ TEST_CASE("a dropped image lights the scene until it is undone, unless it cannot
   REQUIRE(b.until([&] { return b.work.scene->environment.file == file.string(); }));
   b.run("environment.own");
   REQUIRE(b.until([&] { return b.work.scene->environment.file != file.string(); }));
-  // As bright and as turned as the scene has it, not as what was there before.
+  // Scale and rotation are the scene's, not those of the previous image.
   REQUIRE(b.settled());
   CHECK(b.work.environment_scale() == own.scale);
   CHECK(b.work.environment_rotation() == own.rotation);
@@ -163,7 +163,7 @@ TEST_CASE("a dropped image lights the scene until it is undone, unless it cannot
   REQUIRE(b.until([&] { return b.work.environment_file().empty(); }));
   CHECK(b.errors == 1);
 
-  // What is refused leaves everything as it was: the light, what can be undone, the script.
+  // A refused file leaves light, undo and script unchanged.
   b.run("environment.load " + quote(file.string()));
   b.run("environment.set scale=3 rotation=45");
   const std::string undone = b.work.undo_text();
@@ -184,7 +184,7 @@ TEST_CASE("a dropped image lights the scene until it is undone, unless it cannot
   CHECK(b.work.scene->environment.file == file.string());
   b.run("environment.own");
   REQUIRE(b.until([&] { return b.work.scene->environment.file != file.string(); }));
-  // Two on their way: what the last one that can be read brings.
+  // Two loads in progress: the last readable one wins.
   b.run("environment.load " + quote(file.string())), b.run("environment.load " + quote(broken.string()));
   REQUIRE(b.until([&] { return b.errors == 3 && b.work.environment_file() == file.string(); }));
   b.run("environment.own"), b.run("environment.load " + quote(broken.string()));
@@ -222,31 +222,31 @@ TEST_CASE("a light mix is set, kept, blended, undone and written into the lights
   REQUIRE(b.settled());
   CHECK(b.session.settings().text("relight.mix") == b.work.setting("relight.mix"));
 
-  // Steps of a drag are one.
+  // The steps of a drag are one undo step.
   const std::string before = b.work.setting("relight.mix");
   for (const char* ev : {"1", "2", "3"}) b.run(std::string("mix.set Sun ev=") + ev, 7);
   CHECK(b.work.light_mix().at("Sun").ev == 3);
   b.run("undo");
   CHECK(b.work.setting("relight.mix") == before);
 
-  // What cannot be done is said, and changes nothing.
+  // An invalid command is reported, and changes nothing.
   CHECK_THAT(b.failure("mix.set Moon ev=1"), Contains("'Moon'") && Contains("sky, Sun, Brass lamp"));
   CHECK_THAT(b.failure("mix.set sky kelvin=0"), Contains("kelvin"));
   CHECK_THAT(b.failure("mix.set sky ev=1 factor=2"), Contains("exclude"));
   CHECK_THAT(b.failure("mix.preset.load noon"), Contains("'noon'") && Contains("evening, morning"));
   CHECK(b.work.setting("relight.mix") == before);
-  // Rules of groups part at = and ;, and any character stands for these in a name.
+  // Group rules use = and ; as separators, so the wildcard ? replaces them in names.
   b.run("mix.group \"a=b; c\" d");
   CHECK_THAT(b.work.setting("relight.groups"), Contains("a?b? c=d"));
   b.run("undo");
   b.run("mix.preset.delete morning");
   CHECK(b.work.mix_presets().size() == 1);
-  // A preset of another scene: what is here of it is taken up.
+  // A preset of another scene: the groups that exist here are applied.
   b.run("set relight.presets \"other = Chandelier: mute; Sun: ev=-1\"");
   b.run("mix.preset.load other");
   CHECK(scene::mix_weights(b.work.light_mix(), b.work.light_groups())[1] == vec3(0.5f));
 
-  // Into the lights: a lamp that is mute is off, an environment takes no colour.
+  // Into the lights: a muted lamp is switched off, an environment has no colour.
   b.run("set relight.mix \"Sun: ev=1 color=1,0.5,1; Brass lamp: mute; sky: color=1,0.5,0.5\"");
   const Document unmixed = b.work.document();
   b.run("mix.apply");

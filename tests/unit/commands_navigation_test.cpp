@@ -1,6 +1,6 @@
 // links: commands
-// Where one looks from and what one looks at, by commands: the camera, kept views, walking, exposure,
-// selection, a component alone.
+// Navigation and selection by command: the camera, bookmarks, walking, exposure, selection, solo of a
+// component.
 #include "unit/workspace_bench.h"
 
 using namespace lucerna;
@@ -8,7 +8,7 @@ using namespace lucerna::commands;
 using namespace lucerna::test;
 using Catch::Contains;
 
-TEST_CASE("solo shows one component, moves to another and comes back") {
+TEST_CASE("solo shows one component, switches to another and is switched off") {
   WorkspaceBench b;
   b.open();
   b.run("view.show caustic off");
@@ -32,7 +32,7 @@ TEST_CASE("a click selects the object, then its material, then nothing") {
   WorkspaceBench b;
   b.open();
   b.work.aspect = 2;
-  b.run("camera.place 3,1.5,20 1,0.5,-1.5 0,1,0");  // the triangle's middle in the middle
+  b.run("camera.place 3,1.5,20 1,0.5,-1.5 0,1,0");  // the triangle's middle in the centre
   b.run("pick 0.5 0.5");
   CHECK(b.work.selection == Selection{Kind::instance, 0});
   CHECK(b.work.selection_name() == "column 0");
@@ -45,7 +45,7 @@ TEST_CASE("a click selects the object, then its material, then nothing") {
   CHECK(script[script.size() - 2] == "select material 1");
 }
 
-TEST_CASE("moves of the camera are undone, a drag as one step, among all other steps") {
+TEST_CASE("camera moves are undone like all other steps, a drag as one step") {
   WorkspaceBench b;
   b.open();
   const Viewpoint start = *b.work.view;
@@ -78,11 +78,11 @@ TEST_CASE("moves of the camera are undone, a drag as one step, among all other s
   CHECK(b.work.setting_real("film.ev") == 1);
   b.run("undo");
   CHECK(b.work.scene_camera == 2);
-  b.run("camera.select Detail");  // moves nothing
+  b.run("camera.select Detail");  // no move
   CHECK(b.work.can_redo());
 }
 
-TEST_CASE("views are kept by name, for their scene") {
+TEST_CASE("bookmarks are stored by name for their scene") {
   WorkspaceBench b;
   b.open();
   const Viewpoint start = *b.work.view;
@@ -97,7 +97,7 @@ TEST_CASE("views are kept by name, for their scene") {
   b.run("camera.go \"From the stage\"");
   CHECK(glm::length(forward_of(b.work.view->camera) - forward_of(other.camera)) < 1e-5f);
   CHECK(b.work.view->camera.yfov == Approx(30 * k_pi / 180));
-  // A script of the session needs no bookmark that it has not made.
+  // A session's script needs no bookmark that it has not created.
   CHECK_THAT(b.work.script().back(), Catch::StartsWith("camera.place "));
   CHECK(b.work.bookmarks_here().size() == 2);
   CHECK_THAT(b.failure("camera.go \"From the sage\""), Contains("did you mean 'From the stage'?"));
@@ -114,12 +114,12 @@ TEST_CASE("views are kept by name, for their scene") {
   CHECK(b.work.bookmarks_here().size() == 1);
 }
 
-TEST_CASE("walking by commands keeps to the floor") {
+TEST_CASE("walking by command stays on the floor") {
   WorkspaceBench b;
   b.open();
   CHECK_THAT(b.failure("camera.walking on"), Contains("there is no floor below the camera"));
   CHECK_FALSE(b.work.walking);
-  // The fake's one triangle is a ramp: it rises by 3 m on 8 m towards +z.
+  // The fake scene's triangle is a ramp: it rises by 3 m over 8 m towards +z.
   b.run("camera.place 2,1,-3 2,1,-2 0,1,0");
   b.run("camera.walking on");
   CHECK(b.work.walking);
@@ -134,10 +134,10 @@ TEST_CASE("walking by commands keeps to the floor") {
   CHECK_THAT(b.failure("camera.walk nan 1"), Contains("expected a number"));
 }
 
-TEST_CASE("the exposure is found by command, at a point, and at load where that is wanted") {
+TEST_CASE("exposure is measured by command, at a point, and on loading if set") {
   WorkspaceBench b;
   b.open();
-  CHECK(b.work.setting_real("film.ev") == 0);  // nobody at a window, nobody has asked
+  CHECK(b.work.setting_real("film.ev") == 0);  // no window, and no command
   b.run("exposure.find");
   CHECK(b.work.setting_real("film.ev") == 2.5);
   CHECK(b.work.script().back() == "set film.ev 2.5");
@@ -157,7 +157,7 @@ TEST_CASE("the exposure is found by command, at a point, and at load where that 
   REQUIRE(b.until([&] { return b.work.setting_real("film.ev") == 2.5; }));
   CHECK(b.work.undo_text() == "set film.ev 2.5");
   b.run("scene.open third.gltf");
-  b.run("set film.ev -1");  // somebody's own
+  b.run("set film.ev -1");  // the user's own value
   b.run("wait_scene");
   CHECK_FALSE(b.until([&] { return b.work.setting_real("film.ev") != -1; }, 0.5));
 }

@@ -1,6 +1,6 @@
 // links: commands
-// In what order lines act, and on which scene: each on what the lines before have left, and on the scene that
-// it was given for. Over a session without a renderer.
+// The order in which commands act, and on which scene: each on the state left by the previous ones, and on
+// the scene that it was given for. Over a session without a renderer.
 #include "support/folder.h"
 #include "unit/workspace_bench.h"
 
@@ -11,14 +11,14 @@ using Catch::Contains;
 
 namespace {
 
-/// Until the session has carried out all that it was given.
+/// Waits until the session has executed every command.
 bool quiet(WorkspaceBench& b) {
   return b.until([&] { return b.work.up_to_date() && !b.work.loading(); });
 }
 
 }  // namespace
 
-TEST_CASE("a camera and a size reach the session before what is commanded next") {
+TEST_CASE("a camera and a size reach the session before the next command") {
   WorkspaceBench b;
   b.open();
   REQUIRE(quiet(b));
@@ -35,14 +35,14 @@ TEST_CASE("a camera and a size reach the session before what is commanded next")
   REQUIRE(quiet(b));
   CHECK(same_view(b.work.snapshot->camera, b.work.scene->cameras[2]));
   CHECK(b.work.snapshot->width == 80);
-  // What changes nothing starts no picture again.
+  // A command that changes nothing does not restart the picture.
   const uint64_t given = b.session.commands();
   b.work.run("camera.select Detail");
   b.work.set_size(80, 50);
   CHECK(b.session.commands() == given);
 }
 
-TEST_CASE("of cameras that wait behind each other only the last is drawn") {
+TEST_CASE("of several queued cameras only the last is rendered") {
   WorkspaceBench b;
   b.open();
   REQUIRE(quiet(b));
@@ -56,7 +56,7 @@ TEST_CASE("of cameras that wait behind each other only the last is drawn") {
   CHECK(same_view(b.work.snapshot->camera, b.work.view->camera));
 }
 
-TEST_CASE("no command takes the camera where nothing can be rendered") {
+TEST_CASE("no command places the camera where nothing can be rendered") {
   WorkspaceBench b;
   b.open();
   const Viewpoint start = *b.work.view;
@@ -66,7 +66,7 @@ TEST_CASE("no command takes the camera where nothing can be rendered") {
     std::string failure;
     for (int i = 0; i < 3 && failure.empty(); ++i) failure = b.failure(line);
     if (std::string(line).starts_with("camera.walk") || std::string(line).starts_with("camera.place"))
-      CHECK(failure.empty());  // just within
+      CHECK(failure.empty());  // just inside
     else
       CHECK_THAT(failure, Contains("1e+09 m from the origin"));
     const vec3 eye = eye_of(b.work.view->camera);
@@ -76,7 +76,7 @@ TEST_CASE("no command takes the camera where nothing can be rendered") {
   CHECK_FALSE(b.failure("light.set 2 position=1e10,0,0").empty());
 }
 
-TEST_CASE("what is done while a scene is being loaded does not reach the new one") {
+TEST_CASE("edits during loading do not reach the new scene") {
   WorkspaceBench b;
   b.open();
   b.run("light.set 2 intensity=1");
@@ -93,7 +93,7 @@ TEST_CASE("what is done while a scene is being loaded does not reach the new one
     try {
       b.work.run(line);
     } catch (const Error&) {
-      // Refused: that is as good.
+      // Refused, which is valid too.
     }
     b.run("wait_scene");
     REQUIRE(quiet(b));
@@ -109,7 +109,7 @@ TEST_CASE("what is done while a scene is being loaded does not reach the new one
   }
 }
 
-TEST_CASE("what is done while a load fails stays done") {
+TEST_CASE("edits during a load that fails are kept") {
   WorkspaceBench b;
   b.open();
   REQUIRE(quiet(b));
@@ -125,7 +125,7 @@ TEST_CASE("what is done while a load fails stays done") {
   CHECK(b.work.script().size() == 4);
 }
 
-TEST_CASE("two loads in a row: the first one is shown when the second fails") {
+TEST_CASE("two loads in a row: the first is shown when the second fails") {
   WorkspaceBench b;
   b.open();
   b.run("camera.orbit 0.3 0");
@@ -143,7 +143,7 @@ TEST_CASE("two loads in a row: the first one is shown when the second fails") {
   CHECK_THROWS_WITH(b.work.registry.find("wait_scene")->done({}), "no scene was loaded");
 }
 
-TEST_CASE("a load that is given up leaves no trace") {
+TEST_CASE("a cancelled load leaves no trace") {
   WorkspaceBench b;
   b.open();
   b.run("scene.open slow.gltf");
@@ -153,7 +153,7 @@ TEST_CASE("a load that is given up leaves no trace") {
   CHECK(b.work.scene->name == "hall");
 }
 
-TEST_CASE("the camera to start with is no way to move the camera") {
+TEST_CASE("the start camera is not a way to move the camera") {
   WorkspaceBench b;
   b.run("scene.open hall.gltf");
   b.run("camera Detail");
@@ -162,13 +162,13 @@ TEST_CASE("the camera to start with is no way to move the camera") {
   CHECK_THAT(b.failure("reset camera"), Contains("camera.select takes another one now"));
   CHECK_THAT(b.failure("set camera Entrance"), Contains("camera.select takes another one now"));
   CHECK(b.work.setting("camera") == "Detail");
-  // Whoever moves it, the view is the picture's.
+  // Any move updates the view to the picture's camera.
   b.session.set_camera(b.work.scene->cameras[1]);
   REQUIRE(quiet(b));
   CHECK(same_view(b.work.view->camera, b.work.scene->cameras[1]));
 }
 
-TEST_CASE("what the session refuses is neither undone nor saved") {
+TEST_CASE("a refused edit is neither undoable nor saved") {
   WorkspaceBench b;
   b.open();
   b.run("light.set 2 intensity=5");
@@ -181,7 +181,7 @@ TEST_CASE("what the session refuses is neither undone nor saved") {
   CHECK(b.work.script() == before);
   CHECK(b.work.document() == document);
   CHECK_THAT(b.work.undo_text(), Catch::StartsWith("light.set"));
-  // A step that was made before the refusal was known does not bring it back.
+  // A step made before the refusal was known does not restore it.
   b.run("set relight.mix nonsense"), b.run("light.set 1 intensity=7");
   REQUIRE(quiet(b));
   const uint64_t errors = b.errors;
@@ -189,7 +189,7 @@ TEST_CASE("what the session refuses is neither undone nor saved") {
   REQUIRE(quiet(b));
   CHECK(b.errors == errors);
   CHECK(b.work.document() == document);
-  // A drag of which the last step alone is refused can be undone.
+  // A drag of which only the last step is refused can be undone.
   b.run("set relight.mix \"sky: ev=1\"", 3), b.run("set relight.mix nonsense", 3);
   REQUIRE(quiet(b));
   CHECK_THAT(b.work.undo_text(), Contains("relight.mix"));
@@ -198,7 +198,7 @@ TEST_CASE("what the session refuses is neither undone nor saved") {
   REQUIRE(quiet(b));
   CHECK(b.work.setting("relight.mix").empty());
   CHECK(b.work.light(1).intensity.x == Approx(12));
-  // A file that cannot be read leaves the one before, as bright and as turned as it was.
+  // A file that cannot be read keeps the previous one with its scale and rotation.
   const Folder folder;
   for (const char* name : {"red.exr", "broken.exr"}) std::ofstream(folder.path / name) << "x";
   b.run("environment.load " + quote((folder.path / "red.exr").string()));
@@ -211,7 +211,7 @@ TEST_CASE("what the session refuses is neither undone nor saved") {
   CHECK_THAT(b.work.undo_text(), Catch::StartsWith("environment.set"));
 }
 
-TEST_CASE("a size that is refused is given up") {
+TEST_CASE("a refused size is dropped") {
   WorkspaceBench b;
   b.open();
   b.work.set_size(64, 64);
@@ -225,7 +225,7 @@ TEST_CASE("a size that is refused is given up") {
   CHECK(b.work.snapshot->width == 32);
 }
 
-TEST_CASE("a wait for samples that will not come says so") {
+TEST_CASE("a wait for samples that will never come is reported") {
   WorkspaceBench b;
   b.open();
   REQUIRE(b.until([&] { return b.work.up_to_date() && b.work.snapshot->samples >= 3; }));
@@ -234,7 +234,7 @@ TEST_CASE("a wait for samples that will not come says so") {
   REQUIRE(quiet(b));
   CHECK(few.command->done(few.arguments));
   CHECK_THROWS_WITH(many.command->done(many.arguments), Contains("rendering is paused; render.resume"));
-  // A script of it waits for what the picture had when it was stopped.
+  // Its script waits for the number of samples at which the picture was stopped.
   b.run("image.save /tmp/never.exr");
   const std::vector<std::string> lines = b.work.script();
   REQUIRE(lines.size() == 6);
@@ -243,7 +243,7 @@ TEST_CASE("a wait for samples that will not come says so") {
   CHECK(lines[4] == lines[2]);
 }
 
-TEST_CASE("a view of either kind is taken from a camera of either kind") {
+TEST_CASE("a view of either projection is applied to a camera of either projection") {
   WorkspaceBench b;
   b.open();
   b.work.set_size(96, 64);
@@ -265,7 +265,7 @@ TEST_CASE("a view of either kind is taken from a camera of either kind") {
   CHECK_THAT(b.failure("camera.place 0,1,3 0,1,0 0,1,0 height=2 fov=40"), Contains("exclude each other"));
 }
 
-TEST_CASE("the aspect is that of the picture") {
+TEST_CASE("the aspect ratio is that of the picture") {
   WorkspaceBench b;
   b.open();
   REQUIRE(quiet(b));
@@ -275,7 +275,7 @@ TEST_CASE("the aspect is that of the picture") {
   CHECK(b.work.aspect == 0.5f);
 }
 
-TEST_CASE("a mix that is written into the lights reaches the session as one edit, and comes back as one") {
+TEST_CASE("a mix written into the lights is one edit for the session, and so is its undo") {
   WorkspaceBench b;
   b.open();
   b.run("mix.set \"Brass lamp\" ev=1");

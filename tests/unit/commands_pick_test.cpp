@@ -1,6 +1,5 @@
 // links: session
-// What a click finds: instances and their matrices, the nearest surface, holes of masked materials, both
-// kinds of camera.
+// Picking: instances and their matrices, the nearest surface, holes of masked materials, both projections.
 #include <catch2/catch.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
@@ -45,7 +44,7 @@ scene::Camera camera(bool orthographic = false) {
 
 }  // namespace
 
-TEST_CASE("the nearest surface under the point is found, in the world") {
+TEST_CASE("the nearest surface under the point is found, in world space") {
   const scene::Scene s = make_scene();
   for (const bool orthographic : {false, true}) {
     const auto middle = session::pick(s, camera(orthographic), 0.5f, 0.5f, 1.5f);
@@ -68,7 +67,7 @@ TEST_CASE("the nearest surface under the point is found, in the world") {
   CHECK_FALSE(session::pick(scene::Scene{}, camera(), 0.5f, 0.5f, 1.5f));
 }
 
-TEST_CASE("a perspective ray goes through the point that it was asked for") {
+TEST_CASE("a perspective ray passes through the requested point") {
   const scene::Scene s = make_scene();
   const scene::Camera c = camera();
   const vec3 wanted(0.6f, -0.3f, 0);  // on the first square
@@ -80,7 +79,7 @@ TEST_CASE("a perspective ray goes through the point that it was asked for") {
   CHECK(glm::length(hit->position - wanted) < 1e-5f);
 }
 
-TEST_CASE("one sees through the holes of a mask and through thin cover") {
+TEST_CASE("picking sees through the holes of a mask and through thin coverage") {
   scene::Scene s = make_scene();
   s.images.push_back({.name = "", .width = 2, .height = 1, .bytes = {255, 255, 255, 255, 255, 255, 255, 0}});
   s.textures.push_back({.image = 0});
@@ -94,12 +93,12 @@ TEST_CASE("one sees through the holes of a mask and through thin cover") {
   s.materials[1].alpha_mode = scene::AlphaMode::blend;
   s.materials[1].base_color.w = 0.2f;
   CHECK(at(0.5f) == 2);
-  s.materials[0].base_color_texture.m = {1, 0, 0.5f, 0, 1, 0};  // moved by half: wraps round
+  s.materials[0].base_color_texture.m = {1, 0, 0.5f, 0, 1, 0};  // shifted by half: wraps around
   CHECK(at(-0.5f) == 2);
   CHECK(at(0.5f) == 0);
 }
 
-TEST_CASE("many rays by the tree find what one ray against all triangles finds") {
+TEST_CASE("many rays with the tree give the result of one ray against all triangles") {
   auto s = std::make_shared<scene::Scene>(make_scene());
   // The first square has holes: a checkerboard of 8 x 8 texels.
   scene::Image image;

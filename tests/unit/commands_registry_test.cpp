@@ -42,7 +42,7 @@ Registry one_of_each() {
 
 }  // namespace
 
-TEST_CASE("words are cut and written so that they come back") {
+TEST_CASE("words are split and quoted so that they round-trip") {
   const auto texts = [](std::string_view line) {
     std::vector<std::string> list;
     for (const Word& w : split(line)) list.push_back(w.text);
@@ -62,7 +62,7 @@ TEST_CASE("words are cut and written so that they come back") {
   CHECK(last_word("ab \"c d") == 3);
 }
 
-TEST_CASE("numbers are written shortest and read whole") {
+TEST_CASE("numbers are written in shortest form and read in full") {
   for (const float v : {0.1f, -1e-7f, 16777216.0f, 3.14159274f, 1e30f}) {
     double back = 0;
     REQUIRE(read_number(number_text(v), back));
@@ -81,7 +81,7 @@ TEST_CASE("numbers are written shortest and read whole") {
   CHECK(v == vec3(1, -0.5f, 2000));
 }
 
-TEST_CASE("a mistyped word finds what was meant, and nothing when nothing is near") {
+TEST_CASE("a mistyped word gets the nearest suggestion, or none if nothing is near") {
   const std::vector<std::string> known{"camera.orbit", "camera.pan", "film.ev", "render.restart", "quit"};
   CHECK(nearest("camera.orbti", known) == "camera.orbit");
   CHECK(nearest("Camera.Pan", known) == "camera.pan");
@@ -93,7 +93,7 @@ TEST_CASE("a mistyped word finds what was meant, and nothing when nothing is nea
   CHECK(nearest("", known).empty());
 }
 
-TEST_CASE("bad input of each type is refused with what was expected") {
+TEST_CASE("invalid input of each type is refused with the expected form") {
   const Registry r = one_of_each();
   const auto fails = [&](const std::string& line) { return failure(r, line, "script: line 2"); };
   CHECK(fails("thing.set a on=on count=3 size=0.5 at=0,0,1 mode=good out=x.png").empty());
@@ -116,7 +116,7 @@ TEST_CASE("bad input of each type is refused with what was expected") {
   CHECK_THAT(fails("zzzzz"), Contains("unknown command 'zzzzz'; 'help' lists the commands"));
 }
 
-TEST_CASE("a quoted word is a value, whatever it holds") {
+TEST_CASE("a quoted word is a value, whatever its content") {
   const Registry r = one_of_each();
   CHECK(r.parse("thing.set \"size=2\"").arguments.text("thing") == "size=2");
   CHECK(r.parse("thing.set thing=\"a b\"").arguments.text("thing") == "a b");
@@ -126,7 +126,7 @@ TEST_CASE("a quoted word is a value, whatever it holds") {
   CHECK(r.target(r.parse("thing.set a size=2")) != r.target(r.parse("thing.set a count=2")));
 }
 
-TEST_CASE("every command of the workspace is read, written and read again as the same") {
+TEST_CASE("every command of the workspace round-trips through its text") {
   session::Session session({});
   Workspace work(session);
   CHECK(test::round_trip(work.registry) > 150);
@@ -139,7 +139,7 @@ TEST_CASE("every command of the workspace is read, written and read again as the
   }
 }
 
-TEST_CASE("settings are commands, with the table's own messages") {
+TEST_CASE("settings are commands, with the option table's messages") {
   session::Session session({});
   Workspace work(session);
   CHECK(work.registry.print(work.registry.parse("film.ev=1.50")) == "set film.ev 1.50");
@@ -154,7 +154,7 @@ TEST_CASE("settings are commands, with the table's own messages") {
   CHECK_THROWS_WITH(work.manual("camera.orbti"), Contains("did you mean 'camera.orbit'?"));
 }
 
-TEST_CASE("what is typed is completed") {
+TEST_CASE("partial input is completed") {
   const auto folder =
       std::filesystem::temp_directory_path() / ("lucerna-complete-" + std::to_string(getpid()));
   std::filesystem::create_directories(folder / "sub");

@@ -1,6 +1,6 @@
 // links: commands
-// What a person works on, over a session without a renderer: edits, undo, failures, and the script of a
-// session that does it all again.
+// The workspace over a session without a renderer: edits, undo, failures, and a session script that repeats
+// everything.
 #include "unit/workspace_bench.h"
 
 using namespace lucerna;
@@ -8,7 +8,7 @@ using namespace lucerna::commands;
 using namespace lucerna::test;
 using Catch::Contains;
 
-TEST_CASE("edits are seen at once, reach the session, and are undone and done again") {
+TEST_CASE("edits are visible immediately, reach the session, and can be undone and redone") {
   WorkspaceBench b;
   b.open();
   const Document before = b.work.document();
@@ -42,24 +42,24 @@ TEST_CASE("edits are seen at once, reach the session, and are undone and done ag
   CHECK_FALSE(b.work.can_redo());
 
   b.run("undo");
-  b.run("film.ev -1");  // a new step ends what could be done again
+  b.run("film.ev -1");  // a new step ends the redo list
   CHECK_FALSE(b.work.can_redo());
 }
 
-TEST_CASE("an edit is shown until the session has carried it out, however busy that is") {
+TEST_CASE("an edit is shown until the session has executed it, however busy the session is") {
   WorkspaceBench b;
   b.open();
   session::fake::busy_ms = 100;
   b.run("film.ev 1.5");
   b.run("light.set 1 on=false");
   b.work.refresh(b.timer.seconds() + 1000);
-  CHECK(b.session.settings().real("film.ev") == 0);  // it is on its way
+  CHECK(b.session.settings().real("film.ev") == 0);  // it is queued
   CHECK(b.work.setting_real("film.ev") == 1.5);
   CHECK_FALSE(b.work.light(0).enabled);
   session::fake::busy_ms = 0;
   REQUIRE(b.settled());
   CHECK(b.work.setting_real("film.ev") == 1.5);
-  // Then what the session holds is shown, whoever has set it.
+  // Then the session's value is shown, whatever has set it.
   b.session.set("film.ev", "0.25");
   REQUIRE(b.until([&] { return b.work.setting_real("film.ev") == 0.25; }));
 }
@@ -71,7 +71,7 @@ TEST_CASE("a drag is one step; another drag, another control or no drag is anoth
   b.run("film.ev 3", 8);
   b.run("environment.set scale=2", 8);
   b.run("environment.set rotation=10", 8);
-  b.run("film.ev 3");  // nothing changes: no step
+  b.run("film.ev 3");  // no change: no step
   int steps = 0;
   for (; b.work.can_undo(); ++steps) b.run("undo");
   CHECK(steps == 4);
@@ -81,7 +81,7 @@ TEST_CASE("a drag is one step; another drag, another control or no drag is anoth
   CHECK(script.size() == 6 + 4);
 }
 
-TEST_CASE("the steps of a drag give what its last step alone gives") {
+TEST_CASE("the steps of a drag give the result of its last step alone") {
   WorkspaceBench dragged, at_once;
   dragged.open(), at_once.open();
   for (int i = 0; i < 200; ++i)
@@ -92,7 +92,7 @@ TEST_CASE("the steps of a drag give what its last step alone gives") {
   CHECK(dragged.work.light(0).intensity == vec3(3.1f, 2.9f, 2.6f));
 }
 
-TEST_CASE("what cannot be done says why and changes nothing") {
+TEST_CASE("a failed command reports the reason and changes nothing") {
   WorkspaceBench b;
   b.refresh();
   CHECK_THAT(b.failure("camera.orbit 1 0"), Contains("camera.orbit: there is no picture yet"));
@@ -113,10 +113,10 @@ TEST_CASE("what cannot be done says why and changes nothing") {
   CHECK_THAT(b.failure("script.save /no/such/folder/x.lucerna"), Contains("cannot be written: No such file"));
   CHECK(b.work.document() == before);
   CHECK_FALSE(b.work.can_undo());
-  CHECK(b.work.script().size() == 2);  // the scene alone
+  CHECK(b.work.script().size() == 2);  // the scene only
 }
 
-TEST_CASE("a failed load is noticed, and the scene before stays") {
+TEST_CASE("a failed load is reported, and the previous scene stays") {
   WorkspaceBench b;
   b.open();
   b.run("select light 2");
@@ -128,7 +128,7 @@ TEST_CASE("a failed load is noticed, and the scene before stays") {
   CHECK_THROWS_WITH(wait->done({}), "no scene was loaded");
   CHECK(b.work.scene->name == "hall");
   CHECK(b.work.selection == Selection{Kind::light, 1});
-  CHECK(b.work.script().back() == "select light 2");  // a load that failed is not done again
+  CHECK(b.work.script().back() == "select light 2");  // a failed load is not repeated
   // Nor are pictures and records that could not be read.
   b.run("reference.load missing.exr"), b.run("cache.load missing.cache");
   REQUIRE(b.until([&] { return b.errors == 3; }));
@@ -139,21 +139,21 @@ TEST_CASE("a failed load is noticed, and the scene before stays") {
   b.open("other.gltf");
   CHECK(b.work.scene->name == "other");
   CHECK(b.work.selection == Selection{});
-  CHECK_FALSE(b.work.can_undo());  // steps of the scene before mean nothing here
+  CHECK_FALSE(b.work.can_undo());  // steps of the previous scene do not apply here
 }
 
-TEST_CASE("a session's script waits for the picture that was saved, and leaves out what failed") {
+TEST_CASE("a session's script waits for the saved picture, and omits failed commands") {
   WorkspaceBench b;
   b.open();
   b.run("set samples 12");
   b.run("wait_samples 12");
-  b.run("image.save /tmp/never.exr");  // written by nobody here
+  b.run("image.save /tmp/never.exr");  // the fake session writes no file
   const auto finished = b.work.script();
   CHECK(finished[finished.size() - 2] == "wait_samples 12 limit=86400");
   CHECK(finished.back() == "image.save /tmp/never.exr");
   CHECK(std::count_if(finished.begin(), finished.end(),
                       [](const std::string& line) { return line.starts_with("wait_samples"); }) == 1);
-  // A person's: no wait was said, and rendering was paused.
+  // The script of a user session: without a wait, and rendering was paused.
   WorkspaceBench p;
   p.open();
   REQUIRE(p.until([&] { return p.work.up_to_date() && p.work.snapshot->samples >= 5; }));
@@ -167,25 +167,25 @@ TEST_CASE("a session's script waits for the picture that was saved, and leaves o
   CHECK_THAT(lines[4], Catch::StartsWith("wait_samples "));
 }
 
-TEST_CASE("a setting made while a scene is being loaded is not lost") {
+TEST_CASE("a setting made while a scene is loading is kept") {
   WorkspaceBench b;
   b.run("scene.open slow.gltf");
   b.run("samples 64");
-  b.run("samples 256");  // the default, but who knows what the scene brings
+  b.run("samples 256");  // the default, but the scene may set another
   b.run("wait_scene");
   REQUIRE(b.settled());
   CHECK(b.until([&] { return b.session.settings().integer("samples") == 256; }));
   CHECK(b.work.script().size() == 4);
 }
 
-TEST_CASE("a saved session, done again, gives the same") {
+TEST_CASE("a repeated session script gives the same state") {
   const auto file =
       std::filesystem::temp_directory_path() / ("lucerna-session-" + std::to_string(getpid()) + ".lucerna");
   WorkspaceBench a;
   a.open();
   a.run("film.tone_curve agx");
   a.run("camera.select Detail");
-  for (int i = 0; i < 30; ++i) {  // a drag of the mouse, as the window makes it
+  for (int i = 0; i < 30; ++i) {  // a drag of the mouse, as the window sends it
     Viewpoint v = *a.work.view;
     orbit(v, {0.01f, 0.003f});
     a.run(Workspace::place_line(v), 11);
@@ -207,7 +207,7 @@ TEST_CASE("a saved session, done again, gives the same") {
   std::ifstream in(file);
   int lines = 0;
   for (std::string line; std::getline(in, line); ++lines) b.run(line);
-  CHECK(lines == 18);  // a remark, and the drags as one line each
+  CHECK(lines == 18);  // a comment, and the drags as one line each
   CHECK(b.work.document() == a.work.document());
   CHECK(b.work.solo() == 2);
   CHECK(b.work.selection == a.work.selection);

@@ -58,7 +58,7 @@ TEST_CASE("An image equals itself") {
   for (double ratio : c.mean_ratio) CHECK(ratio == 1);
 }
 
-TEST_CASE("Constant images have the figures that one computes by hand") {
+TEST_CASE("Constant images have the expected figures") {
   const Comparison c = film::compare(flat(32, 16, 2, 1, 0), flat(32, 16, 1, 1, 2));
   CHECK(c.rmse == Approx(std::sqrt(5.0 / 3)));
   CHECK(c.relmse == Approx((1 / 1.01 + 0 + 4 / 4.01) / 3));
@@ -77,7 +77,7 @@ TEST_CASE("The reference is the second image: the relative measure is not symmet
   CHECK(film::compare(bright, dark).relmse == Approx(0.81 / 0.02));
 }
 
-TEST_CASE("One wild pixel in a thousand is dropped by the trimmed measures, two are not") {
+TEST_CASE("One outlier in a thousand pixels is dropped by the trimmed measures, two are not") {
   FilmImage a = flat(25, 40, 1, 1, 1);
   const FilmImage b = a;
   a.channels[1].second[777] = 1000;
@@ -101,7 +101,7 @@ TEST_CASE("The 99th percentile is the nearest rank") {
   CHECK(film::compare(a, b).p99.absolute == Approx(99));
 }
 
-TEST_CASE("Values that are not finite are counted on each side and spoil nothing else") {
+TEST_CASE("Non-finite values are counted on each side and do not affect other figures") {
   FilmImage a = flat(8, 8, 1, 1, 1), b = flat(8, 8, 1, 1, 1);
   a.channels[0].second[3] = std::numeric_limits<float>::quiet_NaN();
   a.channels[1].second[3] = std::numeric_limits<float>::infinity();
@@ -114,7 +114,7 @@ TEST_CASE("Values that are not finite are counted on each side and spoil nothing
   CHECK(c.mean_ratio == std::vector<double>{1, 1, 1});
 }
 
-TEST_CASE("Pixels that are not finite are counted in every layer of either image") {
+TEST_CASE("Non-finite pixels are counted in every layer of either image") {
   const float nan = std::numeric_limits<float>::quiet_NaN(),
               infinity = std::numeric_limits<float>::infinity();
   FilmImage a = flat(8, 8, 1, 1, 1), b = flat(8, 8, 1, 1, 1);
@@ -135,7 +135,7 @@ TEST_CASE("Pixels that are not finite are counted in every layer of either image
   CHECK(film::to_text(film::compare(a, b)).find("caustic: 0 pixels") != std::string::npos);
 }
 
-TEST_CASE("Depth is infinite where nothing was hit, which is no fault") {
+TEST_CASE("Depth is infinite where no surface is hit, which is no fault") {
   const float nan = std::numeric_limits<float>::quiet_NaN(),
               infinity = std::numeric_limits<float>::infinity();
   FilmImage a = flat(4, 4, 1, 1, 1), b = a;
@@ -148,7 +148,7 @@ TEST_CASE("Depth is infinite where nothing was hit, which is no fault") {
   CHECK(film::non_finite_text(film::compare(a, b)) == "Z: 0 pixels of the first image, 1 of the second");
 }
 
-TEST_CASE("Block ratios see a local error that the mean hides") {
+TEST_CASE("Block ratios show a local error that the mean hides") {
   FilmImage a = flat(64, 64, 1, 1, 1);
   const FilmImage b = a;
   for (auto& [name, values] : a.channels)
@@ -161,7 +161,7 @@ TEST_CASE("Block ratios see a local error that the mean hides") {
   CHECK(c.blocks.p95 == Approx(1.5));
 }
 
-TEST_CASE("Black references divide nothing by zero") {
+TEST_CASE("A black reference causes no division by zero") {
   const Comparison both = film::compare(flat(4, 4, 0, 0, 0), flat(4, 4, 0, 0, 0));
   CHECK(both.mean_ratio == std::vector<double>{1, 1, 1});
   CHECK(both.blocks.count == 0);
@@ -170,7 +170,7 @@ TEST_CASE("Black references divide nothing by zero") {
   CHECK(nlohmann::json::parse(film::to_json(one))["mean_ratio"][0].is_null());
 }
 
-TEST_CASE("What cannot be compared is one located message") {
+TEST_CASE("Incomparable images give one located message") {
   const FilmImage a = flat(4, 4, 1, 1, 1);
   CHECK_THAT(error_of(a, flat(4, 5, 1, 1, 1), ""), Catch::Contains("4x4 and 4x5"));
   CHECK_THAT(error_of(a, a, "primary"),
@@ -187,7 +187,7 @@ TEST_CASE("What cannot be compared is one located message") {
   CHECK_THAT(error_of(a, a, "", {.block = 0}), Catch::Contains("block"));
 }
 
-TEST_CASE("JSON and text carry the figures") {
+TEST_CASE("JSON and text contain the figures") {
   const Comparison c = film::compare(noise(33, 2), noise(33, 3));
   const nlohmann::json json = nlohmann::json::parse(film::to_json(c));
   CHECK(json["layer"] == "rgb");
@@ -200,7 +200,7 @@ TEST_CASE("JSON and text carry the figures") {
   CHECK_THAT(film::to_text(c), Catch::Contains("relative MSE") && Catch::Contains("mean R"));
 }
 
-TEST_CASE("The difference picture shows size, channel and what is not finite") {
+TEST_CASE("The difference picture shows size, channel and non-finite values") {
   FilmImage a = flat(2, 2, 1, 1, 1);
   const FilmImage b = flat(2, 2, 1, 1, 1);
   a.channels[0].second[1] = 1.1f;

@@ -19,7 +19,7 @@ using film::FilmImage;
 
 namespace {
 
-/// A folder of its own for each test case, removed afterwards.
+/// A separate folder for each test case, removed afterwards.
 struct Folder : test::Folder {
   ~Folder() {
     std::error_code ignored;
@@ -109,14 +109,14 @@ TEST_CASE("Layers are found by name") {
                                                    "albedo", "N", "Z", "samples"});
 }
 
-TEST_CASE("Layers come in the order R G B whatever the file's order") {
+TEST_CASE("Layers are in the order R G B whatever the file's order") {
   FilmImage image{.width = 1, .height = 1, .channels = {}, .metadata = {}};
   for (const char* name : {"a.B", "a.G", "a.R", "n.Z", "n.X", "n.Y"}) image.channels.push_back({name, {0}});
   CHECK(image.layer("a") == std::vector<size_t>{2, 1, 0});
   CHECK(image.layer("n") == std::vector<size_t>{4, 5, 3});
 }
 
-TEST_CASE("A PNG keeps its pixels, and carries text") {
+TEST_CASE("A PNG keeps its pixels, and has text") {
   Folder folder;
   std::vector<uint8_t> rgba;
   for (int i = 0; i < 3 * 2 * 4; ++i) rgba.push_back(static_cast<uint8_t>(i % 4 == 3 ? 255 : 10 * i));
@@ -133,7 +133,7 @@ TEST_CASE("A PNG keeps its pixels, and carries text") {
   CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("Output follows the umask and replaces what was there") {
+TEST_CASE("Output follows the umask and replaces an existing file") {
   Folder folder;
   const fs::path file = folder.path / "a.exr";
   write_text(file, "old");
@@ -146,7 +146,7 @@ TEST_CASE("Output follows the umask and replaces what was there") {
   CHECK(film::read_exr(file).width == 17);
 }
 
-TEST_CASE("An output that cannot be written is one located message and leaves the old file") {
+TEST_CASE("A failed output gives one located message and keeps the old file") {
   Folder folder;
   const std::string missing = (folder.path / "none" / "a.exr").string();
   CHECK_THAT(error_of([&] { film::check_writable(missing); }),
@@ -180,18 +180,18 @@ TEST_CASE("An output that cannot be written is one located message and leaves th
   CHECK_NOTHROW(film::check_writable(old));
   CHECK(folder.entries() == 2);
   CHECK(read_text(old) == "old");
-  if (geteuid() != 0) {  // root writes everywhere
+  if (geteuid() != 0) {  // root can write everywhere
     fs::permissions(folder.path, fs::perms::owner_read | fs::perms::owner_exec);
     CHECK_THAT(error_of([&] { film::check_writable(folder.path / "b.exr"); }),
                Catch::Contains("cannot be written"));
   }
 }
 
-TEST_CASE("A disk that fills up is one located message and leaves the old file") {
+TEST_CASE("A full disk gives one located message and keeps the old file") {
   Folder folder;
   const fs::path file = folder.path / "a.exr";
   write_text(file, "old");
-  // A limit on the size of files is what a full disk looks like to the writer.
+  // A limit on file size has the same effect as a full disk.
   rlimit before{};
   REQUIRE(getrlimit(RLIMIT_FSIZE, &before) == 0);
   const rlimit small{.rlim_cur = 2000, .rlim_max = before.rlim_max};
@@ -212,7 +212,7 @@ TEST_CASE("A disk that fills up is one located message and leaves the old file")
   CHECK(folder.entries() == 1);
 }
 
-TEST_CASE("An image that cannot be read is one located message") {
+TEST_CASE("An unreadable image gives one located message") {
   Folder folder;
   const std::string none = (folder.path / "none.exr").string();
   CHECK_THAT(error_of([&] { film::read_exr(none); }), Catch::Equals(none + ": there is no such file"));

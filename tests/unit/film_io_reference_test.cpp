@@ -1,5 +1,5 @@
 // links: film_io
-// References: what is refused and why, and that the true error of a made-up picture is the one put into it.
+// References: refusals and their reasons, and the true error of a synthetic picture.
 #include <unistd.h>
 
 #include <catch2/catch.hpp>
@@ -50,7 +50,7 @@ bool says(const std::string& message, const std::string& part) {
 
 }  // namespace
 
-TEST_CASE("what cannot be a reference is refused with the reason") {
+TEST_CASE("an unsuitable reference is refused with the reason") {
   CHECK(refusal(grey(1)) == "accepted");
   CHECK(says(refusal(grey(1), k_width, k_height + 1), "60x40 pixels, the picture 60x41"));
   for (const char* missing : {"G", "tertiary.B"}) {
@@ -68,7 +68,7 @@ TEST_CASE("what cannot be a reference is refused with the reason") {
                     Catch::Contains("/no/such/reference.exr"));
 }
 
-TEST_CASE("the noise that a file tells comes back; what is not noise is as if nothing were told") {
+TEST_CASE("the noise stated in a file is read back; invalid noise counts as none") {
   const film::LayerFigures rms{0.5, 0.1, 0.2, 0.3, 0};
   const File file;
   const auto read_with = [&](const std::string& text) {
@@ -90,10 +90,10 @@ TEST_CASE("the noise that a file tells comes back; what is not noise is as if no
   CHECK_FALSE(read_with(film::noise_text({0.5, -1, 0, 0, 0})).noise);
 }
 
-TEST_CASE("the true error is the noise put in, without the reference's own") {
-  // Picture = truth + noise of 0.2, reference = truth + noise of 0.15 and says so; both Gaussian, in the
+TEST_CASE("the true error is the picture's noise without the reference's own") {
+  // Picture = truth + noise of 0.2, reference = truth + noise of 0.15, which it states; both Gaussian, in the
   // primary layer only. 2400 pixels: the root mean square has a relative standard error of 1/sqrt(4800) = 1.4
-  // % each, and taking the reference's off adds to it; 6 % is beyond 3 of them.
+  // % each, and subtracting the reference's adds to it; 6 % is more than 3 of them.
   std::mt19937 random(4);
   std::normal_distribution<float> gauss;
   film::FilmImage image = grey(2);
@@ -114,13 +114,13 @@ TEST_CASE("the true error is the noise put in, without the reference's own") {
   CHECK(errors[1] == Approx(0.2 / 2).epsilon(0.06));
   CHECK(errors[2] == 0);
   CHECK(errors[4] == 0);
-  // Pixels without samples do not count, however wrong they are.
+  // Pixels without samples are ignored, whatever their values.
   for (size_t i = 0; i < 100; ++i) components[2][i * 7] = vec3(1e6f), samples[i * 7] = 0;
   CHECK(film::true_errors(reference, components, samples)[0] == Approx(0.1).epsilon(0.06));
   // A constant offset is an error that no noise explains.
   for (vec3& p : components[3]) p += 1.0f;
   CHECK(film::true_errors(reference, components, samples)[4] == Approx(0.5).epsilon(0.01));
-  // Of the same noise as the reference tells: nothing is left, and nothing is negative.
+  // With the same noise as the reference states the error is zero, never negative.
   components.fill(std::vector<vec3>(k_width * k_height, vec3(0.5f)));
   film::Reference noisier = reference;
   (*noisier.noise)[0] = 0.2;

@@ -13,7 +13,7 @@ namespace {
 
 std::vector<vec3> flat(size_t pixels, const vec3& colour) { return std::vector<vec3>(pixels, colour); }
 
-/// `colour` with normal noise of that standard deviation, a value of its own each channel.
+/// `colour` with normal noise of that standard deviation, independent in each channel.
 std::vector<vec3> noisy(size_t pixels, float colour, float deviation, uint32_t seed) {
   std::mt19937 random(seed);
   std::normal_distribution<float> normal(colour, deviation);
@@ -25,7 +25,7 @@ std::vector<vec3> noisy(size_t pixels, float colour, float deviation, uint32_t s
 
 }  // namespace
 
-TEST_CASE("Against references without noise it is the relative mean squared error") {
+TEST_CASE("With references without noise it is the relative mean squared error") {
   const vec3 r(1, 0, 2), t(1.5f, 0.1f, 2);
   const ReferencePair references{16, flat(256, r), flat(256, r)};
   const RelativeMse e = film::relative_mse(flat(256, t), references);
@@ -37,9 +37,9 @@ TEST_CASE("Against references without noise it is the relative mean squared erro
         Approx((0.25 / 2 + 0.01 / 1 + 0) / 3));
 }
 
-TEST_CASE("The noise of the references adds nothing, to the trimmed mean either") {
-  // Of 256 x 256 pixels with a noise of 30 % in either reference: three colours a pixel make (.09 / 1.01)^2 /
-  // 3 the variance of a product, so that the mean's standard error is .0002. Bound: five of them.
+TEST_CASE("The references' noise does not change it, nor its trimmed mean") {
+  // 256 x 256 pixels with a noise of 30 % in either reference: three colours per pixel give (.09 / 1.01)^2 /
+  // 3 as the variance of a product, so the mean's standard error is .0002. Bound: five of them.
   constexpr uint32_t k_size = 256, k_pixels = k_size * k_size;
   const double sigma = 0.09 / 1.01 / std::sqrt(3) / k_size;
   for (const uint32_t seed : {1u, 2u, 3u}) {
@@ -48,20 +48,20 @@ TEST_CASE("The noise of the references adds nothing, to the trimmed mean either"
     CHECK(std::abs(film::relative_mse(flat(k_pixels, vec3(1)), references).trimmed) < 5 * sigma);
     CHECK(film::relative_mse(flat(k_pixels, vec3(1.1f)), references).trimmed ==
           Approx(0.01 / 1.01).epsilon(0.02).margin(5 * (sigma + 0.2 * 0.3 / std::sqrt(6.0) / k_size)));
-    // What is foretold of that error; colours count as one there, so that it is on the safe side.
+    // The predicted error of that figure; colours count as one there, which is conservative.
     CHECK(film::relative_mse_noise(references) > 0.7 * sigma);
     CHECK(film::relative_mse_noise(references) < 2 * sigma);
-    // A share that leaves out half the picture would show a choice by the pixels' own products.
+    // A trimmed share of half the picture would show a selection by the pixels' own products.
     CHECK(std::abs(film::relative_mse(flat(k_pixels, vec3(1)), references, {.trimmed_share = 0.5}).trimmed) <
           5 * sigma * std::sqrt(2));
   }
 }
 
-TEST_CASE("A spot of bad pixels is left out by its neighbours, a single one is not") {
+TEST_CASE("A spot of bad pixels is trimmed by its neighbours, a single one is not") {
   constexpr uint32_t k_width = 50, k_pixels = 50 * 40;
   const ReferencePair references{k_width, flat(k_pixels, vec3(1)), flat(k_pixels, vec3(1))};
   std::vector<vec3> picture = flat(k_pixels, vec3(1));
-  // Two of 2000 pixels are left out: those two in the middle of a spot of 3 x 4.
+  // Two of 2000 pixels are trimmed: the two in the middle of a spot of 3 x 4.
   for (uint32_t y = 10; y < 13; ++y)
     for (uint32_t x = 20; x < 24; ++x) picture[y * k_width + x] = vec3(2);
   const RelativeMse spot = film::relative_mse(picture, references);
@@ -75,7 +75,7 @@ TEST_CASE("A spot of bad pixels is left out by its neighbours, a single one is n
 TEST_CASE("Small and empty pictures") {
   const ReferencePair one{1, flat(1, vec3(1)), flat(1, vec3(1))};
   CHECK(film::relative_mse(flat(1, vec3(2)), one).all == Approx(1 / 1.01));
-  CHECK(film::relative_mse(flat(1, vec3(2)), one).trimmed == 0);  // the one pixel is left out
+  CHECK(film::relative_mse(flat(1, vec3(2)), one).trimmed == 0);  // the only pixel is trimmed
   CHECK(film::relative_mse(flat(1, vec3(2)), one, {.trimmed_share = 0}).trimmed == Approx(1 / 1.01));
   const ReferencePair column{1, flat(3, vec3(1)), flat(3, vec3(1))};
   CHECK(film::relative_mse(flat(3, vec3(2)), column, {.trimmed_share = 0}).trimmed == Approx(1 / 1.01));
@@ -84,7 +84,7 @@ TEST_CASE("Small and empty pictures") {
   CHECK(film::relative_mse_noise({}) == 0);
 }
 
-TEST_CASE("As seen, an error is held against the light around it and a share of the median") {
+TEST_CASE("Error as seen is relative to the surrounding light plus a share of the median") {
   // Left half 1, right half 4, far from the border between them; the median is of both: 2.5.
   constexpr uint32_t k_width = 40, k_pixels = 40 * 20;
   std::vector<vec3> r(k_pixels), t(k_pixels);
@@ -99,7 +99,7 @@ TEST_CASE("As seen, an error is held against the light around it and a share of 
   CHECK(difference[5 * k_width + 5] == Approx(0.5 / dark));
   CHECK(difference[5 * k_width + 30] == Approx(2 * 0.7152 / bright));
   CHECK(difference[0] == 0);
-  // One of 800 pixels is left out: the one that is worst by itself.
+  // One of 800 pixels is trimmed: the worst by itself.
   CHECK(film::seen_mse(t, references).trimmed == Approx(4 / (bright * bright) / 3 / (k_pixels - 1)));
   // At the border 5x5 pixels hold both: three columns of 1, two of 4.
   std::vector<vec3> edge = r;
@@ -112,7 +112,7 @@ TEST_CASE("As seen, an error is held against the light around it and a share of 
   CHECK(film::seen_mse(t, {k_width, r, r}).all == Approx(sum / k_pixels));
 }
 
-TEST_CASE("The references' noise adds nothing to the error as seen, nor to its trimmed mean") {
+TEST_CASE("The references' noise does not change the error as seen, nor its trimmed mean") {
   constexpr uint32_t k_size = 256, k_pixels = k_size * k_size;
   const double sigma = 0.09 / (1.05 * 1.05) / std::sqrt(3) / k_size;
   for (const uint32_t seed : {1u, 2u, 3u}) {
@@ -124,7 +124,7 @@ TEST_CASE("The references' noise adds nothing to the error as seen, nor to its t
         Approx(0.01 / (1.05 * 1.05)).epsilon(0.02).margin(5 * (sigma + 0.2 * 0.3 / std::sqrt(6.0) / k_size)));
     CHECK(film::seen_mse_noise(references) > 0.7 * sigma);
     CHECK(film::seen_mse_noise(references) < 2 * sigma);
-    // A share that leaves out half the picture would show a choice by the pixels' own products, or by both
+    // A trimmed share of half the picture would show a selection by the pixels' own products, or by both
     // references at once.
     CHECK(std::abs(film::seen_mse(flat(k_pixels, vec3(1)), references).trimmed) < 5 * sigma);
     CHECK(std::abs(film::seen_mse(flat(k_pixels, vec3(1)), references, {.trimmed_share = 0.5}).trimmed) <
@@ -133,7 +133,7 @@ TEST_CASE("The references' noise adds nothing to the error as seen, nor to its t
 }
 
 TEST_CASE("Dark, small and empty pictures have an error as seen") {
-  // Light in a corner alone: the median is 0, the mean stands for it.
+  // Light in a corner only: the median is 0, so the mean is used.
   std::vector<vec3> r = flat(100, vec3(0));
   r[0] = vec3(9);
   const ReferencePair references{10, r, r};

@@ -25,7 +25,7 @@ void check_near(const vec3& found, const vec3& expected, float margin) {
 
 }  // namespace
 
-TEST_CASE("Every curve is monotone in grey, black stays black and nothing passes white") {
+TEST_CASE("Every curve is monotone in grey, black stays black and no value exceeds white") {
   for (const ToneCurve curve : k_curves) {
     INFO("curve " << static_cast<int>(curve));
     CHECK(shown(vec3(0), curve).x <= 1e-5f);
@@ -42,7 +42,7 @@ TEST_CASE("Every curve is monotone in grey, black stays black and nothing passes
   }
 }
 
-TEST_CASE("Colours stay within 0..1 whatever goes in") {
+TEST_CASE("Colours stay within 0..1 for any input") {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> stop(-20, 30);
   const float odd[] = {0, -1, NAN, INFINITY, -INFINITY, 3.4e38f, 1e-42f};
@@ -73,7 +73,7 @@ TEST_CASE("The sRGB encoding has its published values") {
 }
 
 // The specification: between 0.08 and 0.8 in all channels, out = in - 0.04 exactly.
-TEST_CASE("Khronos PBR Neutral gives base colours back") {
+TEST_CASE("Khronos PBR Neutral preserves base colours") {
   std::mt19937 random(11);
   std::uniform_real_distribution<float> value(0.08f, 0.799f);
   for (int i = 0; i < 1000; ++i) {
@@ -83,7 +83,7 @@ TEST_CASE("Khronos PBR Neutral gives base colours back") {
 }
 
 TEST_CASE("Khronos PBR Neutral below, above and at its seams") {
-  // Below 0.08 the offset is m - 6.25 m^2 of the least channel m.
+  // Below 0.08 the offset is m - 6.25 m^2 with m the smallest channel.
   check_near(shared::tone_neutral({0.04f, 0.3f, 0.5f}), {0.01f, 0.27f, 0.47f}, 1e-6f);
   check_near(shared::tone_neutral({0, 0.3f, 0.5f}), {0, 0.3f, 0.5f}, 1e-6f);
   // White 1: 0.96 after the offset; peak 1 - 0.24^2 / (0.96 + 0.24 - 0.76) = 0.869091.
@@ -117,7 +117,7 @@ TEST_CASE("The AgX-like curve keeps middle grey, spans 16.5 stops and is smooth 
   CHECK(above == Approx(2.4).margin(0.03));
 }
 
-TEST_CASE("The AgX-like curve bleaches strong lights") {
+TEST_CASE("The AgX-like curve desaturates strong lights") {
   for (const vec3& light : {vec3(1, 0, 0), vec3(0, 1, 0), vec3(0, 0, 1)}) {
     const auto saturation = [&](float strength) {
       const vec3 c = glm::clamp(shared::tone_agx(light * strength), 0.0f, 1.0f);
@@ -130,7 +130,7 @@ TEST_CASE("The AgX-like curve bleaches strong lights") {
 }
 
 // Rec.709 primaries and D65 (ITU-R BT.709), each primary moved 20 % of the way to white.
-TEST_CASE("The AgX-like matrix is what its rule says") {
+TEST_CASE("The AgX-like matrix follows its rule") {
   using glm::dmat3;
   using glm::dvec2;
   using glm::dvec3;

@@ -1,5 +1,5 @@
 // links: transport
-// Which kinds of hits there are, and which get kernels of their own.
+// The kinds of hits, and which get separate kernels.
 #include <catch2/catch.hpp>
 
 #include "shaders/shared/transport.h"
@@ -28,7 +28,7 @@ scene::Material material(float specular) {
 
 }  // namespace
 
-TEST_CASE("materials that call for the same are of one kind") {
+TEST_CASE("materials that need the same features are one kind") {
   std::vector<scene::Material> materials(4, material(0));
   materials[1].base_color = vec4(0.5f);
   materials[2].specular = 1;
@@ -41,7 +41,7 @@ TEST_CASE("materials that call for the same are of one kind") {
   CHECK(kinds.features[3] == 0);
 }
 
-TEST_CASE("more kinds than there is room for share the last, which has everything") {
+TEST_CASE("kinds beyond the limit share the last one, which has every feature") {
   std::vector<scene::Material> materials;
   for (uint32_t i = 0; i < 64; ++i) {
     scene::Material m = material(float(i & 1));
@@ -58,7 +58,7 @@ TEST_CASE("more kinds than there is room for share the last, which has everythin
     CHECK((features_of(materials[i]) & ~kinds.features[kinds.of_material[i]]) == 0);
 }
 
-TEST_CASE("surfaces that scatter in single directions alone take no light samples") {
+TEST_CASE("surfaces that scatter only in single directions take no light samples") {
   scene::Material m;
   m.metallic = 1, m.roughness = 0;
   CHECK(!(features_of(m) & k_feature_light_samples));
@@ -66,21 +66,21 @@ TEST_CASE("surfaces that scatter in single directions alone take no light sample
   CHECK(features_of(m) & k_feature_light_samples);
   m = material(1);
   m.roughness = 0;
-  CHECK(features_of(m) & k_feature_light_samples);  // under the coat
+  CHECK(features_of(m) & k_feature_light_samples);  // below the coat
   m.transmission = 1;
   CHECK(!(features_of(m) & k_feature_light_samples));
   m.roughness = 0.2f;
   CHECK(features_of(m) & k_feature_light_samples);
 }
 
-TEST_CASE("kinds with many hits get classes, others go where nothing lacks") {
+TEST_CASE("kinds with many hits get classes, others use a kernel that lacks no feature") {
   Features features{0, k_matt, k_gloss, k_textured, k_pane};
   features[5] = k_matt | k_feature_normal_map;
   Counts hits{100, 500, 10, 300, 80, 10};
   const HitClasses chosen = choose_hit_classes(features, hits);
   REQUIRE(chosen.classes ==
           std::vector<HitClass>{{k_matt, false}, {k_textured, false}, {0, true}, {k_pane, false}});
-  // Gloss: with panes as with textures one bit more; the first. A normal map: nowhere.
+  // Gloss: panes and textures cost one feature more each; the first is chosen. A normal map: none.
   CHECK(chosen.of_kind[0] == 3);
   CHECK(chosen.of_kind[1] == 1);
   CHECK(chosen.of_kind[2] == 2);
@@ -90,7 +90,7 @@ TEST_CASE("kinds with many hits get classes, others go where nothing lacks") {
   CHECK(packed(chosen) == std::array<uint32_t, 4>{0x042213, 0, 0, 0});
 }
 
-TEST_CASE("what leaves the scene is shaded with surfaces only by the kernel for all") {
+TEST_CASE("paths that leave the scene are shaded with surfaces only by the kernel for all") {
   Features features{0, k_matt, k_pane};
   const HitClasses chosen = choose_hit_classes(features, Counts{1, 99, 0});
   CHECK(chosen.classes == std::vector<HitClass>{{k_matt, false}});
@@ -98,7 +98,7 @@ TEST_CASE("what leaves the scene is shaded with surfaces only by the kernel for 
   CHECK(choose_hit_classes(features, Counts{}).classes.empty());
 }
 
-TEST_CASE("where all hits are alike there are no classes") {
+TEST_CASE("if all hits are alike there are no classes") {
   CHECK(choose_hit_classes(Features{0, k_matt, k_matt | k_feature_emission}, Counts{10, 80, 10})
             .classes.empty());
   CHECK(choose_hit_classes(Features{0, k_textured, k_matt}, Counts{2, 90, 8}).classes.empty());

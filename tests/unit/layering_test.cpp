@@ -1,6 +1,6 @@
 // links: base
-// Holds the folders to the layers: what #include lines name against the DEPS of the CMake targets, which in
-// turn are held to the rules that no list of dependencies can state.
+// Checks the layers: #include lines against the DEPS of the CMake targets, and the targets against rules that
+// a list of dependencies cannot state.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <filesystem>
@@ -18,9 +18,9 @@ namespace {
 
 struct Module {
   std::string folder;           ///< relative to the include root: "scene/io"
-  std::set<std::string> files;  ///< of it, without their endings; none: all that are no other module's
+  std::set<std::string> files;  ///< without endings; empty: all that no other module lists
   std::set<std::string> deps;   ///< as written
-  std::set<std::string> sees;   ///< itself and what it reaches through deps
+  std::set<std::string> sees;   ///< itself and everything it reaches through deps
 };
 using Modules = std::map<std::string, Module>;
 using Lines = std::vector<std::string>;
@@ -32,9 +32,9 @@ std::string read(const fs::path& file) {
   return text.str();
 }
 
-/// The lucerna_module() calls of one CMake file, added to `modules`; complaints about DEPS that are not
-/// declared before (which also rules out cycles). `base_folder` is put in front of what stands behind the
-/// first variable of DIR.
+/// The lucerna_module() calls of one CMake file, added to `modules`; returns complaints about DEPS that are
+/// not declared before (which also rules out cycles). `base_folder` is prepended to the path after the first
+/// variable of DIR.
 Lines parse(const std::string& cmake, const std::string& base_folder, Modules& modules) {
   Lines complaints;
   const std::string text = std::regex_replace(cmake, std::regex("#[^\n]*"), "");
@@ -61,8 +61,8 @@ Lines parse(const std::string& cmake, const std::string& base_folder, Modules& m
   return complaints;
 }
 
-/// The module that lists the file, or else whose folder is the longest head of `path` ("scene/io/load.h" ->
-/// scene_io); "" when there is none.
+/// The module that lists the file, or otherwise the module whose folder is the longest prefix of `path`
+/// ("scene/io/load.h" -> scene_io); "" if there is none.
 std::string module_of(const Modules& modules, const std::string& path) {
   std::string best;
   size_t length = 0;
@@ -75,7 +75,7 @@ std::string module_of(const Modules& modules, const std::string& path) {
   return best;
 }
 
-/// "solvers/NAME/..." -> "NAME" where NAME is one technique; "" for what techniques share.
+/// "solvers/NAME/..." -> "NAME" where NAME is one technique; "" for shared files.
 std::string technique_of(const std::string& path) {
   static const std::regex k_technique(R"(solvers/(\w+)/.*)");
   std::smatch match;
@@ -83,7 +83,7 @@ std::string technique_of(const std::string& path) {
   return match[1];
 }
 
-/// Outside headers that belong to some folders alone, by how their names begin.
+/// Third-party headers that only some folders may include, by the beginnings of their names.
 struct Owned {
   std::regex header;
   std::set<std::string> modules;
@@ -134,10 +134,10 @@ Lines check_includes(const Modules& modules, const std::string& path, const std:
   return complaints;
 }
 
-/// The text of a file by its path relative to an include root; nothing where there is none.
+/// The text of a file by its path relative to an include root; empty if it does not exist.
 using Files = std::function<std::optional<std::string>(const std::string&)>;
 
-/// What a file includes, and what that includes, down to the last: by path, with the one that includes it.
+/// All direct and indirect includes of a file: by path, with the file that includes it.
 std::map<std::string, std::string> reached(const std::string& path, const Files& files) {
   static const std::regex k_include(R"re((?:^|\n)[ \t]*#[ \t]*include[ \t]*"([^"\n]+)")re");
   std::map<std::string, std::string> found;
@@ -156,8 +156,8 @@ std::map<std::string, std::string> reached(const std::string& path, const Files&
   return found;
 }
 
-/// What the window and the commands may not reach through any chain of includes: the device, the tracing of
-/// light, any one solver. They know of solvers what their tables and reports tell.
+/// Checks that window and commands do not reach the device, light transport or any single solver through a
+/// chain of includes. They know solvers by their tables and reports only.
 Lines check_reach(const std::string& path, const Files& files) {
   Lines complaints;
   const std::map<std::string, std::string> all = reached(path, files);
@@ -171,7 +171,7 @@ Lines check_reach(const std::string& path, const Files& files) {
   return complaints;
 }
 
-/// Rules between layers, whatever DEPS says: "a: never b".
+/// Rules between layers, independent of DEPS: "a: never b".
 Lines check_layers(const Modules& modules) {
   static const std::vector<std::pair<std::string, Lines>> k_never = {
       {"scene", {"gpu", "bvh", "upload", "film"}},
@@ -206,7 +206,7 @@ Modules project_modules(Lines& complaints) {
   };
   add(parse(read(root / "renderer" / "CMakeLists.txt"), "", modules));
   add(parse(read(root / "ui" / "CMakeLists.txt"), "ui", modules));
-  Module app{.folder = "app", .deps = {}, .sees = {"app"}};  // what a person starts sees everything
+  Module app{.folder = "app", .deps = {}, .sees = {"app"}};  // the program's entry point sees everything
   for (const auto& [name, module] : modules) app.sees.insert(name);
   modules["app"] = app;
   return modules;
@@ -220,10 +220,10 @@ std::string joined(const Lines& lines) {
 
 }  // namespace
 
-TEST_CASE("Every include names only what its folder may see") {
+TEST_CASE("Every file includes only what its folder may see") {
   Lines complaints;
   const Modules modules = project_modules(complaints);
-  REQUIRE(modules.size() > 15);  // fewer: the CMake files are no longer understood
+  REQUIRE(modules.size() > 15);  // fewer: the CMake files are not understood
   REQUIRE(modules.contains("ui"));
   REQUIRE(modules.at("session").sees.contains("base"));
   const fs::path root = LUCERNA_SOURCE_DIR;
@@ -248,7 +248,7 @@ TEST_CASE("Every include names only what its folder may see") {
   CHECK(complaints.empty());
 }
 
-TEST_CASE("Window and commands reach neither the device nor any one solver, by whatever they include") {
+TEST_CASE("Window and commands include neither the device nor any single solver, directly or indirectly") {
   const fs::path root = LUCERNA_SOURCE_DIR;
   const Files files = [&](const std::string& path) -> std::optional<std::string> {
     for (const fs::path& folder : {root / "renderer", root})
@@ -273,7 +273,7 @@ TEST_CASE("Window and commands reach neither the device nor any one solver, by w
   CHECK(complaints.empty());
 }
 
-TEST_CASE("The layers keep apart what must not meet") {
+TEST_CASE("The layers separate what must not depend on each other") {
   Lines complaints;
   const Modules modules = project_modules(complaints);
   const Lines layers = check_layers(modules);
@@ -286,7 +286,7 @@ TEST_CASE("The layers keep apart what must not meet") {
   }
 }
 
-TEST_CASE("The checker sees each kind of violation") {
+TEST_CASE("The checker detects each kind of violation") {
   Lines none;
   const Modules modules = project_modules(none);
   const auto complaints = [&](const std::string& path, const std::string& text) {
@@ -335,7 +335,7 @@ TEST_CASE("The checker sees each kind of violation") {
   CHECK(complaints("scene/x.cpp", "// #include \"gpu/device.h\"\n").empty());
 }
 
-TEST_CASE("The checker of layers sees a list of dependencies that breaks a rule") {
+TEST_CASE("The checker of layers detects a list of dependencies that breaks a rule") {
   Modules modules;
   const std::string cmake = R"(
 # lucerna_module(ghost DIR ${here}/ghost DEPS nothing)

@@ -1,5 +1,5 @@
 // links: transport
-// What light samples teach about choosing lights: rows are probabilities whatever was recorded, and hang on
+// Learning from light samples how to choose lights: rows are probabilities for any records, and depend on
 // nothing but the records.
 #include <bit>
 #include <catch2/catch.hpp>
@@ -50,7 +50,7 @@ scene::Scene lights() {
   return s;
 }
 
-/// Vertices here and there, of which some lights reach some places.
+/// Random vertices that some lights reach.
 std::vector<LightRecord> records(const upload::LightClusters& clusters, uint32_t count) {
   std::mt19937 random(3);
   const auto unit = [&] { return float(random() >> 8) / 16777216.f; };
@@ -71,8 +71,8 @@ std::vector<LightRecord> records(const upload::LightClusters& clusters, uint32_t
   return list;
 }
 
-/// Greatest relative difference between what tables choose with and what they say; and of the sum of a row
-/// to 1.
+/// Checks the largest relative difference between the probabilities of the tables and the stated ones; and
+/// that rows sum to 1.
 void check_rows(const upload::LightClusters& clusters, const transport::LearnedLights& lights) {
   const uint32_t n = clusters.count();
   REQUIRE(lights.rows.size() == size_t(lights.row_count) * n);
@@ -112,7 +112,7 @@ void check_rows(const upload::LightClusters& clusters, const transport::LearnedL
 
 }  // namespace
 
-TEST_CASE("clusters are all of the lights, each once, with the probability that they have without learning") {
+TEST_CASE("clusters contain every light once, with its probability without learning") {
   const upload::FlatScene flat = upload::flatten(lights());
   const upload::LightClusters clusters = upload::make_light_clusters(flat);
   REQUIRE(upload::has_light_clusters(flat));
@@ -147,7 +147,7 @@ TEST_CASE("clusters are all of the lights, each once, with the probability that 
   CHECK(wrong == 0);
 }
 
-TEST_CASE("rows are probabilities, a tenth of those without learning at least, whatever was recorded") {
+TEST_CASE("rows are probabilities, at least a tenth of those without learning, for any records") {
   const upload::LightClusters clusters = upload::make_light_clusters(upload::flatten(lights()));
   check_rows(clusters, transport::plain_lights(clusters));
   check_rows(clusters, transport::learn_lights(clusters, {}, {}));
@@ -157,14 +157,14 @@ TEST_CASE("rows are probabilities, a tenth of those without learning at least, w
   const transport::LearnedLights learned = transport::learn_lights(clusters, cells, list);
   CHECK(learned.row_count > 100);
   check_rows(clusters, learned);
-  for (LightRecord& r : list) r.full = -1, r.met = 0;  // nothing has arrived anywhere
+  for (LightRecord& r : list) r.full = -1, r.met = 0;  // no light has arrived anywhere
   check_rows(clusters, transport::learn_lights(clusters, cells, list));
   for (LightRecord& r : list)
     r.full = r.arrived = r.value = 1e30f, r.rate = 1e30f, r.position = vec3(2);  // all in one place
   check_rows(clusters, transport::learn_lights(clusters, transport::learned_cells(list), list));
 }
 
-TEST_CASE("what is learned does not hang on the order of records") {
+TEST_CASE("the result does not depend on the order of records") {
   const upload::LightClusters clusters = upload::make_light_clusters(upload::flatten(lights()));
   std::vector<LightRecord> list = records(clusters, 20000);
   const auto learn = [&] { return transport::learn_lights(clusters, transport::learned_cells(list), list); };

@@ -1,6 +1,6 @@
 // links: base
-// Outputs: what has the name before stays what it is, a file is there whole or not at all, and failures are
-// located.
+// Outputs: an existing file keeps its type and permissions, a file is written completely or not at all, and
+// failures are located.
 #include "base/output_file.h"
 
 #include <fcntl.h>
@@ -30,7 +30,7 @@ mode_t mode_of(const fs::path& file) {
   return status.st_mode;
 }
 
-/// What another program reads from it, to its end.
+/// What another program reads from it, up to its end.
 std::string read_all(const fs::path& file) {
   const int handle = open(file.c_str(), O_RDONLY);
   std::string all;
@@ -42,7 +42,7 @@ std::string read_all(const fs::path& file) {
 
 }  // namespace
 
-TEST_CASE("an output goes through symbolic links, which stay") {
+TEST_CASE("an output follows symbolic links, which stay") {
   const test::Folder folder;
   fs::create_directory(folder / "far");
   write_file(folder / "far/target", "old");
@@ -67,7 +67,7 @@ TEST_CASE("an output goes through symbolic links, which stay") {
   CHECK(entries(folder) == 8);
 }
 
-TEST_CASE("a new file has the permissions of the one that it replaces; a failed one leaves it") {
+TEST_CASE("a new file has the permissions of the one that it replaces; a failed write keeps the old one") {
   const test::Folder folder;
   write_file(folder / "secret", "old");
   REQUIRE(chmod((folder / "secret").c_str(), 0600) == 0);
@@ -79,7 +79,7 @@ TEST_CASE("a new file has the permissions of the one that it replaces; a failed 
   }
   CHECK(read_file(folder / "secret") == "new");
   CHECK(entries(folder) == 1);
-  // As long as a name may be: the temporary one is not longer.
+  // A name of the maximum length: the temporary name is not longer.
   const std::string longest(255, 'n');
   write_file(folder / longest, "x");
   CHECK(read_file(folder / longest) == "x");
@@ -91,8 +91,8 @@ TEST_CASE("a pipe is written into and stays a pipe") {
   const test::Folder folder;
   const fs::path pipe = folder / "pipe";
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
-  CHECK_NOTHROW(check_writable(pipe));  // without a reader, and without one's notice
-  // More than a pipe holds; the reader comes first or later.
+  CHECK_NOTHROW(check_writable(pipe));  // without a reader, and without waiting for one
+  // More than a pipe holds; the reader starts before or after the writer.
   const std::string text(300000, 'x');
   auto read = std::async(std::launch::async, [&] { return read_all(pipe); });
   write_file(pipe, text);
@@ -101,7 +101,7 @@ TEST_CASE("a pipe is written into and stays a pipe") {
   CHECK(entries(folder) == 1);
 }
 
-TEST_CASE("a reader that goes away is an error, not the program's end") {
+TEST_CASE("a reader that closes early gives an error and does not end the program") {
   const test::Folder folder;
   const fs::path pipe = folder / "pipe";
   REQUIRE(mkfifo(pipe.c_str(), 0600) == 0);
@@ -115,7 +115,7 @@ TEST_CASE("devices and the process's own descriptors are written into") {
   CHECK(S_ISCHR(mode_of("/dev/null")));
   CHECK_THROWS_WITH(write_file("/dev/full", "x"), Contains("/dev/full: cannot be written: No space left"));
 
-  // A file that was opened for this process goes on where it was, as the shell's > and >> mean it.
+  // A file opened for this process continues at its position, as the shell's > and >> require.
   const fs::path file = folder / "file";
   const int handle = open(file.c_str(), O_RDWR | O_CREAT, 0600);
   REQUIRE(write(handle, "before ", 7) == 7);
@@ -130,7 +130,7 @@ TEST_CASE("devices and the process's own descriptors are written into") {
   CHECK_THROWS_WITH(write_file(name, "x"), Contains("cannot be written"));
 }
 
-TEST_CASE("errors of reading are located, of files that are none too") {
+TEST_CASE("read errors are located, also for files that do not exist") {
   const test::Folder folder;
   CHECK_THROWS_WITH(read_file(folder.path), Contains("cannot be read: it is a folder"));
   CHECK_THROWS_WITH(read_file(folder / "none"), Contains("none: cannot be read: No such file"));
@@ -140,7 +140,7 @@ TEST_CASE("errors of reading are located, of files that are none too") {
   CHECK(read_file(folder / "empty").empty());
 }
 
-TEST_CASE("where the working folder is gone paths stay as they are and outputs fail with a location") {
+TEST_CASE("if the working folder is deleted paths stay as given and outputs fail with a location") {
   const fs::path before = fs::current_path();
   {
     const test::Folder folder;

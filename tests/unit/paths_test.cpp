@@ -10,7 +10,7 @@ using namespace lucerna::paths;
 
 namespace {
 
-/// The state that the events of a word, D, G and S, lead to.
+/// The state after the events of a word of D, G and S.
 uint8_t state_after(const paths::Automaton& a, const char* word) {
   uint8_t state = 0;
   for (const char* e = word; *e; ++e)
@@ -18,7 +18,7 @@ uint8_t state_after(const paths::Automaton& a, const char* word) {
   return state;
 }
 
-/// The partition in words, by counting letters: no expression, no automaton.
+/// The partition by counting letters: no expression, no automaton.
 int classify_by_counting(const std::string& word) {
   const std::string middle = word.substr(1, word.size() - 2);
   const auto diffuse = std::count(middle.begin(), middle.end(), 'D');
@@ -56,9 +56,9 @@ TEST_CASE("the automaton agrees with a brute-force classifier on all words up to
   }
 }
 
-TEST_CASE("the component automaton is small and knows what is still reachable") {
+TEST_CASE("the component automaton is small and knows which components are still reachable") {
   const Automaton automaton = compile_components();
-  CHECK(automaton.states.size() == 8);  // as many as a path has room for
+  CHECK(automaton.states.size() == 8);  // as many as a path can store
   CHECK(automaton.states[0].reachable == 0b1111);
   const uint8_t d = automaton.after(0, Event::diffuse), dg = automaton.after(d, Event::glossy),
                 dd = automaton.after(d, Event::diffuse), ddd = automaton.after(dd, Event::diffuse);
@@ -85,10 +85,10 @@ TEST_CASE("packing switches components off without moving states") {
   }
   const uint8_t ddd =
       automaton.after(automaton.after(automaton.after(0, Event::diffuse), Event::diffuse), Event::diffuse);
-  CHECK((no_tertiary[ddd] >> 27 & 1) == 0);  // nothing to be gained there: the path stops
+  CHECK((no_tertiary[ddd] >> 27 & 1) == 0);  // nothing left to find: the path stops
 }
 
-TEST_CASE("wrong expressions are refused with their place") {
+TEST_CASE("invalid expressions are refused with the location of the error") {
   const auto message = [](std::vector<std::string> expressions) {
     try {
       compile(expressions);
@@ -105,22 +105,23 @@ TEST_CASE("wrong expressions are refused with their place") {
   CHECK(message({"ED?(G|S)+L", "EDL"}) == "accepted");
 }
 
-TEST_CASE("lookups stand where nothing but cached components goes on, each part for its component") {
+TEST_CASE("lookups replace paths where only cached components continue, one part for each component") {
   const paths::Automaton a = paths::compile_components();
   const auto after = [&](const char* word) { return state_after(a, word); };
   const uint8_t none = paths::k_no_component;
   const auto nothing = std::array<uint8_t, 4>{none, none, none, none};
-  // Both: at the first diffuse vertex, also behind mirrors; nothing behind it, caustics are left to the path.
+  // Both: at the first diffuse vertex, also behind mirrors; nothing continues behind it, and caustics stay
+  // with the path.
   const auto both = paths::lookup_routes(a, 15, 0b0110);
   CHECK(both.traced == 0b1001);
   CHECK(both.parts == 0b0110);
   CHECK(both.component[after("")] == std::array<uint8_t, 4>{none, 1, 2, none});
   CHECK(both.component[after("GS")] == both.component[after("")]);
   for (const char* word : {"D", "DS", "DD", "DDD"}) CHECK(both.component[after(word)] == nothing);
-  // Secondary light from records brings tertiary light with it, unless that is off.
+  // Secondary light from records includes tertiary light, unless that is off.
   CHECK(paths::lookup_routes(a, 15, 0b0010).component == both.component);
   CHECK(paths::lookup_routes(a, 0b1011, 0b0010).component[0] == std::array<uint8_t, 4>{none, 1, none, none});
-  // Tertiary light alone: at the second diffuse vertex all that is not direct belongs to it.
+  // Tertiary light alone: at the second diffuse vertex all indirect light belongs to it.
   const auto tertiary = paths::lookup_routes(a, 15, 0b0100);
   CHECK(tertiary.traced == 0b1011);
   CHECK(tertiary.parts == 0b1110);
@@ -128,11 +129,11 @@ TEST_CASE("lookups stand where nothing but cached components goes on, each part 
   CHECK(tertiary.component[after("D")] == std::array<uint8_t, 4>{none, 2, 2, 2});
   CHECK(tertiary.component[after("SDG")] == tertiary.component[after("D")]);
   CHECK(tertiary.component[after("DD")] == nothing);
-  // With secondary light off there is nothing that goes on from the first: it is looked up there.
+  // With secondary light off nothing continues from the first vertex: tertiary light is looked up there.
   const auto alone = paths::lookup_routes(a, 0b0100, 0b0100);
   CHECK(alone.component[0] == std::array<uint8_t, 4>{none, none, 2, none});
-  // Light straight from the environment comes along wherever there is a lookup, to the component that it
-  // belongs to there, unless that is off; without a lookup there is none.
+  // Direct environment light is included in every lookup, in the component that it belongs to there, unless
+  // that is off; without a lookup there is none.
   const auto sky = paths::lookup_routes(a, 15, 0b0110, true);
   CHECK(sky.traced == both.traced);
   CHECK(sky.parts == 0b0111);
@@ -142,18 +143,17 @@ TEST_CASE("lookups stand where nothing but cached components goes on, each part 
         std::array<uint8_t, 4>{1, 2, 2, 2});
   CHECK(paths::lookup_routes(a, 0b1110, 0b0110, true).component[0] == both.component[0]);
   CHECK(paths::lookup_routes(a, 15, 0, true).parts == 0);
-  // Records' rays that end in records leave the sky to them as well: for the part that it belongs to there.
+  // Rays of records that end in records also read the environment there, in the part that it belongs to.
   const auto rays = paths::record_routes(a, sky.parts, true, false);
   CHECK(rays.component[after("D")] == std::array<uint8_t, 4>{1, 2, 2, none});
   CHECK(rays.parts == 0b0111);
-  // Nothing cached, nothing looked up.
+  // No cached component, no lookup.
   const auto plain = paths::lookup_routes(a, 15, 0);
   CHECK(plain.parts == 0);
   CHECK(plain.traced == 15);
 }
 
-TEST_CASE(
-    "rays of records read records again where only tertiary light is left, and gather what that reads") {
+TEST_CASE("rays of records read records again where only tertiary light remains, and gather it") {
   const paths::Automaton a = paths::compile_components();
   const uint8_t none = paths::k_no_component, d = a.after(0, paths::Event::diffuse);
   const auto plain = paths::record_routes(a, 0b0110, false, true);
@@ -161,7 +161,7 @@ TEST_CASE(
   CHECK(plain.parts == 0b0110);
   CHECK(plain.traced == 0b0110);
   const auto own = paths::record_routes(a, 0b0110, true, true);
-  CHECK(own.parts == 0b1110);  // caustics on what a record sees are tertiary light for it
+  CHECK(own.parts == 0b1110);  // caustics on surfaces seen by a record are tertiary light for it
   CHECK(own.traced == 0b1010);
   CHECK(own.component[d] == std::array<uint8_t, 4>{none, 2, 2, 2});
   CHECK(own.component[0] == std::array<uint8_t, 4>{none, none, none, none});
@@ -172,34 +172,34 @@ TEST_CASE(
   CHECK(paths::record_routes(a, 0b0010, true, true).component.empty());
 }
 
-TEST_CASE("paths that pass lookups on purpose look tertiary light up at every vertex behind") {
+TEST_CASE("paths that skip a lookup read tertiary light at every later vertex") {
   const paths::Automaton a = paths::compile_components();
   const uint8_t none = paths::k_no_component, d = a.after(0, paths::Event::diffuse),
                 dd = a.after(d, paths::Event::diffuse);
   const std::array<uint8_t, 4> nothing{none, none, none, none};
   const auto own = paths::record_routes(a, 0b0111, true, true);
-  // The picture's: secondary light is left to the path, and light that its next vertex has straight from the
-  // sky is of it.
+  // The picture's paths: they trace secondary light themselves, and direct environment light at the next
+  // vertex belongs to it.
   const auto picture = paths::gather_routes(a, 15, own);
   CHECK(picture.traced == 0b1011);
   CHECK(picture.component[0] == nothing);
   CHECK(picture.component[d] == std::array<uint8_t, 4>{1, 2, 2, 2});
   CHECK(picture.component[dd] == std::array<uint8_t, 4>{2, 2, 2, 2});
-  // Those of records look up at the first vertex that they meet, and may pass that as well.
+  // The records' rays look up at the first vertex that they hit, and may skip that lookup too.
   const auto records = paths::gather_routes(a, own.parts, own);
   CHECK(records.component[d] == own.component[d]);
   CHECK(records.component[dd] == std::array<uint8_t, 4>{2, 2, 2, 2});
   CHECK(records.traced == own.traced);
-  // Where records are path traced, nothing is looked up.
+  // If records are path traced, there are no lookups.
   CHECK(paths::gather_routes(a, 15, paths::record_routes(a, 0b0110, false, true)).component.empty());
 }
 
-TEST_CASE("a path lives as long as a light or a lookup can bring it something") {
+TEST_CASE("a path continues as long as a light or a lookup can contribute") {
   const paths::Automaton a = paths::compile_components();
   const uint8_t d = a.after(0, paths::Event::diffuse), dd = a.after(d, paths::Event::diffuse);
   const auto live = [](uint32_t packed) { return (packed >> 27 & 1u) != 0; };
   const auto account = [](uint32_t packed) { return packed >> 29 & 3u; };
-  // Everything looked up: mirrors lead to lookups, diffuse lobes to nothing more.
+  // Everything is looked up: mirrors lead to lookups, diffuse lobes to nothing further.
   const auto routes = paths::lookup_routes(a, 0b0110, 0b0110);
   REQUIRE(routes.traced == 0);
   const auto looked = paths::pack(a, routes.traced, routes);
@@ -208,22 +208,22 @@ TEST_CASE("a path lives as long as a light or a lookup can bring it something") 
   CHECK(live(looked[a.after(0, paths::Event::specular)]));
   CHECK_FALSE(live(looked[d]));
   CHECK_FALSE(live(paths::pack(a, 0)[0]));
-  // Behind a record's second diffuse event only meeting a light is wanted: nothing where none can be met.
+  // Behind a record's second diffuse event only hits of lights are needed: nothing if none can be hit.
   const auto own = paths::record_routes(a, 0b0110, true, false);
   CHECK(live(paths::pack(a, own.traced, own, true)[d]));
   CHECK(live(paths::pack(a, own.traced, own, true)[dd]));
   CHECK(live(paths::pack(a, own.traced, own, false)[d]));
   CHECK_FALSE(live(paths::pack(a, own.traced, own, false)[dd]));
-  // A path tracer of all components always has a further vertex to go to.
+  // A path tracer of all components always has a further vertex.
   for (const uint32_t packed : paths::pack(a, 15, {}, false)) CHECK(live(packed));
 }
 
-TEST_CASE("a path from a light and one from the eye make the word that they make together") {
+TEST_CASE("a light path and a camera path form the word of the connected path") {
   const paths::Automaton a = paths::compile_components();
   const paths::LightAutomaton light = paths::reverse(a);
   CHECK(light.states.size() < 8);
   const char* letters = "DGS";
-  // All words of up to six events, cut at every place.
+  // All words of up to six events, split at every place.
   for (int length = 0; length <= 6; ++length)
     for (int number = 0, all = int(std::pow(3, length)); number < all; ++number) {
       std::string events;
@@ -246,8 +246,7 @@ TEST_CASE("a path from a light and one from the eye make the word that they make
     }
 }
 
-TEST_CASE(
-    "photons are stored where some eye path reads them, and light paths end where none can be any more") {
+TEST_CASE("photons are stored where camera paths read them, and light paths end where none can") {
   const paths::Automaton a = paths::compile_components();
   const paths::LightAutomaton light = paths::reverse(a);
   const auto after = [&](const char* word) {
@@ -258,7 +257,7 @@ TEST_CASE(
   };
   const auto part = [](uint32_t packed) { return packed >> 24 & 7u; };
   const auto live = [](uint32_t packed) { return (packed >> 27 & 1u) != 0; };
-  // Caustics alone: light that has met mirrors and glass, and nothing that has been scattered diffusely.
+  // Caustics alone: light after mirrors and glass, without diffuse events.
   const auto caustics = paths::pack(light, 0b1000, 3);
   CHECK(part(caustics[after("")]) == paths::k_component_count);
   CHECK(live(caustics[after("")]));
@@ -267,7 +266,7 @@ TEST_CASE(
   CHECK_FALSE(live(caustics[after("D")]));
   CHECK((caustics[0] >> 29 & 3u) == 3);
   const auto all = paths::pack(light, 0b1110, 1);
-  CHECK(part(all[after("")]) == paths::k_component_count);  // direct light is not theirs
+  CHECK(part(all[after("")]) == paths::k_component_count);  // excludes direct light
   CHECK(part(all[after("DS")]) == 1);
   CHECK(part(all[after("SD")]) == 2);
   for (const uint32_t packed : all) CHECK(live(packed));
@@ -290,12 +289,12 @@ TEST_CASE(
   CHECK(all.traced == 0b0001);
   CHECK(all.component[0] == std::array<uint8_t, 4>{none, 1, 2, 3});
   for (const char* word : {"D", "DS", "DD", "DDD"}) CHECK(all.component[after(word)] == nothing);
-  // Secondary light alone: the path goes on for tertiary light.
+  // Secondary light alone: the path continues for tertiary light.
   const auto secondary = paths::photon_routes(a, 15, 0b0010);
   CHECK(secondary.traced == 0b1101);
   CHECK(secondary.component[0] == std::array<uint8_t, 4>{none, 1, none, none});
   CHECK(secondary.component[after("D")] == nothing);
-  // Final gathering: all that comes to the second diffuse vertex but direct light.
+  // Final gathering: all indirect light at the second diffuse vertex.
   const auto gathered = paths::photon_routes(a, 15, 0b1100);
   CHECK(gathered.traced == 0b0011);
   CHECK(gathered.component[0] == std::array<uint8_t, 4>{none, none, none, 3});
@@ -303,7 +302,7 @@ TEST_CASE(
   CHECK(gathered.component[after("DD")] == nothing);
   CHECK(paths::photon_routes(a, 0b1101, 0b0100).component[0] == std::array<uint8_t, 4>{none, none, 2, none});
   CHECK(paths::photon_routes(a, 15, 0).parts == 0);
-  // Every word is brought exactly once: by the path that traces it, or by the first lookup of it.
+  // Every word is computed exactly once: by the path that traces it, or by its first lookup.
   const paths::LightAutomaton light = paths::reverse(a);
   const char* letters = "DGS";
   for (uint32_t own = 0; own < 16; own += 2) {
@@ -335,10 +334,10 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("a path goes on through a lookup for what another lookup brings further on") {
+TEST_CASE("a path continues through a lookup towards another lookup") {
   const paths::Automaton a = paths::compile_components();
   const uint8_t d = a.after(0, paths::Event::diffuse);
-  // Secondary light among photons at the first diffuse vertex, tertiary light in records at the second.
+  // Secondary light from photons at the first diffuse vertex, tertiary light from records at the second.
   auto routes = paths::photon_routes(a, 0b0110, 0b0010);
   const auto records = paths::lookup_routes(a, 0b0110, 0b0100);
   for (size_t s = 0; s < routes.component.size(); ++s)
@@ -349,7 +348,8 @@ TEST_CASE("a path goes on through a lookup for what another lookup brings furthe
   CHECK((packed[a.after(d, paths::Event::diffuse)] >> 27 & 1u) == 0);
 }
 
-TEST_CASE("what light tracing brings paths no longer do, and each word comes once, whoever brings the rest") {
+TEST_CASE(
+    "paths skip the light of light tracing, and each word is computed once whichever solver has the rest") {
   const paths::Automaton a = paths::compile_components();
   const paths::LightAutomaton light = paths::reverse(a);
   const paths::LookupRoutes camera = paths::camera_routes(a, 15, 0b1000);
@@ -392,7 +392,7 @@ TEST_CASE("what light tracing brings paths no longer do, and each word comes onc
         CHECK(times + traced == 1);
       }
   }
-  // Alone: paths end where they could only go on for what is brought.
+  // Alone: paths end where they could only continue for light that light tracing computes.
   const paths::LookupRoutes alone = paths::camera_routes(a, 0b1000, 0b1000);
   const std::vector<uint32_t> packed = paths::pack(a, alone.traced, alone);
   CHECK((packed[state_after(a, "D")] >> 27 & 1u) == 0);

@@ -1,5 +1,5 @@
 // links: photons
-// Where photons are worth their time for caustics: moments of either way against closed forms, and the
+// Where photons are more efficient for caustics: both methods' moments compared with closed forms, and the
 // choice.
 #include <catch2/catch.hpp>
 #include <random>
@@ -12,8 +12,8 @@ using photons::Moments, photons::Regions, photons::EfficiencyCosts, photons::Eff
 
 namespace {
 
-/// Photons of equal flux spread evenly over a square of the plane y = 0, side 2 about the origin, that arrive
-/// from above.
+/// Photons of equal flux, evenly distributed over a square of the plane y = 0 with side 2 around the origin,
+/// arriving from above.
 std::vector<shared::PhotonContribution> even(uint32_t n, float flux, float radiance) {
   std::mt19937 random(7);
   std::uniform_real_distribution<float> unit(-1, 1);
@@ -53,7 +53,7 @@ constexpr EfficiencyCosts k_costs{.base = 2, .lookup = 0.5, .onward = 1.5, .path
 
 }  // namespace
 
-TEST_CASE("light paths tell the moments of photons and of paths from the eye", "[photons_worth]") {
+TEST_CASE("light paths estimate the moments of photons and of camera paths", "[photons_efficiency]") {
   const float albedo = 0.6f, flux = 2e-5f, radiance = 40;
   const uint32_t n = 200000;
   const std::vector<shared::PhotonContribution> all = even(n, flux, radiance);
@@ -62,18 +62,18 @@ TEST_CASE("light paths tell the moments of photons and of paths from the eye", "
   const std::vector<double> as_before(n, 1), twice(n, 2);
   const Moments m = photons::caustic_moments(pilot_of(all, lookups, as_before))[0];
   const double pi = double(k_pi), density = n / 4.0, irradiance = double(flux) * density;
-  // About 39 thousand photons are found: their number errs by half a percent.
+  // About 39 thousand photons are found: their number has an error of half a per cent.
   CHECK(m.found == Approx(density * pi * 0.25).epsilon(0.03));
   CHECK(m.mean == Approx(double(albedo) / pi * irradiance).epsilon(0.03));
-  // Of Poisson's process of n photons a square metre: n times the kernel's square.
+  // A Poisson process of n photons per square metre: n times the square of the kernel.
   const double f = double(albedo * flux) / pi;
   CHECK(m.photons == Approx(f * f * density * 4 / (3 * pi * 0.01)).epsilon(0.03));
-  // Where light of radiance L comes from the share p of directions, by the cosine, p = E / (pi L): the mean
-  // is albedo L p, the second moment (albedo L)^2 p.
+  // If light of radiance L comes from the cosine-weighted share p of directions, p = E / (pi L), the mean is
+  // albedo L p and the second moment (albedo L)^2 p.
   const double p = irradiance / (pi * double(radiance)), value = double(albedo * radiance);
   CHECK(m.paths == Approx(value * value * p * (1 - p)).epsilon(0.03));
 
-  // Twice as many paths, of half the flux: half the variance. The same where each path is twice as likely.
+  // Twice as many paths of half the flux: half the variance. The same if each path is twice as likely.
   EfficiencyPilot more = pilot_of(all, lookups, as_before);
   more.paths = 2;
   CHECK(photons::caustic_moments(more)[0].photons == Approx(m.photons / 2));
@@ -81,7 +81,7 @@ TEST_CASE("light paths tell the moments of photons and of paths from the eye", "
   CHECK(photons::caustic_moments(pilot_of(all, lookups, twice))[0].mean == Approx(m.mean));
 }
 
-TEST_CASE("what lies on the other side, or nowhere, tells nothing", "[photons_worth]") {
+TEST_CASE("photons on the other side, or on no surface, do not contribute", "[photons_efficiency]") {
   const std::vector<shared::PhotonContribution> all = even(10000, 1, 1);
   const uint32_t up = shared::facet_pack(vec3(0, 1, 0)), down = shared::facet_pack(vec3(0, -1, 0)),
                  across = shared::facet_pack(vec3(1, 0, 0));
@@ -97,28 +97,28 @@ TEST_CASE("what lies on the other side, or nowhere, tells nothing", "[photons_wo
   }
 }
 
-TEST_CASE("each region has the way that makes the whole best", "[photons_worth]") {
+TEST_CASE("each region gets the method that makes the whole most efficient", "[photons_efficiency]") {
   const Moments hard{1, 0.1, 1000, 50}, soft{1, 0.5, 0.2, 50}, unknown{1, 0.5, 0.2, 0};
-  SECTION("photons everywhere where paths hardly find the light") {
+  SECTION("photons everywhere if paths rarely find the light") {
     const Regions r = choose(halves(hard, hard), k_costs);
     CHECK((r.by_photons == 1 && !r.nowhere && r.gain == 1));
   }
-  SECTION("none where paths are better") {
+  SECTION("none if paths are more efficient") {
     const Regions r = choose(halves(soft, soft), k_costs);
     CHECK((r.by_photons == 0 && r.nowhere));
-    // Noise times cost of either way.
+    // Variance times cost of either method.
     CHECK(r.gain == Approx(0.5 * (2 + 0.5 + 2) / (0.2 * (2 + 1.5))));
   }
-  SECTION("each half its own") {
+  SECTION("each half by its own method") {
     const Regions r = choose(halves(hard, soft), k_costs);
     CHECK_FALSE(r.nowhere);
     CHECK(r.gain > 1);
-    // The left half; where a neighbour lies in it, judged with it; and one region further.
+    // The left half; regions with a neighbour in it, which are judged together; and one region further.
     for (uint32_t y = 0; y < r.height; ++y)
       for (uint32_t x = 0; x < r.width; ++x) CHECK(r.delegated[y * r.width + x] == (x < 6 ? 0 : 1));
     CHECK(r.by_photons == Approx(6.0 / 8));
   }
-  SECTION("paths where the pilot has found little or nothing") {
+  SECTION("paths where the pilot found little or no light") {
     for (const Moments& few : {unknown, Moments{}}) {
       const Regions none = choose(halves(few, few), k_costs);
       CHECK((none.nowhere && none.scarce));
@@ -130,7 +130,7 @@ TEST_CASE("each region has the way that makes the whole best", "[photons_worth]"
     }
     CHECK_FALSE(choose(halves(soft, soft), k_costs).scarce);
   }
-  SECTION("light that no path from the eye meets") {
+  SECTION("light that no camera path hits") {
     const Moments unmet{1, 0.1, double(shared::k_radiance_unmet), 50};
     CHECK(choose(halves(unmet, soft), k_costs).delegated[0] == 0);
     CHECK(choose(halves(unmet, unmet), k_costs).by_photons == 1);

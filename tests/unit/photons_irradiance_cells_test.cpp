@@ -1,6 +1,6 @@
 // links: photons
-// Irradiance on pieces of surfaces: right on average whatever the photons, as fine as they are, of its own
-// side alone, unknown where there are too few.
+// Irradiance cells on surfaces: unbiased for any photons, as fine as the photons allow, separate for both
+// sides, unknown where photons are too few.
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -32,8 +32,8 @@ void add_grid(upload::FlatScene& flat, const vec3& corner, const vec3& u, const 
   flat.scene_centre = vec3(0.5f), flat.scene_radius = 2;
 }
 
-/// `count` photons evenly over each square metre of the triangles' fronts, of flux such that the irradiance
-/// is what `irradiance` says, 0 or that where `lit`.
+/// `count` photons per square metre, evenly on the front sides of the triangles, with a flux that gives
+/// `irradiance`, or 0 where not `lit`.
 std::vector<PhotonOnSide> spread(const upload::FlatScene& flat, uint32_t count, float irradiance,
                                  const std::function<bool(vec3)>& lit) {
   std::mt19937 random(3);
@@ -66,7 +66,7 @@ IrradianceCells make(const SideOrder& order, const std::vector<PhotonOnSide>& ph
   return builder.take();
 }
 
-/// As the shader reads it: the node, if anything is known.
+/// As the shader reads it: the node, or nothing if unknown.
 std::optional<uint32_t> find(const IrradianceCells& cells, uint32_t groups, uint32_t side, uint32_t map,
                              float u, float v) {
   uint32_t node = cells.roots[side >> 1][int(2 * map + (side & 1u))];
@@ -81,7 +81,7 @@ std::optional<uint32_t> find(const IrradianceCells& cells, uint32_t groups, uint
 }
 
 struct Seen {
-  double mean = 0, square = 0, known = 0;  ///< irradiance where it is known; share of places
+  double mean = 0, square = 0, known = 0;  ///< irradiance where known; share of known places
 };
 Seen look(const IrradianceCells& cells, uint32_t groups, const upload::FlatScene& flat, uint32_t map,
           const std::function<bool(vec3)>& where) {
@@ -109,27 +109,27 @@ bool everywhere(vec3) { return true; }
 
 }  // namespace
 
-TEST_CASE("even light on large triangles is known everywhere, and to what its photons allow") {
+TEST_CASE("even light on large triangles is known everywhere, with the noise of its photons") {
   upload::FlatScene flat;
   add_grid(flat, vec3(0), {1, 0, 0}, {0, 0, -1}, 1, 1);
   const SideOrder order = photons::order_sides(flat, {true});
   const std::vector<PhotonOnSide> all = spread(flat, 20000, 3, everywhere);
   const IrradianceCells cells = make(order, all, 0, 0.1f);
-  CHECK(cells.known > 2 * 20000 / 2 / 40);  // both maps; 8 photons of a half a piece or more, up to 32
+  CHECK(cells.known > 2 * 20000 / 2 / 40);  // both maps; 8 to 32 photons of one half per cell
   for (const uint32_t map : {0u, 1u}) {
     const Seen seen = look(cells, 0, flat, map, everywhere);
-    // Quarters without any of the photons that decide are unknown.
+    // Quarters without photons of the deciding half are unknown.
     CHECK(seen.known > 0.9);
-    // 10000 photons of a half: 1 % of noise; 8 to 32 of them a piece.
+    // 10000 photons of one half: 1 % of noise; 8 to 32 of them per cell.
     CHECK(seen.mean == Approx(3).epsilon(0.04));
     CHECK(seen.square / (seen.mean * seen.mean) - 1 < 1.0 / 8);
     CHECK(seen.square / (seen.mean * seen.mean) - 1 > 1.0 / 32);
   }
-  // The back has none.
+  // The back side has none.
   CHECK_FALSE(find(cells, 0, 1, 0, 0.3f, 0.3f));
 }
 
-TEST_CASE("light ends where its photons end, and a piece that nobody lights stays unknown") {
+TEST_CASE("light ends where its photons end, and unlit cells stay unknown") {
   upload::FlatScene flat;
   add_grid(flat, vec3(0), {1, 0, 0}, {0, 0, -1}, 1, 1);
   const auto lit = [](vec3 p) { return p.x < 0.4f; };
@@ -139,19 +139,19 @@ TEST_CASE("light ends where its photons end, and a piece that nobody lights stay
   CHECK(within.known > 0.9);
   CHECK(within.mean == Approx(3).epsilon(0.04));
   CHECK(look(cells, 0, flat, 0, [](vec3 p) { return p.x > 0.55f; }).known == 0);
-  // What lies hidden takes nothing from what is seen: at the border a piece's photons are not spread over the
-  // dark quarters beside it.
+  // Hidden parts do not dilute visible ones: at the border a cell's photons are not spread over the dark
+  // quarters beside it.
   const Seen border = look(cells, 0, flat, 0, [](vec3 p) { return p.x > 0.37f && p.x < 0.395f; });
   CHECK(border.mean > 0.75 * 3);
 }
 
-TEST_CASE("small triangles are put together with those that face alike") {
+TEST_CASE("small triangles are merged with neighbours of similar orientation") {
   upload::FlatScene flat;
   add_grid(flat, vec3(0), {1, 0, 0}, {0, 0, -1}, 40, 40);  // the floor
   const auto floors = uint32_t(flat.triangles.size());
-  add_grid(flat, vec3(0), {1, 0, 0}, {0, 1, 0}, 40, 40);  // a wall, at an edge with it
+  add_grid(flat, vec3(0), {1, 0, 0}, {0, 1, 0}, 40, 40);  // a wall that shares an edge
   const SideOrder order = photons::order_sides(flat, {true});
-  // 0.6 photons a triangle; the wall is dark.
+  // 0.6 photons per triangle; the wall is dark.
   const auto lit = [](vec3 p) { return p.y <= 0; };
   const std::vector<PhotonOnSide> all = spread(flat, 2000, 3, lit);
   const IrradianceCells cells = make(order, all, 0, 0.3f);
@@ -159,15 +159,15 @@ TEST_CASE("small triangles are put together with those that face alike") {
   floor.triangles.resize(floors);
   const Seen seen = look(cells, 0, floor, 0, everywhere);
   CHECK(seen.known > 0.8);
-  CHECK(seen.mean == Approx(3).epsilon(0.12));  // 1000 photons of a half: 3 % of noise
-  // Of the wall there is nothing but what its lowest row, which lies on the floor, has from there.
+  CHECK(seen.mean == Approx(3).epsilon(0.12));  // 1000 photons of one half: 3 % of noise
+  // The wall has only the light of its lowest row, which shares cells with the floor.
   const Seen wall = look(cells, 0, flat, 0, [](vec3 p) { return p.y > 0.03f; });
   CHECK(!(wall.known > 0));
-  // Where nothing may be put together, few triangles have eight photons of a half.
+  // Without merging few triangles have eight photons of one half.
   CHECK(make(order, all, 0, 0.002f).known < 10);
 }
 
-TEST_CASE("a map does not hang on the order of its photons, and each has its own half of them") {
+TEST_CASE("a map does not depend on the order of its photons, and two maps use separate halves") {
   upload::FlatScene flat;
   add_grid(flat, vec3(0), {1, 0, 0}, {0, 0, -1}, 4, 4);
   const SideOrder order = photons::order_sides(flat, {true});
@@ -178,7 +178,7 @@ TEST_CASE("a map does not hang on the order of its photons, and each has its own
   REQUIRE(cells.nodes.size() == again.nodes.size());
   CHECK(std::memcmp(cells.nodes.data(), again.nodes.data(), cells.nodes.size() * sizeof(vec4)) == 0);
   CHECK(cells.roots == again.roots);
-  // Noise of the two: independent. Groups add up to the whole.
+  // The noise of the two maps is independent. Groups sum to the whole.
   double covariance = 0, variance = 0, n = 0;
   for (uint32_t t = 0; t < flat.triangles.size(); ++t)
     for (float u = 0.05f; u < 0.9f; u += 0.1f) {
@@ -190,18 +190,18 @@ TEST_CASE("a map does not hang on the order of its photons, and each has its own
       CHECK(texels[1].x + texels[2].x + texels[3].x == Approx(texels->x).epsilon(1e-5));
     }
   CHECK(n > 200);
-  // Places share pieces, so that far fewer than n count; 0.35 is beyond 3 sigma of 100 pairs.
+  // Places share cells, so far fewer than n count; 0.35 is beyond 3 sigma of 100 pairs.
   CHECK(std::abs(covariance) < 0.35 * variance);
 }
 
-TEST_CASE("nothing, or triangles of no area, make a map in which nothing is known") {
+TEST_CASE("without photons, or with triangles of zero area, no irradiance is known") {
   upload::FlatScene flat;
   CHECK(make(photons::order_sides(flat, {}), {}, 0, 1).known == 0);
   add_grid(flat, vec3(0), {1, 0, 0}, vec3(0), 1, 1);
   const SideOrder order = photons::order_sides(flat, {true});
   const std::vector<PhotonOnSide> lost(100, {.side = 0, .barycentric = 0, .number = 0, .flux = vec3(1)});
   CHECK(make(order, lost, 0, 1).known == 0);
-  // Many photons in one point end at the most cuts.
+  // Many photons in one point end at the maximum depth.
   upload::FlatScene one;
   add_grid(one, vec3(0), {1, 0, 0}, {0, 0, -1}, 1, 1);
   std::vector<PhotonOnSide> point(1000, {.side = 0, .barycentric = 1000, .flux = vec3(1)});

@@ -1,6 +1,6 @@
 // links: photons
-// The law by which photons' radius shrinks, against its closed form and the recurrence that it solves; and
-// what a person is told.
+// The law by which the photon radius shrinks, compared with its closed form and the recurrence that it
+// solves; and the report.
 #include <catch2/catch.hpp>
 
 #include "solvers/photons/radius.h"
@@ -9,7 +9,7 @@
 using namespace lucerna;
 using photons::radius_ratio;
 
-TEST_CASE("the radius of photons shrinks as Knaus and Zwicker have it") {
+TEST_CASE("the radius of photons follows Knaus and Zwicker") {
   const double alpha = 2.0 / 3;
   CHECK(radius_ratio(0, alpha) == Approx(1));
   CHECK(radius_ratio(63, alpha) == Approx(0.526).margin(5e-4));
@@ -26,7 +26,7 @@ TEST_CASE("the radius of photons shrinks as Knaus and Zwicker have it") {
   CHECK(radius_ratio(~0u, alpha) > 0);
 }
 
-TEST_CASE("what is told of photons says why there are none") {
+TEST_CASE("the report of photons states why there are none") {
   photons::PhotonReport r;
   r.lights_power = 0;
   const auto says = [](const solvers::Report& report, const char* words) {

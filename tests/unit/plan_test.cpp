@@ -1,5 +1,6 @@
 // links: plan
-// The plan: who computes what, and which light is out of reach. And light for scenes that have none.
+// The plan: which solver computes each component, and which light none can find. Also default light for
+// scenes without lights.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -33,14 +34,14 @@ TEST_CASE("every component has one solver of the registry, or none") {
   CHECK(p.solver[1] == nullptr);
   REQUIRE(p.solver[0] != nullptr);
   CHECK(p.solver[0]->name == "path");
-  // What is off has no bias of its own to tell; a solver that cannot tell says so too.
+  // A component that is off has a bias of zero; a solver without an estimate has none.
   CHECK(p.bias(0) == 0.0);
   CHECK_FALSE(p.bias(1).has_value());
   solvers::SolverInfo reuses{.name = "reuses", .serves = {true, true, true, true}, .looked_up = true};
   plan::Plan biased;
   biased.solver[2] = &reuses;
   CHECK_FALSE(biased.bias(2).has_value());
-  // What the settings offer is what the registry serves.
+  // The settings offer the solvers that the registry has for the component.
   for (int c = 0; c < paths::k_component_count; ++c) {
     const auto* option = plan::find_option(std::string("components.") + paths::k_component_names[c]);
     REQUIRE(option != nullptr);
@@ -51,13 +52,13 @@ TEST_CASE("every component has one solver of the registry, or none") {
   }
 }
 
-TEST_CASE("light that the chosen solvers cannot find is warned about, and nothing else is") {
+TEST_CASE("light that the chosen solvers cannot find causes a warning, and nothing else does") {
   const plan::Plan p = plan::make_plan({});
   scene::Scene s = one_triangle();
   CHECK(plan::unreachable_light(p, s).empty());
   s.lights.resize(2);
   CHECK(plan::unreachable_light(p, s).empty());
-  // Rough surfaces scatter light where paths from the eye can sample it.
+  // Rough surfaces scatter light where camera paths can sample it.
   s.materials[0].transmission = 1, s.materials[0].thickness = 0.1f;
   CHECK(plan::unreachable_light(p, s).empty());
   // Glass, a mirror, varnish.
@@ -71,19 +72,19 @@ TEST_CASE("light that the chosen solvers cannot find is warned about, and nothin
   s.materials[0].specular = 0;
   CHECK(plan::unreachable_light(p, s).empty());
   s.materials[0].specular = 1;
-  // A polished material that no surface has.
+  // A polished material that no surface uses.
   scene::Scene unused = s;
   unused.materials.insert(unused.materials.begin(), scene::Material{});
   unused.materials[0].roughness = 1;
   CHECK(plan::unreachable_light(p, unused).empty());
-  // Components that are off are not asked for.
+  // Components that are off cause no warning.
   plan::Settings some;
   for (const char* key : {"components.primary", "components.tertiary"}) some.set(key, "off");
   REQUIRE(plan::unreachable_light(plan::make_plan(some), s).size() == 1);
   CHECK(plan::unreachable_light(plan::make_plan(some), s)[0].find("tertiary") == std::string::npos);
   some.set("components.caustic", "off");
   CHECK(plan::unreachable_light(plan::make_plan(some), s).empty());
-  // Photons find it, of the components that they compute.
+  // Photons find it, for the components that they compute.
   plan::Settings photons;
   photons.set("components.caustic", "photons");
   REQUIRE(plan::unreachable_light(plan::make_plan(photons), s).size() == 1);
@@ -92,14 +93,14 @@ TEST_CASE("light that the chosen solvers cannot find is warned about, and nothin
   CHECK(plan::unreachable_light(plan::make_plan(photons), s).empty());
   photons.set("components.caustic", "light+photons");
   CHECK(plan::unreachable_light(plan::make_plan(photons), s).empty());
-  photons.set("components.caustic", "light");  // but for mirror images of it
+  photons.set("components.caustic", "light");  // except for its mirror images
   REQUIRE(plan::unreachable_light(plan::make_plan(photons), s).size() == 1);
   CHECK(plan::unreachable_light(plan::make_plan(photons), s)[0].find("light+photons") != std::string::npos);
   for (scene::Light& l : s.lights) l.enabled = false;
   CHECK(plan::unreachable_light(p, s).empty());
 }
 
-TEST_CASE("a scene without light gets a studio and says so; a scene with any keeps what it has") {
+TEST_CASE("a scene without light gets a studio with a message; a scene with any light keeps its own") {
   scene::Scene dark = one_triangle();
   CHECK_FALSE(scene::has_light(dark));
   REQUIRE(scene::add_default_light(dark));
@@ -125,14 +126,14 @@ TEST_CASE("a scene without light gets a studio and says so; a scene with any kee
   sky.environment.radiance = vec3(0.1f);
   CHECK_FALSE(scene::add_default_light(sky));
   scene::Scene black = one_triangle();
-  black.environment.given = true;  // somebody wants it dark
+  black.environment.given = true;  // black on purpose
   CHECK_FALSE(scene::add_default_light(black));
   scene::Scene unlit = one_triangle();
   unlit.materials[0].unlit = true;
   CHECK_FALSE(scene::add_default_light(unlit));
 }
 
-TEST_CASE("two solvers joined by a plus share a component, and both are at work") {
+TEST_CASE("two solvers joined by a plus share a component, and both are used") {
   plan::Settings settings;
   settings.set("components.caustic", "light+photons");
   const plan::Plan both = plan::make_plan(settings);

@@ -1,6 +1,6 @@
 // links: ui
-// What the window keeps between runs comes back: bookmarks by scene, recent files, panels, and that the first
-// steps were shown. Several windows share it.
+// State that the window keeps between runs: bookmarks by scene, recent files, panels, and that the
+// introduction was shown. Several windows share it.
 #include "viewer/fake_session.h"
 
 #include <sys/stat.h>
@@ -18,7 +18,7 @@ namespace {
 
 const std::string k_line = "camera.place 1,2,3 0,0,0 0,1,0 fov=40";
 
-/// A window with its memory, without the window.
+/// The window's stored state, without a window.
 struct Window {
   session::Session session{{}};
   ui::Ui ui{session};
@@ -32,10 +32,10 @@ struct StateFolder : test::Folder {
 
 }  // namespace
 
-TEST_CASE("bookmarks and the first steps outlive the window; a damaged file is passed over") {
+TEST_CASE("bookmarks and the state of the first steps survive a restart; a damaged file is ignored") {
   const StateFolder folder;
   {
-    Window window;  // nothing there yet
+    Window window;  // no file yet
     CHECK_FALSE(window.ui.welcomed);
     CHECK(window.ui.bookmarks.empty());
     window.ui.welcomed = true;
@@ -85,7 +85,7 @@ TEST_CASE("two windows keep each other's bookmarks, files and panels") {
     second.ui.layout.bottom = 200;
     second.ui.sections["Render"] = false;
     REQUIRE(second.memory.save());
-    // A window that saves knows the others' views from then on; its panels stay as they are.
+    // A window that saves merges the other's views; its own panels stay.
     CHECK(second.ui.bookmarks["/a"].size() == 3);
     CHECK(second.ui.recent == std::vector<std::string>{"/3", "/5", "/4", "/1", "/2"});
     CHECK(second.ui.layout.left == ui::Layout().left);
@@ -100,7 +100,7 @@ TEST_CASE("two windows keep each other's bookmarks, files and panels") {
   CHECK(after.ui.sections == std::map<std::string, bool>{{"Camera", true}, {"Render", false}});
 }
 
-TEST_CASE("bookmarks are saved at once, panels when they have come to rest, and nothing without a change") {
+TEST_CASE("bookmarks are saved immediately, panels once they stop moving, and nothing without a change") {
   const StateFolder folder;
   Window window;
   window.memory.follow(1);
@@ -128,7 +128,7 @@ TEST_CASE("bookmarks are saved at once, panels when they have come to rest, and 
   CHECK(written() == before);
 }
 
-TEST_CASE("what cannot be kept is said once") {
+TEST_CASE("a failed save is reported once") {
   const StateFolder folder;
   std::ofstream(folder.path / "lucerna") << "a file where the folder should be";
   int warnings = 0;

@@ -1,5 +1,5 @@
 // links: scene_io
-// Every damage that the loader has a word for: one located message, no crash; or a warning with a count.
+// Every kind of damage that the loader detects: one located message, no crash; or a warning with a count.
 #include <cmath>
 
 #include "unit/scene_support.h"
@@ -19,7 +19,7 @@ Asset good() {
   return asset;
 }
 
-// A triangle of which one thing is changed.
+// A triangle with one change.
 template <class Change>
 std::string broken(Change change) {
   Asset asset = good();
@@ -31,7 +31,7 @@ std::string broken(Change change) {
 
 TEST_CASE("the undamaged file loads") { CHECK(failure(good()).empty()); }
 
-TEST_CASE("files that are not there, empty, or not glTF") {
+TEST_CASE("files that are missing, empty, or not glTF") {
   TempFolder folder;
   CHECK(failure(folder / "no.gltf") == (folder / "no.gltf").string() + ": no such file");
   write(folder / "empty.gltf", "");
@@ -52,7 +52,7 @@ TEST_CASE("files that are not there, empty, or not glTF") {
   CHECK_THAT(failure(folder / "utf8.gltf"), Contains("not valid JSON"));
 }
 
-TEST_CASE("glTF versions that cannot be read") {
+TEST_CASE("unsupported glTF versions") {
   CHECK_THAT(broken([](Asset& a) { a.doc.erase("asset"); }), Contains("'asset' is missing"));
   CHECK_THAT(broken([](Asset& a) { a.doc["asset"]["version"] = "1.0"; }),
              Contains("asset.version: '1.0', expected 2.0"));
@@ -76,12 +76,12 @@ TEST_CASE(".glb: header and chunks") {
   CHECK_THAT(with(16, 'X'), Contains("first chunk of a .glb must be JSON"));
   write(folder / "x.glb", whole.data(), whole.size() - 1);
   CHECK_THAT(failure(folder / "x.glb"), Contains("x.glb: truncated .glb"));
-  // Content counts, not the name.
+  // The content counts, not the name.
   write(folder / "y.gltf", whole.data(), whole.size());
   CHECK(failure(folder / "y.gltf").empty());
 }
 
-TEST_CASE("positions that are not finite or endless") {
+TEST_CASE("positions that are not finite") {
   for (const float bad : {NAN, INFINITY, -INFINITY, 1e20f}) {
     Asset asset;
     asset.mesh(
@@ -108,7 +108,7 @@ TEST_CASE("indices out of range") {
              Contains("primitives[0].indices: expected scalars of an unsigned integer type"));
 }
 
-TEST_CASE("references to things that are not there") {
+TEST_CASE("references to missing objects") {
   CHECK_THAT(broken([](Asset& a) { a.doc["scene"] = 3; }),
              Contains("a.gltf: scene: 3 is not an index of scenes (there are 1)"));
   CHECK_THAT(broken([](Asset& a) { a.doc["scenes"][0]["nodes"] = {7}; }),
@@ -172,7 +172,7 @@ TEST_CASE("values of a wrong type or size") {
                    a.add("materials", {{"pbrMetallicRoughness", {{"roughnessFactor", "x"}}}});
              }),
              Contains("materials[0].pbrMetallicRoughness.roughnessFactor: expected a number, found string"));
-  // A whole number written as 3.0 is one.
+  // A whole number written as 3.0 is accepted.
   CHECK(broken([](Asset& a) { a.doc["accessors"][0]["count"] = 3.0; }).empty());
 }
 
@@ -233,7 +233,7 @@ TEST_CASE("accessors beyond views, views beyond buffers, buffers shorter than th
   CHECK(failure(folder / "a.gltf").empty());
 }
 
-TEST_CASE("absurd sizes are refused before memory is asked for") {
+TEST_CASE("absurd sizes are refused before memory is allocated") {
   CHECK_THAT(broken([](Asset& a) { a.doc["accessors"][0]["count"] = 1e18; }), Contains("accessors[0].count"));
   CHECK_THAT(broken([](Asset& a) {
                a.doc["accessors"][0] = {{"componentType", 5126}, {"type", "VEC3"}, {"count", 2000000000}};
@@ -251,7 +251,7 @@ TEST_CASE("absurd sizes are refused before memory is asked for") {
              Contains("buffers[0]: byteLength is 1000000000000, but only 36 bytes are there"));
 }
 
-TEST_CASE("matrices above something that is shown") {
+TEST_CASE("matrices above a visible object") {
   CHECK_THAT(broken([](Asset& a) {
                a.doc["nodes"][0]["matrix"] = {1e38, 0, 0, 0, 0, 1e38, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
              }),
@@ -260,13 +260,13 @@ TEST_CASE("matrices above something that is shown") {
                a.doc["nodes"][0]["rotation"] = {0, 0, 0, 0};
              }),
              Contains("nodes[0].rotation: a quaternion of length 0"));
-  // Harmless where nothing hangs below.
+  // Harmless without children.
   CHECK(broken([](Asset& a) {
           a.doc["scenes"][0]["nodes"].push_back(a.add("nodes", {{"rotation", {0, 0, 0, 0}}}));
         }).empty());
-  // Small but sound.
+  // Small but valid.
   CHECK(broken([](Asset& a) { a.doc["nodes"][0]["scale"] = {1e-4, 1e-4, 1e-4}; }).empty());
-  // Each matrix sound, their product endless.
+  // Each matrix is valid, their product is not finite.
   CHECK_THAT(broken([](Asset& a) {
                a.doc["nodes"][0]["translation"] = {1e12, 0, 0};
              }),
@@ -306,7 +306,7 @@ TEST_CASE("a hierarchy of 100 000 levels does not overflow the stack") {
   CHECK(scene::count_triangles(a.load()) == 1);
 }
 
-TEST_CASE("extensions: required and unknown is an error, optional and unknown one warning each") {
+TEST_CASE("extensions: a required unknown one is an error, an optional unknown one a warning") {
   CHECK_THAT(
       broken([](Asset& a) { a.doc["extensionsRequired"] = {"KHR_draco_mesh_compression"}; }),
       Contains(
@@ -334,7 +334,7 @@ TEST_CASE("images that are missing, damaged or empty are replaced and counted") 
   write_image<uint8_t>(folder / "whole.png", 2, 2, 3, std::vector<uint8_t>(12, 77));
   const std::vector<uint8_t> png = bytes_of(folder / "whole.png");
   write(folder / "cut.png", png.data(), png.size() / 2);
-  std::vector<uint8_t> zero = png;  // width and height live in bytes 16 to 23
+  std::vector<uint8_t> zero = png;  // width and height are in bytes 16 to 23
   std::fill(zero.begin() + 16, zero.begin() + 24, uint8_t{0});
   write(folder / "zero.png", zero.data(), zero.size());
   std::vector<uint8_t> vast = png;
@@ -370,7 +370,7 @@ TEST_CASE("images that are missing, damaged or empty are replaced and counted") 
   }
 }
 
-TEST_CASE("environments and settings that cannot be taken") {
+TEST_CASE("invalid environments and settings") {
   TempFolder folder;
   const std::filesystem::path file = good().gltf(folder);
   const auto with = [&](const std::string& settings) {

@@ -1,6 +1,6 @@
 // links: scene_io film_io
-// What files of light say of their pixels besides their values: orientation and exposure of Radiance
-// pictures, windows of EXR, and the shape of an environment.
+// Metadata of light files besides pixel values: orientation and exposure of Radiance pictures, windows of
+// EXR, and the shape of an environment.
 #include <cmath>
 
 #include "base/primaries.h"
@@ -40,8 +40,8 @@ std::vector<float> reds(const TempFolder& folder, const std::string& name) {
 
 constexpr int k_width = 4, k_height = 2;
 
-/// 4 x 2 pixels, of which that in column x and row y of the picture is 1 + x + 10 y in all channels, in the
-/// order of the resolution line.
+/// 4 x 2 pixels in the order of the resolution line; the pixel in column x and row y of the picture is 1 + x
+/// + 10 y in all channels.
 std::vector<uint8_t> radiance(const std::string& header, char slow_sign, char slow, char fast_sign,
                               char fast) {
   const int lines = slow == 'Y' ? k_height : k_width, length = slow == 'Y' ? k_width : k_height;
@@ -89,11 +89,11 @@ TEST_CASE("exposures and colour corrections of Radiance pictures are divided out
   CHECK(first("EXPOSURE=0.25\n") == vec3(4));
   CHECK(first("EXPOSURE= 2.000000e+00\nSOFTWARE=x\nEXPOSURE=4\n") == vec3(0.125f));
   CHECK(first("COLORCORR=1 2 4\nEXPOSURE=0.5\nCOLORCORR= 1 1 0.5\n") == vec3(2, 1, 1));
-  // Not of this picture, or of no use.
+  // Inherited from another picture, or invalid.
   CHECK(first("pcomb\n\tEXPOSURE=0.25\nEXPOSURE=0\nEXPOSURE=much\nEXPOSURE=-1\n") == vec3(1));
 }
 
-TEST_CASE("Radiance pictures in XYZ become RGB of the same white") {
+TEST_CASE("Radiance pictures in XYZ become RGB with the same white") {
   RadianceHeader header;
   header.lines = header.length = 1;
   header.xyz = true;
@@ -113,7 +113,7 @@ TEST_CASE("Radiance pictures in XYZ become RGB of the same white") {
     CHECK_FALSE(read_radiance_header({broken, broken + std::strlen(broken)}));
 }
 
-TEST_CASE("colours of other primaries become Rec.709's") {
+TEST_CASE("colours of other primaries are converted to Rec.709") {
   const Chromaticities rec709{0.64f, 0.33f, 0.3f, 0.6f, 0.15f, 0.06f, 0.3127f, 0.329f};
   const Chromaticities acescg{0.713f, 0.293f, 0.165f, 0.83f, 0.128f, 0.044f, 0.32168f, 0.33767f};
   CHECK_FALSE(rec709_from(rec709));
@@ -150,7 +150,7 @@ TEST_CASE("colours of other primaries become Rec.709's") {
 
 TEST_CASE("an EXR's data window is placed in its display window") {
   TempFolder folder;
-  // Pixels of the picture as k_upright has them, others 99.
+  // Pixels of the picture as in k_upright, others 99.
   const auto write_window = [&](int x, int y, int width, int height, int full_x, int full_y) {
     OIIO::ImageSpec spec(width, height, 3, OIIO::TypeDesc::FLOAT);
     spec.x = x, spec.y = y;
@@ -170,14 +170,14 @@ TEST_CASE("an EXR's data window is placed in its display window") {
   };
   CHECK(write_window(0, 0, 4, 2, 0, 0) == k_upright);
   CHECK(write_window(0, 0, 4, 1, 0, 0) == std::vector<float>{1, 2, 3, 4, 0, 0, 0, 0});    // cropped
-  CHECK(write_window(1, 1, 2, 1, 0, 0) == std::vector<float>{0, 0, 0, 0, 0, 12, 13, 0});  // within
+  CHECK(write_window(1, 1, 2, 1, 0, 0) == std::vector<float>{0, 0, 0, 0, 0, 12, 13, 0});  // inside
   CHECK(write_window(-1, -2, 7, 6, 0, 0) == k_upright);                                   // overscan
   CHECK(write_window(2, -1, 5, 2, 0, 0) == std::vector<float>{0, 0, 3, 4, 0, 0, 0, 0});   // both
   CHECK(write_window(100, -50, 4, 2, 100, -50) == k_upright);                             // offset
-  CHECK(write_window(9, 9, 3, 3, 0, 0) == std::vector<float>(8, 0.f));                    // apart
+  CHECK(write_window(9, 9, 3, 3, 0, 0) == std::vector<float>(8, 0.f));                    // disjoint
 }
 
-TEST_CASE("a fourth channel of an EXR that is no alpha is left out") {
+TEST_CASE("a fourth EXR channel that is no alpha is ignored") {
   TempFolder folder;
   OIIO::ImageSpec spec(2, 1, 4, OIIO::TypeDesc::FLOAT);
   const auto alpha = [&](const char* name) {
@@ -195,7 +195,7 @@ TEST_CASE("a fourth channel of an EXR that is no alpha is left out") {
   CHECK(alpha("Z") == 1);
 }
 
-TEST_CASE("one rule for the shape of environments, in scenes and by themselves") {
+TEST_CASE("one rule for the shape of environments, in scenes and as single files") {
   TempFolder folder;
   const auto complaint = [&](int width, int height) {
     write_image<float>(folder / "sky.exr", width, height, 3,

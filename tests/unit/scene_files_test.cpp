@@ -1,5 +1,5 @@
 // links: scene_io
-// Which files a scene can make the program read: those of its folder, as what they are, and no others.
+// The files that a scene can make the program read: those of its folder, by content, and no others.
 #include "unit/scene_support.h"
 
 using namespace lucerna;
@@ -9,7 +9,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// A folder with a scene's folder in it, and a red image outside.
+/// A folder that contains a scene's folder and, outside that, a red image.
 struct Bed {
   TempFolder outer;
   fs::path scene = outer / "scene";
@@ -18,7 +18,7 @@ struct Bed {
     for (const fs::path& place : {outer / "red.png", scene / "textures" / "red.png"})
       write_image<uint8_t>(place, 1, 1, 3, {255, 0, 0});
   }
-  /// A scene with an image and, unless empty, the bytes of its buffer in a file of that name.
+  /// A scene with an image and, unless empty, its buffer's bytes in a file of that name.
   fs::path gltf(const std::string& image, const std::string& buffer = "") const {
     Asset asset;
     const int texture = asset.add("textures", {{"source", asset.add("images", {{"uri", image}})}});
@@ -37,7 +37,7 @@ bool red(const scene::Scene& scene) {
 
 }  // namespace
 
-TEST_CASE("what a scene names outside its folder is read only where that is allowed") {
+TEST_CASE("files outside the scene's folder are read only if allowed") {
   const Bed bed;
   fs::create_symlink(bed.outer.path, bed.scene / "link");
   fs::create_symlink(bed.outer / "red.png", bed.scene / "linked.png");
@@ -60,7 +60,7 @@ TEST_CASE("what a scene names outside its folder is read only where that is allo
     INFO(uri);
     CHECK(red(scene::load(bed.gltf(uri))));
   }
-  // Names of other systems and schemes are names here, of files that are not there.
+  // Names of other systems and schemes are plain names of missing files.
   for (const char* uri : {"C:\\red.png", "..\\red.png", "file:///etc/hostname", "http://localhost/red.png"}) {
     INFO(uri);
     const scene::Scene scene = scene::load(bed.gltf(uri));
@@ -68,7 +68,7 @@ TEST_CASE("what a scene names outside its folder is read only where that is allo
   }
 }
 
-TEST_CASE("a buffer, an environment or settings outside the folder are errors that say so") {
+TEST_CASE("a buffer, an environment or settings outside the folder are reported as errors") {
   const Bed bed;
   CHECK(
       failure(bed.gltf("textures/red.png", "../a.bin")) ==
@@ -86,11 +86,11 @@ TEST_CASE("a buffer, an environment or settings outside the folder are errors th
   fs::create_symlink(bed.outer / "theirs.json", settings);
   CHECK_THAT(failure(file), Contains("settings.json' is not in the scene's folder"));
   CHECK(scene::load(file, {.outside = true}).settings.size() == 1);
-  // A link to the scene itself is the person's own.
+  // A link to the scene itself is the user's choice.
   fs::remove(settings);
   fs::create_symlink(bed.scene, bed.outer / "alias");
   CHECK(red(scene::load(bed.outer / "alias" / "a.gltf")));
-  // From its own folder, too.
+  // Also from its own folder.
   const fs::path before = fs::current_path();
   fs::current_path(bed.scene);
   CHECK(red(scene::load("a.gltf")));
@@ -99,7 +99,7 @@ TEST_CASE("a buffer, an environment or settings outside the folder are errors th
   fs::current_path(before);
 }
 
-TEST_CASE("an image is decoded from its own bytes, never from a file of some name in the working folder") {
+TEST_CASE("an image is decoded from its own bytes, never from a file in the working folder") {
   const TempFolder folder;
   const fs::path before = fs::current_path();
   fs::current_path(folder.path);
@@ -110,14 +110,14 @@ TEST_CASE("an image is decoded from its own bytes, never from a file of some nam
     const std::string decoy = std::string("image.") + ending, mine = std::string("mine.") + ending;
     const auto out = OIIO::ImageOutput::create(decoy);
     if (!out) continue;
-    // Green in the image, white in the file that the readers used to open.
+    // Green in the image, white in the file of the name that decoders could open.
     write_image<uint8_t>(mine, 16, 16, 3, [] {
       std::vector<uint8_t> texels(3 * 256, 0);
       for (size_t i = 1; i < texels.size(); i += 3) texels[i] = 255;
       return texels;
     }());
     write_image<uint8_t>(decoy, 16, 16, 3, std::vector<uint8_t>(3 * 256, 255));
-    if (!fs::exists(mine)) continue;  // a format that writes nothing
+    if (!fs::exists(mine)) continue;  // a format that cannot be written
     Asset asset;
     const int image = asset.add(
         "images", {{"bufferView", asset.view(bytes_of(mine))}, {"mimeType", std::string("image/") + ending}});
@@ -144,7 +144,7 @@ TEST_CASE("an image is decoded from its own bytes, never from a file of some nam
   CHECK(refused >= 2);
 }
 
-TEST_CASE("a hint that is no format's name is an error, not a name to open") {
+TEST_CASE("a hint that is no format name is an error, not a file name") {
   const TempFolder folder;
   for (const char* hint :
        {"image/x y", "image/../../etc/passwd", "image/", "image/foo.null?RES=4096x4096", "image/m3u8"}) {

@@ -1,6 +1,6 @@
 // links: scene_io
-// No input makes the loader crash, hang or throw anything but an Error: a .glb cut at every byte, and
-// mutations of its JSON and its binary part. Worth running with the sanitizers as well.
+// No input makes the loader crash, hang or throw anything except an Error: a .glb truncated at every byte,
+// and mutations of its JSON and its binary part. Run it with the sanitizers too.
 #include <cmath>
 #include <random>
 #include <set>
@@ -12,7 +12,7 @@ using namespace lucerna::test;
 
 namespace {
 
-// One small file that has something of everything.
+// One small file that uses every feature.
 std::vector<uint8_t> everything(const TempFolder& folder) {
   write_image<uint8_t>(folder / "i.png", 2, 2, 4, std::vector<uint8_t>(16, 128));
   Asset a;
@@ -54,7 +54,7 @@ std::vector<uint8_t> everything(const TempFolder& folder) {
   return a.glb_bytes();
 }
 
-// What a loaded scene promises to those who use it.
+// The invariants of a loaded scene.
 bool sound(const scene::Scene& s) {
   for (const scene::Instance& i : s.instances)
     if (i.mesh >= s.meshes.size()) return false;
@@ -89,12 +89,12 @@ bool sound(const scene::Scene& s) {
   return true;
 }
 
-// Loads what the bytes say; whether it loaded. Anything but an Error escapes and fails the test.
+// Loads the bytes; returns whether it succeeded. Any exception except an Error escapes and fails the test.
 bool try_load(const std::filesystem::path& file, const std::vector<uint8_t>& bytes) {
   write(file, bytes.data(), bytes.size());
   try {
     const scene::Scene scene = scene::load(file);
-    if (!sound(scene)) FAIL("a damaged file made an unsound scene");
+    if (!sound(scene)) FAIL("a damaged file made an invalid scene");
     scene::describe_text(scene);
     return true;
   } catch (const Error& error) {
@@ -112,7 +112,7 @@ size_t json_length(const std::vector<uint8_t>& glb) {
 
 }  // namespace
 
-TEST_CASE("a .glb cut at every byte") {
+TEST_CASE("a .glb truncated at every byte") {
   TempFolder folder;
   const std::vector<uint8_t> whole = everything(folder);
   REQUIRE(try_load(folder / "x.glb", whole));
@@ -145,8 +145,7 @@ TEST_CASE("bytes changed at random, 4000 files") {
     }
     loaded += try_load(folder / "x.glb", bytes);
   }
-  CHECK(loaded >
-        400);  // many changes are harmless; were all refused, nothing behind the parser would be tested
+  CHECK(loaded > 400);  // many changes are harmless; if all were refused, only the parser would be tested
   CHECK(loaded < 3600);
 }
 
@@ -185,7 +184,7 @@ TEST_CASE("numbers, strings and structures of the JSON exchanged, 3000 files") {
                               "VEC4"};
   std::mt19937 random(77);
   const auto below = [&random](size_t n) { return std::uniform_int_distribution<size_t>(0, n - 1)(random); };
-  std::set<std::string> all;  // every value of the document, and every object and array that holds it
+  std::set<std::string> all;  // every value of the document, and every object and array that contains it
   const json flat = original.flatten();
   for (const auto& [path, value] : flat.items())
     for (json::json_pointer pointer(path); !pointer.empty(); pointer = pointer.parent_pointer())

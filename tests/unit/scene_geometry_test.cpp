@@ -1,5 +1,5 @@
 // links: scene_io
-// Triangles out of glTF: every way to say them, and what is made where something is left out.
+// Triangles from glTF: every encoding, and the defaults for omitted data.
 #include <cmath>
 
 #include "scene/tangents.h"
@@ -56,13 +56,13 @@ TEST_CASE("lists, strips and fans, with and without indices") {
   };
   const std::vector<float> triangle(k_square.begin(), k_square.begin() + 9);
   CHECK(load(4, triangle, {}) == std::vector<vec3>{k_a, k_b, k_c});
-  // A strip's second triangle is turned so that it faces the same way.
+  // A strip's second triangle is reversed so that it faces the same way.
   CHECK(load(5, k_square, {}) == std::vector<vec3>{k_a, k_b, k_c, k_b, k_d, k_c});
   CHECK(load(5, k_square, {3, 2, 1, 0}) == std::vector<vec3>{k_d, k_c, k_b, k_c, k_a, k_b});
   CHECK(load(6, k_square, {0, 1, 3, 2}) == std::vector<vec3>{k_b, k_d, k_a, k_d, k_c, k_a});
 }
 
-TEST_CASE("points and lines are left out with one warning") {
+TEST_CASE("points and lines are omitted with one warning") {
   Asset asset;
   asset.triangle();
   for (int mode : {0, 1, 2, 3}) asset.triangle()["mode"] = mode;
@@ -72,7 +72,7 @@ TEST_CASE("points and lines are left out with one warning") {
   CHECK(scene.warnings.size() == 1);
 }
 
-TEST_CASE("vertices that are not a whole triangle are ignored with a warning") {
+TEST_CASE("vertices beyond the last whole triangle are ignored with a warning") {
   Asset asset;
   asset.mesh({{"attributes", {{"POSITION", asset.accessor("VEC3", k_square)}}}});
   const Scene scene = asset.load();
@@ -99,7 +99,7 @@ TEST_CASE("sparse accessors, over data and over zeros") {
   }
 }
 
-TEST_CASE("sparse indices are honoured in index accessors") {
+TEST_CASE("sparse indices are used in index accessors") {
   Asset asset;
   const int positions = asset.accessor("VEC3", k_square);
   const int indices = asset.accessor<uint32_t>("SCALAR", {0, 1, 1});
@@ -126,7 +126,7 @@ TEST_CASE("interleaved attributes") {
   const Scene scene = asset.load();
   const Primitive& p = only(scene);
   CHECK(corners(p) == std::vector<vec3>{k_a, k_b, k_c});
-  for (const vec3& n : p.normals) CHECK(n == vec3(0, 0, 1));  // made unit length
+  for (const vec3& n : p.normals) CHECK(n == vec3(0, 0, 1));  // normalized
 }
 
 TEST_CASE("quantized positions and normals") {
@@ -187,12 +187,12 @@ TEST_CASE("vertex colours of every kind") {
   CHECK(load(std::vector<float>{1, 0, 0, 0, 0, 1, 0, 1, 0, 0, 1, 0}, "VEC4") == rgba);
   CHECK(load(std::vector<uint8_t>{255, 0, 0, 0, 0, 255, 0, 255, 0, 0, 255, 0}, "VEC4") == rgba);
   CHECK(load(std::vector<uint16_t>{65535, 0, 0, 0, 0, 65535, 0, 65535, 0, 0, 65535, 0}, "VEC4") == rgba);
-  // Outside 0..1: clamped. All white: nothing to carry.
+  // Outside 0..1: clamped. All white: omitted.
   CHECK(load(std::vector<float>{2, -1, 0, 0, 1, 0, 0, 0, 1}, "VEC3") == rgb);
   CHECK(load(std::vector<float>{1, 1, 1, 1, 1, 1, 1, 1, 1}, "VEC3").empty());
 }
 
-TEST_CASE("missing normals are the faces'") {
+TEST_CASE("missing normals are the faces' normals") {
   Asset asset;  // two triangles that share an edge at a right angle
   const int positions = asset.accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1});
   const int tangents = asset.accessor<float>("VEC4", {1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1, 1, 0, 0, 1});
@@ -209,7 +209,7 @@ TEST_CASE("missing normals are the faces'") {
   CHECK(p.tangents.empty());
 }
 
-TEST_CASE("normals without a direction become those of their faces") {
+TEST_CASE("normals of length zero become their faces' normals") {
   Asset asset;
   json& primitive = asset.triangle();
   primitive["attributes"]["NORMAL"] = asset.accessor<float>("VEC3", {0, 0, 0, NAN, 0, 1, 0, 0, 1});
@@ -233,7 +233,7 @@ TEST_CASE("degenerate triangles are removed and counted") {
   CHECK(scene.warnings.size() == 1);
 }
 
-TEST_CASE("an emissive mesh without area leaves no light behind") {
+TEST_CASE("an emissive mesh without area adds no light") {
   Asset asset;
   asset.triangle();
   json& flat = asset.mesh(
@@ -268,7 +268,7 @@ TEST_CASE("a primitive keeps only the vertices it uses") {
 
 namespace {
 
-// A unit square in the XY plane facing +Z, texture coordinates u right and v down (glTF's way), or mirrored
+// A unit square in the XY plane facing +Z, texture coordinates u right and v down (as in glTF), or mirrored
 // in u.
 Primitive square(float x, bool mirrored) {
   Primitive p;
@@ -289,24 +289,24 @@ scene::TextureUse plain_map() {
 
 }  // namespace
 
-TEST_CASE("tangents point along u, their bitangents up the picture") {
+TEST_CASE("tangents point along u, bitangents up in the picture") {
   Primitive p = square(0, false);
   scene::make_tangents(p, plain_map());
   REQUIRE(p.tangents.size() == 4);
-  for (const vec4& t : p.tangents) CHECK(t == vec4(1, 0, 0, 1));  // cross(n, t) = +y: where green points
+  for (const vec4& t : p.tangents) CHECK(t == vec4(1, 0, 0, 1));  // cross(n, t) = +y: the direction of green
 
   Primitive m = square(0, true);
   scene::make_tangents(m, plain_map());
-  for (const vec4& t : m.tangents) CHECK(t == vec4(-1, 0, 0, -1));  // -cross(n, t) = +y still
+  for (const vec4& t : m.tangents) CHECK(t == vec4(-1, 0, 0, -1));  // -cross(n, t) = +y as well
 
-  scene::TextureUse turned = plain_map();  // reads the texture turned by a quarter: u' = v, v' = -u
+  scene::TextureUse turned = plain_map();  // reads the texture rotated by a quarter turn: u' = v, v' = -u
   turned.m = {0, 1, 0, -1, 0, 0};
   Primitive q = square(0, false);
   scene::make_tangents(q, turned);
   for (const vec4& t : q.tangents) CHECK(glm::length(vec3(t) - vec3(0, -1, 0)) < 1e-6f);
 }
 
-TEST_CASE("where mirrored and unmirrored maps meet, vertices are split") {
+TEST_CASE("vertices are split where mirrored and unmirrored maps meet") {
   Primitive p = square(0, false);
   // The mirrored square on its right shares the edge 1-2 with it.
   p.positions.insert(p.positions.end(), {{2, 0, 0}, {2, 1, 0}});
@@ -323,7 +323,7 @@ TEST_CASE("where mirrored and unmirrored maps meet, vertices are split") {
     }
 }
 
-TEST_CASE("tangents of a sphere are unit, lie in the surface and follow the parallels") {
+TEST_CASE("tangents of a sphere have unit length, lie in the surface and follow the parallels") {
   Primitive p;
   const int rows = 16, columns = 32;
   for (int r = 0; r <= rows; ++r)

@@ -1,6 +1,6 @@
 // links: scene
-// What of a scene decides the light in it, as numbers: each change of light moves the number of what it
-// changes and no other; what no light depends on moves none.
+// Hashes of the parts of a scene that determine its light: each change of light changes the hash of its part
+// and no other; a change without influence on light changes none.
 #include <catch2/catch.hpp>
 #include <functional>
 
@@ -38,7 +38,7 @@ Scene room() {
   return s;
 }
 
-/// Which numbers a change moves: "gmle", each letter where it does.
+/// The hashes that a change changes: letters of "gmle".
 std::string moved(const std::function<void(Scene&)>& change, Scene s = room()) {
   const LightHash before = light_hash(s);
   change(s);
@@ -53,7 +53,7 @@ std::string moved(const std::function<void(Scene&)>& change, Scene s = room()) {
 
 }  // namespace
 
-TEST_CASE("a change of the scene's light moves the number of what it changes, and no other") {
+TEST_CASE("a change of light changes the hash of its part, and no other") {
   CHECK(moved([](Scene& s) { s.meshes[0].primitives[0].positions[1].x = 1.0001f; }) == "g");
   CHECK(moved([](Scene& s) { s.meshes[0].primitives[0].normals[1].x = 0.1f; }) == "g");
   CHECK(moved([](Scene& s) { s.meshes[0].primitives[0].uv0[1].x = 0.5f; }) == "g");
@@ -72,7 +72,7 @@ TEST_CASE("a change of the scene's light moves the number of what it changes, an
   CHECK(moved([](Scene& s) { s.materials[1].diffuse_transmission_color.z = 0; }) == "m");
   CHECK(moved([](Scene& s) { s.materials[0].base_color_texture.texture = 1; }) == "m");
   CHECK(moved([](Scene& s) { s.materials[0].base_color_texture.m[2] = 0.5f; }) == "m");
-  // The same image by another use of it.
+  // The same image with another use.
   CHECK(moved([](Scene& s) {
           s.materials[0].normal_texture = s.materials[0].base_color_texture;
           s.materials[0].base_color_texture = {};
@@ -93,20 +93,20 @@ TEST_CASE("a change of the scene's light moves the number of what it changes, an
   CHECK(moved([](Scene& s) { s.images[2].floats[1] = 30; }, sky) == "e");
 }
 
-TEST_CASE("what no light depends on moves nothing") {
+TEST_CASE("changes without influence on light change no hash") {
   CHECK(moved([](Scene& s) {
           s.name = s.file = s.meshes[0].name = s.instances[0].name = s.materials[0].name = s.lights[0].name =
               s.images[0].name = s.environment.file = "another";
           s.cameras[0].yfov = 1, s.cameras.resize(3);
           s.settings.push_back({"samples", "3"});
           s.warnings.push_back("a warning");
-          s.lights[1].intensity = vec3(100);                    // that is off
-          s.images[1].bytes[0] = 9, s.textures[1].srgb = true;  // of no surface
-          s.environment.rotation = 30;                          // of a constant sky
+          s.lights[1].intensity = vec3(100);                    // it is off
+          s.images[1].bytes[0] = 9, s.textures[1].srgb = true;  // no surface uses it
+          s.environment.rotation = 30;                          // the environment is constant
         }).empty());
 }
 
-TEST_CASE("the hash is FNV-1a, whose values stand in files") {
+TEST_CASE("the hash is FNV-1a, whose values are stored in files") {
   Hash hash;
   hash.add_bytes("hello", 5);
   CHECK(hash.low() == 0xa430d84680aabd0bull);

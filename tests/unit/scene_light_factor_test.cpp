@@ -1,5 +1,5 @@
 // links: scene
-// When an edit multiplies all light by a number, and by which.
+// When an edit scales all light by a factor, and by which.
 #include <catch2/catch.hpp>
 
 #include "scene/light_factor.h"
@@ -37,22 +37,22 @@ Scene shining(std::vector<vec3> emission, std::vector<vec3> lamps = {}) {
 
 }  // namespace
 
-TEST_CASE("the only lamp's strength and colour are factors of all light") {
+TEST_CASE("strength and colour of the only lamp are factors of all light") {
   CHECK(light_factor(lit({vec3(2)}), lit({vec3(5)})) == vec3(2.5f));
   CHECK(light_factor(lit({{1, 2, 4}}), lit({{2, 1, 0}})) == vec3(2, 0.5f, 0));
-  CHECK_FALSE(light_factor(lit({{1, 0, 1}}), lit({{1, 1, 1}})));  // a colour that there was none of
+  CHECK_FALSE(light_factor(lit({{1, 0, 1}}), lit({{1, 1, 1}})));  // a colour that was absent before
   CHECK(light_factor(lit({{1, 0, 1}}), lit({{2, 0, 2}})) == vec3(2, 1, 2));
   Scene off = lit({vec3(3)});
   off.lights[0].enabled = false;
   CHECK(light_factor(lit({vec3(3)}), off) == vec3(0));
   CHECK_FALSE(light_factor(off, lit({vec3(3)})));
-  // One that is off beside it does not matter.
+  // A lamp that is off does not matter.
   Scene two = lit({vec3(3), vec3(9)}), brighter = lit({vec3(6), vec3(7)});
   two.lights[1].enabled = brighter.lights[1].enabled = false;
   CHECK(light_factor(two, brighter) == vec3(2));
 }
 
-TEST_CASE("of several emitters, or one that moves, nothing can be said") {
+TEST_CASE("with several emitters, or one that moves, there is no factor") {
   CHECK_FALSE(light_factor(lit({vec3(1), vec3(1)}), lit({vec3(2), vec3(1)})));
   CHECK_FALSE(light_factor(lit({vec3(1)}, 1), lit({vec3(2)}, 1)));
   CHECK(light_factor(lit({vec3(1), vec3(3)}, 2), lit({vec3(2), vec3(6)}, 4)) == vec3(2));
@@ -67,7 +67,7 @@ TEST_CASE("of several emitters, or one that moves, nothing can be said") {
   }
 }
 
-TEST_CASE("the sky alone scales, and turned it does not") {
+TEST_CASE("scaling the environment gives a factor, rotating it does not") {
   CHECK(light_factor(lit({}, 2), lit({}, 3)) == vec3(1.5f));
   CHECK(light_factor(lit({vec3(0)}, 2), lit({vec3(0)}, 1)) == vec3(0.5f));
   CHECK_FALSE(light_factor(lit({}, 0), lit({}, 1)));
@@ -77,7 +77,7 @@ TEST_CASE("the sky alone scales, and turned it does not") {
   CHECK_FALSE(light_factor(lit({}), lit({})));
 }
 
-TEST_CASE("surfaces that emit are lights as others are, of other surfaces nothing may change") {
+TEST_CASE("emissive surfaces count as lights; other surfaces must not change") {
   CHECK(light_factor(shining({vec3(2), vec3(0)}), shining({vec3(1), vec3(0)})) == vec3(0.5f));
   CHECK(light_factor(shining({vec3(2), vec3(4)}), shining({vec3(1), vec3(2)})) == vec3(0.5f));
   CHECK_FALSE(light_factor(shining({vec3(2), vec3(4)}), shining({vec3(1), vec3(4)})));
@@ -88,7 +88,7 @@ TEST_CASE("surfaces that emit are lights as others are, of other surfaces nothin
   CHECK_FALSE(light_factor(shining({vec3(2), vec3(0)}), red));
 }
 
-TEST_CASE("by groups of lights each has a factor of its own") {
+TEST_CASE("by light groups each has its own factor") {
   Scene before = shining({vec3(2), vec3(0), vec3(8)}, {vec3(1), vec3(5)});
   before.materials[0].name = "panel", before.materials[2].name = "strip";
   before.lights[0].name = "spot.001", before.lights[1].name = "spot.002";

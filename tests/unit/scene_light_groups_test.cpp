@@ -1,5 +1,5 @@
 // links: scene_io
-// Groups of lights: from extras, by name patterns, by kind where nothing is said; and what is too much.
+// Light groups: from extras, from name patterns, by kind as default; and the maximum number.
 #include "scene/light_groups.h"
 
 #include <set>
@@ -36,7 +36,7 @@ void add_sky(Scene& s, bool sun) {
 
 }  // namespace
 
-TEST_CASE("a name's kind is what is before the number at its end") {
+TEST_CASE("a name's kind is the part before its final number") {
   CHECK(scene::kind_of_light("Spot.001") == "Spot");
   CHECK(scene::kind_of_light("Spot 2") == "Spot");
   CHECK(scene::kind_of_light("ceiling_lamp_12.003") == "ceiling_lamp");
@@ -52,13 +52,13 @@ TEST_CASE("names that differ in one character are different groups") {
     CHECK(group.find_first_of(";:=|\t\n") == std::string::npos);
     CHECK(scene::group_name(group) == group);
     CHECK(names.insert(group).second);
-    // A mix finds it by either name.
+    // A mix accepts both names.
     CHECK(scene::parse_mix(group + ": ev=1").count(group) == 1);
   }
   CHECK(scene::group_lights(lamps({"key:a", "key=a", "key:a.001"})).groups.size() == 2);
 }
 
-TEST_CASE("long names of groups are cut between characters and stay different") {
+TEST_CASE("long group names are cut between characters and stay different") {
   const std::string long_name(63, 'x');
   CHECK(scene::group_name(long_name) == long_name);
   const std::string a = scene::group_name(long_name + "\u00e4\u00f6"),
@@ -92,7 +92,7 @@ TEST_CASE("patterns") {
   CHECK_FALSE(matches_pattern("", "x"));
 }
 
-TEST_CASE("without a word lights are grouped by kind, sky and sun apart") {
+TEST_CASE("by default lights are grouped by kind, with separate sky and sun") {
   Scene s = lamps({"Spot.001", "Spot.002", "desk", "", "sun"});
   s.materials = {diffuse(vec3(1)), diffuse(vec3(0), vec3(3)), diffuse(vec3(0), vec3(4))};
   s.materials[1].name = "panel", s.materials[2].name = "desk";
@@ -104,7 +104,7 @@ TEST_CASE("without a word lights are grouped by kind, sky and sun apart") {
   std::vector<std::string> names;
   for (const auto& group : g.groups) names.push_back(group.name);
   CHECK(names == std::vector<std::string>{"sky", "sun", "Spot", "desk", "lamp", "panel"});
-  CHECK(g.lamps == std::vector<uint8_t>{2, 2, 3, 4, 1});  // a lamp called sun is with the sun
+  CHECK(g.lamps == std::vector<uint8_t>{2, 2, 3, 4, 1});  // a lamp named sun belongs to the sun
   CHECK(g.surfaces[0].empty());
   CHECK(g.surfaces[1] == std::vector<uint8_t>{5});
   CHECK(g.surfaces[2] == std::vector<uint8_t>{3});
@@ -115,16 +115,16 @@ TEST_CASE("without a word lights are grouped by kind, sky and sun apart") {
   CHECK(g.groups[3].surfaces == 1);
   CHECK(g.messages.empty());
 
-  // An even sky has no sun.
+  // A uniform environment has no sun.
   s.images.clear(), add_sky(s, false);
   CHECK_FALSE(scene::group_lights(s).has_sun);
   CHECK_FALSE(scene::has_sun(s));
-  // One that is dark is no light.
+  // A black environment is no light.
   s.environment.scale = 0;
   CHECK(scene::group_lights(s).groups[0].name == "Spot");
 }
 
-TEST_CASE("rules are above extras, a node's extras above a material's") {
+TEST_CASE("rules override extras, and a node's extras override a material's") {
   Scene s = lamps({"a", "b"});
   s.lights[1].group = "evening";
   s.materials = {diffuse(vec3(0), vec3(3))};
@@ -141,14 +141,14 @@ TEST_CASE("rules are above extras, a node's extras above a material's") {
   using Names = std::vector<std::string>;
   CHECK(names("") == Names{"a", "evening", "shelf", "evening", "shelf"});
   CHECK(names("b = b2 ; *window=windows;") == Names{"a", "b2", "shelf", "evening", "windows"});
-  // The last that fits counts.
+  // The last matching rule wins.
   CHECK(names("*=all; glow=glow; north*=north") == Names{"all", "all", "glow", "glow", "north"});
   CHECK_THROWS_WITH(scene::parse_group_rules("a=b; lamps"),
                     Contains("relight.groups") && Contains("'lamps'"));
   CHECK_THROWS_WITH(scene::parse_group_rules("=b"), Contains("PATTERN=GROUP"));
 }
 
-TEST_CASE("a seventeenth group is joined with the sixteenth, and that is said") {
+TEST_CASE("a seventeenth group is merged with the sixteenth, with a message") {
   std::vector<std::string> names;
   for (char c = 'a'; c < 'a' + 16; ++c) names.emplace_back(1, c);
   Scene s = lamps(names);
@@ -169,7 +169,7 @@ TEST_CASE("a seventeenth group is joined with the sixteenth, and that is said") 
   CHECK(g.find("q") == 16);
 }
 
-TEST_CASE("extras of a file's nodes, lamps and materials are read, and described") {
+TEST_CASE("extras of a file's nodes, lamps and materials are read and described") {
   Asset asset;
   asset.triangle({{"name", "shelf"}, {"extras", {{"light_group", "evening"}}}});
   asset.doc["extensionsUsed"] = {"KHR_lights_punctual"};

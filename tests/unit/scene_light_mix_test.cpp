@@ -1,5 +1,5 @@
 // links: scene
-// Mixes of light as text, as weights, between each other, and written into a scene's lights.
+// Light mixes as text, as weights, interpolated, and written into a scene's lights.
 #include "scene/light_mix.h"
 
 #include <catch2/catch.hpp>
@@ -33,12 +33,12 @@ TEST_CASE("a mix is read and written as text") {
   CHECK(mix_text(parse_mix("a: ev=0; b:")).empty());
   CHECK(mix_text({}).empty());
   CHECK(parse_mix("").empty());
-  // To the bit.
+  // Bit for bit.
   const LightMix odd{{"a", {.ev = 0.1f, .color = {1.0f / 3, 1e-30f, 2}}}};
   CHECK(parse_mix(mix_text(odd)) == odd);
 }
 
-TEST_CASE("what is no mix is said with the part that is wrong") {
+TEST_CASE("an invalid mix is reported with its invalid part") {
   const auto bad = [](const char* text, const char* what) {
     INFO(text);
     CHECK_THROWS_WITH(parse_mix(text), Contains("relight.mix") && Contains(what));
@@ -66,7 +66,7 @@ TEST_CASE("weights: strength times colour, mute and solo") {
   CHECK(weights("a: ev=-2 color=1,0.5,0; c: mute ev=3") == W{vec3(0.25f, 0.125f, 0), vec3(1), vec3(0)});
   CHECK(weights("b: solo ev=1") == W{vec3(0), vec3(2), vec3(0)});
   CHECK(weights("b: solo; c: solo mute") == W{vec3(0), vec3(1), vec3(0)});
-  // A group that is gone silences nobody.
+  // The solo of a missing group mutes no other.
   CHECK(weights("gone: solo") == W{vec3(1), vec3(1), vec3(1)});
   CHECK(unknown_groups(parse_mix("gone: solo; a: mute"), g) == std::vector<std::string>{"gone"});
   CHECK(is_neutral(parse_mix("gone: mute; a: ev=0"), g));
@@ -83,7 +83,7 @@ TEST_CASE("between two mixes light is linear") {
   for (size_t i = 0; i < 3; ++i)
     for (int k = 0; k < 3; ++k)
       CHECK(between[i][k] == Approx(0.75f * wa[i][k] + 0.25f * wb[i][k]).margin(1e-6));
-  // What is silent in both is silent between.
+  // A group that is muted in both is muted between them.
   CHECK(mix_weights(blend(parse_mix("a: mute"), parse_mix("a: mute; b: ev=1"), 0.5f, g), g)[0] == vec3(0));
 }
 
@@ -97,7 +97,7 @@ TEST_CASE("presets are read and written as text") {
   CHECK(parse_presets(presets_text(presets)) == presets);
 }
 
-TEST_CASE("a mixed scene has its lights as they are mixed, and nothing else") {
+TEST_CASE("a mixed scene differs from the scene in its lights only") {
   Scene s = block_room(true);
   s.materials[1].name = "block", s.materials[1].emission = vec3(2);
   s.images[0].floats[0] = 1000;  // a sun
@@ -111,12 +111,12 @@ TEST_CASE("a mixed scene has its lights as they are mixed, and nothing else") {
   CHECK(sky.floats[0] == 500);
   CHECK(sky.floats[4] == 0);
   CHECK(s.images[0].floats[4] > 0);
-  // An even sky.
+  // A uniform environment.
   s.environment.image = k_none, s.environment.radiance = vec3(3);
   CHECK(mixed_scene(s, group_lights(s), parse_mix("sky: color=1,0.5,0")).environment.radiance ==
         vec3(3, 1.5f, 0));
 
-  // A material in two groups takes the first's weight; that is said once.
+  // A material in two groups takes the first one's weight, with one message.
   add_quad(s, {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, 1), add_quad(s, {0, 0, 1}, {1, 0, 0}, {0, 1, 0}, 1);
   s.instances[2].group = s.instances[3].group = "shelf";
   std::vector<std::string> messages;

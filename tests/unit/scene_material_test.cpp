@@ -23,7 +23,7 @@ Material load_material(const json& material) {
 
 json extension(const std::string& name, const json& content) { return {{"extensions", {{name, content}}}}; }
 
-// A scene with one base colour texture of the given file; its image.
+// A scene with one base colour texture from the given file; returns its image.
 Image load_image(const std::filesystem::path& folder, const json& image, bool data = false) {
   Asset asset;
   const int texture = asset.add("textures", {{"source", asset.add("images", image)}});
@@ -106,7 +106,7 @@ TEST_CASE("extensions of materials") {
   CHECK(m.thickness == 0.1f);
   CHECK(m.attenuation_distance == 2);
   CHECK(m.attenuation_color == vec3(1, 0.5f, 0.25f));
-  // Of no distance: nothing is absorbed, and the file opens.
+  // A distance of 0: no absorption, and the file loads.
   CHECK(load_material(extension("KHR_materials_volume", {{"attenuationDistance", 0}})).attenuation_distance ==
         k_infinity);
   m = load_material(
@@ -134,7 +134,7 @@ TEST_CASE("values outside their range are clamped, with one warning") {
   CHECK(scene.warnings.size() == 1);
 }
 
-TEST_CASE("only materials that are used are kept, and names are given to the nameless") {
+TEST_CASE("only used materials are kept, and unnamed ones get names") {
   Asset asset;
   asset.add("materials",
             {{"name", "unused"},
@@ -165,17 +165,17 @@ TEST_CASE("KHR_texture_transform") {
   CHECK(close(apply(use_of(json::object()), {0.3f, 0.7f}), {0.3f, 0.7f}));
   CHECK(close(apply(use_of({{"offset", {0.5, 0.25}}}), {0.25f, 0.25f}), {0.75f, 0.5f}));
   CHECK(close(apply(use_of({{"scale", {2, 3}}}), {0.25f, 0.25f}), {0.5f, 0.75f}));
-  // A quarter turn takes +u to -v, which is upwards in a picture: counter-clockwise.
+  // A quarter turn takes +u to -v, which is up in a picture: counter-clockwise.
   CHECK(close(apply(use_of({{"rotation", k_pi / 2}}), {1, 0}), {0, -1}));
   CHECK(close(apply(use_of({{"rotation", k_pi / 2}}), {0, 1}), {1, 0}));
-  // Scale first, then rotation, then offset.
+  // First scale, then rotation, then offset.
   CHECK(close(apply(use_of({{"offset", {10, 20}}, {"rotation", k_pi / 2}, {"scale", {2, 3}}}), {1, 1}),
               {13, 18}));
   CHECK(use_of(json::object()).uv_set == 0);
   CHECK(use_of({{"texCoord", 1}}).uv_set == 1);
 }
 
-TEST_CASE("texture coordinates: two sets of any number, and only those that a material reads") {
+TEST_CASE("texture coordinates: two sets with any numbers, only those that a material reads") {
   Asset asset;
   const int texture = asset.add("textures", {{"source", asset.add("images", {{"uri", "no.png"}})}});
   asset.textured_triangle(
@@ -204,7 +204,7 @@ TEST_CASE("texture coordinates: two sets of any number, and only those that a ma
   CHECK(warnings_with(scene, "1 textures that use a third set of texture coordinates") == 1);
 }
 
-TEST_CASE("tangents are there exactly where a normal texture needs them") {
+TEST_CASE("tangents exist exactly where a normal texture needs them") {
   Asset asset;
   const int texture = asset.add("textures", {{"source", asset.add("images", {{"uri", "no.png"}})}});
   asset.textured_triangle({{"normalTexture", {{"index", texture}, {"scale", 0.5}}}});
@@ -220,7 +220,7 @@ TEST_CASE("tangents are there exactly where a normal texture needs them") {
   const std::vector<vec4>& tangents = scene.meshes[2].primitives[0].tangents;
   REQUIRE(tangents.size() == 3);
   CHECK(tangents[0] == vec4(0, 1, 0, -1));
-  CHECK(std::abs(tangents[2].z) < 1e-6f);  // along the normal: replaced by one in the surface
+  CHECK(std::abs(tangents[2].z) < 1e-6f);  // along the normal: replaced by a tangent in the surface
   CHECK(warnings_with(scene, "1 tangents without a direction") == 1);
   CHECK(warnings_with(scene, "1 primitives have a textured material but lack the texture coordinates") == 1);
 }
@@ -298,7 +298,7 @@ TEST_CASE("16-bit files: floats as data, bytes as colour; float files stay float
   }
 }
 
-TEST_CASE("texels that are not finite are mended and counted") {
+TEST_CASE("non-finite texels are replaced and counted") {
   TempFolder folder;
   write_image<float>(folder / "f.exr", 2, 1, 3, {NAN, INFINITY, -1, 1, 1, 1});
   Asset asset;
@@ -320,13 +320,13 @@ TEST_CASE("images in data URIs, buffer views, files with odd names, JPEG") {
   const std::vector<uint8_t> png = bytes_of(folder / "i.png");
   CHECK(load_image(root, {{"uri", "data:image/png;base64," + base64(png)}}).bytes ==
         std::vector<uint8_t>{1, 2, 3, 255});
-  // The bytes tell the format, not the name.
+  // The bytes determine the format, not the name.
   std::filesystem::rename(folder / "i.png", folder / "a b+%.jpg");
   const Image odd = load_image(root, {{"uri", "a%20b+%25.jpg"}});
   CHECK(odd.bytes == std::vector<uint8_t>{1, 2, 3, 255});
   CHECK(odd.name == "a b+%.jpg");
   std::filesystem::rename(folder / "a b+%.jpg", folder / "50%.png");
-  CHECK(load_image(root, {{"uri", "50%.png"}}).width == 1);  // not encoded, though it should be
+  CHECK(load_image(root, {{"uri", "50%.png"}}).width == 1);  // accepted although it should be encoded
 
   write_image<float>(folder / "f.exr", 1, 1, 3, {1, 2, 3});
   CHECK(load_image(root, {{"uri", "data:image/x-exr;base64," + base64(bytes_of(folder / "f.exr"))}}).floats ==
@@ -349,7 +349,7 @@ TEST_CASE("images in data URIs, buffer views, files with odd names, JPEG") {
   CHECK(scene.images[0].bytes == std::vector<uint8_t>{1, 2, 3, 255});
 }
 
-TEST_CASE("without images, neutral texels stand for them") {
+TEST_CASE("missing images are replaced by neutral texels") {
   TempFolder folder;
   write_image<uint8_t>(folder / "i.png", 4, 4, 3, std::vector<uint8_t>(48, 9));
   Asset asset;

@@ -1,6 +1,6 @@
 // links: scene_io
-// A scene takes no more memory, and its loading no more time, than LoadOptions allows: small files that ask
-// for much are refused with the limit and what went beyond it.
+// Loading takes no more memory, and no more time, than LoadOptions allows: small files that need too much are
+// refused with the limit and the cause.
 #include "unit/scene_support.h"
 
 using namespace lucerna;
@@ -27,7 +27,7 @@ json instancing(int translations) {
 
 }  // namespace
 
-TEST_CASE("instances that no buffer holds are refused, however few bytes ask for them") {
+TEST_CASE("instances beyond any buffer are refused, however small the file") {
   Asset asset;
   asset.triangle(
       instancing(asset.add("accessors", {{"componentType", 5126}, {"type", "VEC3"}, {"count", 1 << 24}})));
@@ -36,12 +36,12 @@ TEST_CASE("instances that no buffer holds are refused, however few bytes ask for
                       "buffer view"));
 }
 
-TEST_CASE("every instance counts, with the geometry that it brings into the world") {
+TEST_CASE("every instance counts with its world-space geometry") {
   Asset asset;
   const int places = asset.accessor<float>("VEC3", std::vector<float>(3 * 1000, 1.0f));
   asset.triangle(instancing(places));
   CHECK(refusal(asset, 2 * k_mib).empty());
-  // 1000 triangles and 3000 vertices in the world.
+  // 1000 triangles and 3000 vertices in world space.
   CHECK_THAT(refusal(asset, k_mib / 2),
              Contains("node 'node 0 #") &&
                  Contains("another instance of mesh 'mesh 0' with 1 triangles, would take 0.00 GiB more") &&
@@ -55,7 +55,7 @@ TEST_CASE("every instance counts, with the geometry that it brings into the worl
   CHECK_THAT(refusal(asset, 4 * k_mib), Contains("EXT_mesh_gpu_instancing: 1000 instances would take"));
 }
 
-TEST_CASE("primitives that share accessors take what each of them makes of these") {
+TEST_CASE("primitives that share accessors count with their own copies") {
   Asset asset;
   asset.triangle();
   constexpr size_t k_vertices = 40000;
@@ -65,13 +65,13 @@ TEST_CASE("primitives that share accessors take what each of them makes of these
   json& primitives = asset.doc["meshes"][0]["primitives"];
   for (int i = 0; i < 20; ++i) primitives.push_back({{"attributes", {{"POSITION", shared}}}});
   CHECK(refusal(asset, 400 * k_mib).empty());
-  // 40 000 vertices of at most 72 bytes, 3 of these a triangle: 20 times, and their world.
+  // 40 000 vertices of at most 72 bytes, 3 of these per triangle: 20 times, plus world space.
   CHECK_THAT(refusal(asset, 30 * k_mib), Contains("meshes[0].primitives[") && Contains(" would take "));
 }
 
-TEST_CASE("primitives of few triangles in a large buffer take no longer than their triangles") {
-  // 3000 primitives of one triangle over 4 million vertices: with a look at every vertex for each of them
-  // this is 12 thousand million looks.
+TEST_CASE("primitives of few triangles in a large buffer take time for their triangles only") {
+  // 3000 primitives of one triangle over 4 million vertices: visiting every vertex for each of them would be
+  // 12 thousand million visits.
   Asset asset;
   asset.triangle();
   const int large = asset.add("accessors", {{"componentType", 5126}, {"type", "VEC3"}, {"count", 1 << 22}});
@@ -85,13 +85,13 @@ TEST_CASE("primitives of few triangles in a large buffer take no longer than the
   for (int i = 0; i < 3000; ++i)
     primitives.push_back({{"attributes", {{"POSITION", large}}}, {"indices", indices}});
   const TempFolder folder;
-  // The sparse accessor is made once: 50 MB. Twice would be beyond.
+  // The sparse accessor is expanded once: 50 MB. Twice would exceed the limit.
   const scene::Scene scene = scene::load(asset.gltf(folder), {.most_bytes = 80 * k_mib});
   REQUIRE(scene.meshes[0].primitives.size() == 3001);
   CHECK(scene.meshes[0].primitives[3000].positions == std::vector<vec3>{{0, 0, 0}, {0, 1, 0}, {2, 2, 0}});
 }
 
-TEST_CASE("images and files count, before they are decoded") {
+TEST_CASE("images and files count before they are decoded") {
   const TempFolder folder;
   write_image<uint8_t>(folder / "large.png", 2048, 2048, 4, std::vector<uint8_t>(size_t{4} << 22, 7));
   Asset asset;
@@ -103,7 +103,7 @@ TEST_CASE("images and files count, before they are decoded") {
       scene::load(file, {.most_bytes = 10 * k_mib}),
       Contains("a.gltf: images[0]: an image of 2048 x 2048 would take 0.02 GiB more, beyond the "
                "0.01 GiB that a scene may have"));
-  // A file with a hole, which takes no room on the disk.
+  // A sparse file, which takes no disk space.
   json doc = asset.complete(false);
   doc["buffers"][0]["uri"] = "hole.bin";
   write(folder / "hole.gltf", doc.dump());

@@ -1,6 +1,5 @@
 // links: scene_io
-// Where things stand: hierarchy, instances, cameras, lights, environment, settings; and what is said about a
-// scene.
+// Placement: hierarchy, instances, cameras, lights, environment, settings; and the description of a scene.
 #include <cmath>
 
 #include "unit/scene_support.h"
@@ -49,7 +48,7 @@ TEST_CASE("translation, rotation, scale and matrices multiply down the hierarchy
   REQUIRE(scene.instances.size() == 1);
   CHECK(scene.instances[0].name == "leaf");
   CHECK_FALSE(scene.instances[0].flipped);
-  // (1, 0, 0) -> scaled (2, 0, 0) -> moved (3, 0, 0) -> turned (0, 3, 0) -> moved (10, 23, 30)
+  // (1, 0, 0) -> scaled (2, 0, 0) -> moved (3, 0, 0) -> rotated (0, 3, 0) -> moved (10, 23, 30)
   CHECK(close(at(scene.instances[0].to_world, {1, 0, 0}), {10, 23, 30}));
   const Box box = scene::bounds(scene);
   CHECK(close(box.lo, {8, 21, 30}));
@@ -70,7 +69,7 @@ TEST_CASE("a mesh in several nodes is one mesh with several instances; a mirrore
   CHECK_FALSE(scene.instances[2].flipped);
 }
 
-TEST_CASE("the default scene is what is shown") {
+TEST_CASE("the default scene is shown") {
   Asset asset;
   asset.triangle({{"name", "first"}});
   asset.triangle({{"name", "second"}});
@@ -102,7 +101,7 @@ TEST_CASE("EXT_mesh_gpu_instancing") {
   CHECK(scene.instances[1].flipped);
   CHECK(scene.meshes.size() == 1);
 
-  // What has no size is hidden, with a rotation or without.
+  // An instance of size zero is hidden, with a rotation or without.
   json& given = asset.doc["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"];
   given["SCALE"] = asset.accessor<float>("VEC3", {1, 1, 1, 0, 0, 0});
   given["ROTATION"] = asset.accessor<float>("VEC4", {0, 0, 0, 1, 0, 0, 0, 0});
@@ -139,7 +138,7 @@ TEST_CASE("cameras") {
   CHECK(flat.cameras[0].ymag == 2);
 }
 
-TEST_CASE("a camera that cannot be used does not keep a scene from opening") {
+TEST_CASE("an invalid camera does not prevent a scene from loading") {
   const auto left_out = [](const json& camera, const std::string& why) {
     Asset asset = with_camera(camera);
     asset.triangle();
@@ -169,7 +168,7 @@ TEST_CASE("a camera is found by its name, or by its number from 1") {
   const Scene scene = asset.load();
   CHECK(scene::find_camera(scene, "cam").yfov == 0.5f);
   CHECK(scene::find_camera(scene, "2").yfov == 0.25f);
-  CHECK(scene::find_camera(scene, "1").yfov == 0.75f);  // a name before a number
+  CHECK(scene::find_camera(scene, "1").yfov == 0.75f);  // a name takes precedence over a number
   CHECK(scene::starting_camera(scene, "3").yfov == 0.75f);
   for (const char* none : {"0", "4", "-1", "2.5", "2 ", "99999999999999999999"})
     CHECK_THROWS_WITH(scene::find_camera(scene, none), Contains("it has 'cam', 'cam', '1'"));
@@ -213,7 +212,7 @@ TEST_CASE("punctual lights") {
   CHECK(scene.lights[0].name == "lamp");
   CHECK(scene.lights[0].intensity == vec3(10, 5, 0));
   CHECK(scene.lights[0].position == vec3(1, 2, 3));
-  CHECK(scene.warnings.empty());  // the range is ignored without a word
+  CHECK(scene.warnings.empty());  // the range is ignored without a warning
 
   // A quarter turn about x takes -Z to +Y.
   scene = with_light(
@@ -273,7 +272,7 @@ TEST_CASE("environment in the scene's extras") {
   CHECK(scene.environment.radiance == vec3(0));
   CHECK(warnings_with(scene, "neither 'file' nor 'radiance'") == 1);
 
-  // An 8-bit picture is taken for sRGB.
+  // An 8-bit picture is decoded as sRGB.
   write_image<uint8_t>(folder / "sky.png", 1, 1, 3, {255, 188, 0});
   environment = {{"file", "sky.png"}};
   scene = scene::load(asset.gltf(folder));
@@ -281,7 +280,7 @@ TEST_CASE("environment in the scene's extras") {
   CHECK(scene.images[scene.environment.image].floats[1] == Approx(0.5029).margin(1e-3));
 }
 
-TEST_CASE("settings.json: its environment overrides, the rest goes to the settings in order") {
+TEST_CASE("settings.json: its environment overrides the file's, the rest becomes settings in order") {
   TempFolder folder;
   Asset asset;
   asset.triangle();
@@ -309,7 +308,7 @@ TEST_CASE("settings.json: its environment overrides, the rest goes to the settin
   CHECK(scene::load(asset.gltf(folder), options).settings.empty());
 }
 
-TEST_CASE("progress is told in order and can cancel") {
+TEST_CASE("progress is reported in order and can cancel") {
   TempFolder folder;
   Asset asset;
   asset.triangle();
@@ -331,14 +330,14 @@ TEST_CASE("progress is told in order and can cancel") {
   }
 }
 
-TEST_CASE("animations are named and left out") {
+TEST_CASE("animations are listed and ignored") {
   Asset asset;
   asset.triangle();
   asset.doc["animations"] = {json::object(), json::object()};
   CHECK(warnings_with(asset.load(), "2 animations are ignored") == 1);
 }
 
-TEST_CASE("a description says what is in a scene") {
+TEST_CASE("a description lists the contents of a scene") {
   TempFolder folder;
   write_image<uint8_t>(folder / "i.png", 4, 2, 3, std::vector<uint8_t>(24, 9));
   Asset asset = with_light({{"type", "point"}, {"intensity", 3}});

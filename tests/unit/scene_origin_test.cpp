@@ -1,5 +1,5 @@
 // links: scene_io
-// Scenes far from the origin of their file are moved near it; others stay where they are.
+// Scenes far from the origin of their file are moved near it; others stay.
 #include <cmath>
 
 #include "scene/hash.h"
@@ -18,14 +18,14 @@ dvec3 chosen(const std::vector<Extent>& extents, const std::vector<dvec3>& camer
   return scene::choose_origin(extents, cameras);
 }
 
-/// A mesh of a few triangles.
+/// The extent of a mesh with a few triangles.
 Extent at(const dvec3& centre, double radius, double triangles = 100) {
   return {centre, radius, radius * triangles};
 }
 
 const dvec3 k_utm(448123.4, 0, 5411932.1);
 
-/// A room of one triangle about (x, 0, z), with lamp and camera, below a parent that is moved.
+/// A room of one triangle near (x, 0, z), with lamp and camera, below a parent that is moved.
 Asset moved(const dvec3& by) {
   Asset asset;
   asset.triangle({{"translation", {-0.25, -0.25, 0.125}}});
@@ -49,13 +49,13 @@ TEST_CASE("round origins") {
   CHECK(scene::round_origin({301, 0, 0}, 0) == dvec3(0));
 }
 
-TEST_CASE("only what is far relative to the scene's extent moves it") {
+TEST_CASE("a scene is moved only if it is far relative to its extent") {
   CHECK(chosen({}) == dvec3(0));
   CHECK(chosen({at({0, 1, 0}, 3)}) == dvec3(0));
   CHECK(chosen({at({200, 0, 0}, 3)}) == dvec3(0));
   CHECK(chosen({at({1e5, 1, 0}, 3)}) == dvec3(1e5, 0, 0));
   CHECK(chosen({at(k_utm, 3), at(k_utm + dvec3(2, 1, 0), 0.1)}) == dvec3(448123, 0, 5411932));
-  // A town: far from most of its houses, near to itself.
+  // A town: far relative to its houses, near relative to itself.
   std::vector<Extent> town;
   for (int x = 0; x < 20; ++x)
     for (int z = 0; z < 20; ++z) town.push_back(at({2000 + 50 * x, 0, 2000 + 50 * z}, 5));
@@ -64,18 +64,18 @@ TEST_CASE("only what is far relative to the scene's extent moves it") {
   const dvec3 origin = chosen(town);
   CHECK(std::abs(origin.x - 450500) <= 1000);
   CHECK(std::abs(origin.z - 5413500) <= 1000);
-  // A small object, however finely it is cut, in a room, beside it or in front of a backdrop.
+  // A small object with any number of triangles, in a room, beside it or in front of a backdrop.
   CHECK(chosen({at({0, 0, 0}, 10), at({10, 0, 0}, 0.05, 1e6)}, {{10, 0, 0.2}}) == dvec3(0));
   CHECK(chosen({at({30, 0, 0}, 10), at({30, 0, 0}, 0.05, 1e6)}) == dvec3(0));
   CHECK(chosen({at({0, 0, 0}, 3), at({5e4, 0, 0}, 1e4, 1e6)}) == dvec3(0));
 }
 
-TEST_CASE("stray objects decide nothing") {
+TEST_CASE("stray objects do not decide") {
   const Extent room = at(k_utm, 3), stray = at({0, 0, 0}, 0.1, 12);
   CHECK(chosen({room, stray}) == dvec3(448123, 0, 5411932));
   CHECK(chosen({stray, stray, room}) == dvec3(448123, 0, 5411932));
   CHECK(chosen({at({0, 0, 0}, 3), at({1e6, 0, 0}, 0.1, 12)}) == dvec3(0));
-  // Where two are alike, the camera's.
+  // Of two similar objects the one near the camera decides.
   CHECK(chosen({at({0, 0, 0}, 3), at({1e6, 0, 0}, 4)}, {{0, 1, 5}}) == dvec3(0));
   CHECK(chosen({at({0, 0, 0}, 4), at({1e6, 0, 0}, 3)}, {{1e6, 1, 5}}) == dvec3(1e6, 0, 0));
 }
@@ -92,7 +92,7 @@ TEST_CASE("domes and terrains follow the rest") {
   CHECK(chosen({far_room, at(k_utm, 1e6, 1e4)}) == dvec3(448123, 0, 5411932));
 }
 
-TEST_CASE("a scene far away is the same scene, but for its origin") {
+TEST_CASE("a scene far away is the same scene except for its origin") {
   const Scene here = moved(dvec3(0)).load();
   CHECK(here.origin == dvec3(0));
   CHECK(here.warnings.empty());
@@ -103,7 +103,7 @@ TEST_CASE("a scene far away is the same scene, but for its origin") {
     CHECK(there.instances[0].to_world == here.instances[0].to_world);
     CHECK(there.lights[0].position == here.lights[0].position);
     CHECK(there.cameras[0].to_world == here.cameras[0].to_world);
-    // What is kept for one is not the other's.
+    // Cached light of one does not fit the other.
     CHECK(scene::light_hash(there).geometry != scene::light_hash(here).geometry);
     const auto d = scene::describe(there);
     CHECK(d["origin"] == json{by.x, by.y, by.z});
@@ -113,8 +113,8 @@ TEST_CASE("a scene far away is the same scene, but for its origin") {
   CHECK(scene::describe_text(here).find("origin ") == std::string::npos);
 }
 
-TEST_CASE("matrices meet in double precision before anything is subtracted") {
-  // Two halves of the way, neither of which single precision can hold.
+TEST_CASE("matrices are multiplied in double precision before the origin is subtracted") {
+  // Two halves of the translation, neither of which fits single precision.
   Asset asset = moved({224061.725, 0, 2705966.025});
   asset.doc["scenes"][0]["nodes"] = {
       asset.add("nodes", {{"translation", {224061.675, 0, 2705966.075}}, {"children", {3}}})};
@@ -125,7 +125,7 @@ TEST_CASE("matrices meet in double precision before anything is subtracted") {
   CHECK(scene.cameras[0].to_world[3].x == Approx(-0.6).margin(1e-6));
 }
 
-TEST_CASE("coordinates that are far inside a mesh") {
+TEST_CASE("large coordinates inside a mesh") {
   Asset asset;
   const std::vector<float> far{447999.75f, 0, 5411000, 448000.75f, 0, 5411000, 447999.75f, 1, 5411000};
   asset.mesh({{"attributes", {{"POSITION", asset.accessor("VEC3", far)}}}});
@@ -133,7 +133,7 @@ TEST_CASE("coordinates that are far inside a mesh") {
   CHECK(scene.origin == dvec3(448000, 0, 5411000));
   CHECK(std::as_const(scene.meshes)[0].primitives[0].positions[1] == vec3(0.75f, 0, 0));
   CHECK(scene::bounds(scene).lo == vec3(-0.25f, 0, 0));
-  // A node that brings them back, to a place that single precision cannot subtract.
+  // A node that moves them back, to a position that single precision cannot subtract.
   asset.doc["nodes"][0]["translation"] = {-447999.65, 0, -5410999.9};
   scene = asset.load();
   CHECK(scene.origin == dvec3(0));

@@ -1,6 +1,6 @@
 // links: scene_io
-// What nodes make of meshes before they are placed: scale 0, skins, morph targets (glTF 2.0, 3.5.3, 3.7.2.2
-// and 3.7.3).
+// Changes of meshes by nodes before placement: scale 0, skins, morph targets (glTF 2.0, 3.5.3, 3.7.2.2 and
+// 3.7.3).
 #include <cmath>
 
 #include "unit/scene_support.h"
@@ -22,7 +22,7 @@ void check_bounds(const Scene& scene, const vec3& lo, const vec3& hi) {
   CHECK(close(box.hi, hi));
 }
 
-/// A unit cube with its normals, and the corner (0, 0, 0) at `at`.
+/// A unit cube with normals, with its corner (0, 0, 0) at `at`.
 json cube(Asset& asset, const vec3& at = vec3(0)) {
   std::vector<float> positions, normals;
   std::vector<uint16_t> indices;
@@ -47,7 +47,7 @@ json cube(Asset& asset, const vec3& at = vec3(0)) {
           {"indices", asset.accessor("SCALAR", indices)}};
 }
 
-/// Face normals and vertex normals agree, and point away from `centre`.
+/// Checks that face normals and vertex normals agree, and point away from `centre`.
 void check_outside(const Scene& scene, const vec3& centre) {
   for (const scene::Instance& instance : std::as_const(scene.instances))
     for (const Primitive& p : scene.meshes[instance.mesh].primitives)
@@ -63,7 +63,7 @@ const json k_ground{{"name", "ground"}};
 
 }  // namespace
 
-TEST_CASE("scale 0 hides a node and what hangs below; the file opens") {
+TEST_CASE("scale 0 hides a node and its children; the file loads") {
   Asset asset;
   asset.triangle(k_ground);
   asset.mesh(cube(asset), {{"name", "prop"}});
@@ -81,7 +81,7 @@ TEST_CASE("scale 0 hides a node and what hangs below; the file opens") {
   CHECK(scene.lights.empty());
   CHECK(warnings_with(scene, "1 meshes in nodes or instances of scale 0: left out (nodes[1])") == 1);
   CHECK(warnings_with(scene, "2 cameras or lamps in nodes of scale 0: left out") == 1);
-  // A single axis left is nothing to see either.
+  // A single remaining axis is invisible too.
   asset.doc["nodes"][static_cast<size_t>(rig)]["scale"] = {1, 0, 0};
   CHECK(asset.load().instances.size() == 1);
 }
@@ -96,7 +96,7 @@ TEST_CASE("a flat node shows its mesh flat") {
   CHECK(glm::determinant(mat3(scene.instances[0].to_world)) == 1);
   for (const vec3& n : std::as_const(scene.meshes)[0].primitives[0].normals)
     CHECK(close(glm::abs(n), {0, 1, 0}));
-  // By a matrix that shears y to x, too.
+  // Also by a matrix that shears y to x.
   asset.doc["nodes"][0] = {{"mesh", 0}, {"matrix", {1, 0, 0, 0, 2, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}}};
   scene = asset.load();
   check_bounds(scene, {0, 0, 0}, {3, 0, 1});
@@ -126,7 +126,7 @@ namespace {
 
 constexpr int k_joint = 1;  // node of the skin's first joint in skinned()
 
-/// A cube of 100 units about the joint, as an exporter in centimetres writes it: bind matrices scale it to 1
+/// A cube of 100 units around the joint, as an exporter in centimetres writes it: bind matrices scale it to 1
 /// m.
 Asset skinned(const json& node = json::object()) {
   Asset asset;
@@ -151,11 +151,11 @@ Asset skinned(const json& node = json::object()) {
 
 }  // namespace
 
-TEST_CASE("a skinned mesh is where its joints are, wherever its node is") {
+TEST_CASE("a skinned mesh follows its joints, wherever its node is") {
   check_bounds(skinned().load(), {0, 0, 0}, {1, 1, 1});
   check_bounds(skinned({{"translation", {0, 5, 0}}}).load(), {0, 0, 0}, {1, 1, 1});
   check_bounds(skinned({{"scale", {100, 100, 100}}}).load(), {0, 0, 0}, {1, 1, 1});
-  // Scale 0 hides a skinned mesh only when its joints have it.
+  // Scale 0 hides a skinned mesh only if its joints have it.
   check_bounds(skinned({{"scale", {0, 0, 0}}}).load(), {0, 0, 0}, {1, 1, 1});
   Asset asset = skinned();
   asset.doc["nodes"][k_joint]["scale"] = {0, 0, 0};
@@ -163,7 +163,7 @@ TEST_CASE("a skinned mesh is where its joints are, wherever its node is") {
   asset.doc["nodes"][k_joint] = {{"translation", {7, 0, 0}}, {"scale", {2, 2, 2}}};
   check_bounds(asset.load(), {7, 0, 0}, {9, 2, 2});
   check_outside(asset.load(), {8, 1, 1});
-  // Without bind matrices they are the identity; a joint below another has both matrices.
+  // Missing bind matrices are the identity; a joint below another has both matrices.
   asset.doc["skins"][0].erase("inverseBindMatrices");
   asset.doc["nodes"][k_joint]["scale"] = {1, 1, 1};
   asset.doc["scenes"][0]["nodes"] = {
@@ -172,12 +172,12 @@ TEST_CASE("a skinned mesh is where its joints are, wherever its node is") {
   CHECK(asset.load().warnings.empty());
 }
 
-TEST_CASE("joints are weighted, and those of all sets count") {
+TEST_CASE("joints are weighted, and all sets count") {
   Asset asset = skinned();
   json& attributes = asset.doc["meshes"][0]["primitives"][0]["attributes"];
   asset.doc["scenes"][0]["nodes"].push_back(asset.add("nodes", {{"translation", {0, 4, 0}}}));
   asset.doc["skins"][0] = {{"joints", {k_joint, 2}}};
-  // A quarter of the second joint by set 0, and a quarter more by set 1; of all a weight of 1.6.
+  // A quarter of the second joint by set 0, and a quarter more by set 1; the weights sum to 1.6.
   std::vector<uint8_t> joints(24 * 4, 0);
   std::vector<float> weights(24 * 4, 0), more(24 * 4, 0);
   for (size_t i = 0; i < 24; ++i)
@@ -193,7 +193,7 @@ TEST_CASE("joints are weighted, and those of all sets count") {
   CHECK(warnings_with(asset.load(), "1 primitives have vertices without joint weights") == 1);
 }
 
-TEST_CASE("a mirrored joint leaves the outside outside") {
+TEST_CASE("a mirrored joint keeps the outside outside") {
   Asset asset = skinned();
   asset.doc["nodes"][k_joint] = {{"scale", {-1, 1, 1}}};
   const Scene scene = asset.load();
@@ -202,7 +202,7 @@ TEST_CASE("a mirrored joint leaves the outside outside") {
   check_outside(skinned().load(), vec3(0.5f));
 }
 
-TEST_CASE("skins that are not as glTF asks") {
+TEST_CASE("skins that violate glTF") {
   const auto broken = [](const std::function<void(Asset&)>& change) {
     Asset asset = skinned();
     change(asset);
@@ -225,7 +225,7 @@ TEST_CASE("skins that are not as glTF asks") {
                a.doc["meshes"][0]["primitives"][0]["attributes"]["JOINTS_0"] = a.accessor("VEC4", joints);
              }),
              Contains("JOINTS_0 of vertex 0 is 3, but the skin has 1 joints"));
-  // Harmless where no node has it.
+  // Harmless if no node uses it.
   CHECK(broken([](Asset& a) {
           a.doc["nodes"][0].erase("skin");
           a.doc["skins"][0]["joints"] = {9};
@@ -236,7 +236,7 @@ TEST_CASE("skins that are not as glTF asks") {
   CHECK(warnings_with(plain.load(), "1 primitives of a skinned mesh have no joints or weights") == 1);
 }
 
-TEST_CASE("morph targets by the node's weights, else the mesh's") {
+TEST_CASE("morph targets by the node's weights, otherwise the mesh's") {
   Asset asset;
   json& primitive = asset.triangle();
   primitive["targets"] = {{{"POSITION", asset.accessor<float>("VEC3", {0, 2, 0, 0, 2, 0, 0, 2, 0})}},
@@ -247,10 +247,10 @@ TEST_CASE("morph targets by the node's weights, else the mesh's") {
   asset.doc["nodes"][0]["weights"] = {0, 0.5};
   const Scene scene = asset.load();
   check_bounds(scene, {0, 0, 0}, {1, 1, 2});
-  // Flat normals are those of the shape that is shown.
+  // Flat normals are those of the displayed shape.
   CHECK(close(std::as_const(scene.meshes)[0].primitives[0].normals[0], glm::normalize(vec3(0, -2, 1))));
   CHECK(scene.warnings.empty());
-  // Two nodes with their own weights are two meshes, two with the same are one.
+  // Two nodes with different weights are two meshes, two with the same are one.
   asset.doc["scenes"][0]["nodes"] = {0, asset.add("nodes", {{"mesh", 0}}), asset.add("nodes", {{"mesh", 0}})};
   const Scene three = asset.load();
   CHECK(three.instances.size() == 3);

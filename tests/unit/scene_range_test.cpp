@@ -1,5 +1,5 @@
 // links: scene scene_io
-// What can be rendered of cameras, lamps, materials and environments, and what is refused, by name.
+// The supported range of cameras, lamps, materials and environments; refusals name the object.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <fstream>
@@ -50,7 +50,7 @@ TEST_CASE("cameras far away, or without a frame or a lens, are refused") {
   }
 }
 
-TEST_CASE("lamps, materials and environments beyond what paths can add up are refused") {
+TEST_CASE("lamps, materials and environments beyond the range of sums of paths are refused") {
   scene::Light lamp;
   lamp.name = "Lamp";
   CHECK(refusal(lamp).empty());
@@ -72,7 +72,7 @@ TEST_CASE("lamps, materials and environments beyond what paths can add up are re
   CHECK_THAT(refusal(sky), Contains("factor"));
 }
 
-TEST_CASE("a file whose lamp is too far away is refused, a camera that is not used is not") {
+TEST_CASE("a file whose lamp is too far away is refused; an unused camera does not matter") {
   const test::Folder folder;
   const auto load = [&](const std::string& nodes) {
     const auto file = folder.path / "far.gltf";

@@ -1,12 +1,12 @@
 // links: scene
-// Copies of a scene share what is large until it is changed.
+// Copies of a scene share large data until it is changed.
 #include <catch2/catch.hpp>
 
 #include "scene/scene.h"
 
 using namespace lucerna;
 
-TEST_CASE("an edited copy of a scene shares geometry, images and textures, and owns what it changes") {
+TEST_CASE("an edited copy of a scene shares geometry, images and textures, and owns its changes") {
   scene::Scene scene;
   scene.images.resize(2);
   scene.images[0].bytes = {1, 2, 3, 4};
@@ -23,7 +23,7 @@ TEST_CASE("an edited copy of a scene shares geometry, images and textures, and o
   CHECK(after.meshes.shares_with(before.meshes));
   CHECK(after.instances.shares_with(before.instances));
   CHECK(after.images[0].bytes.data() == before.images[0].bytes.data());
-  // Changed, it is a copy of its own, and the other stays as it was.
+  // After a change it is a separate copy, and the other stays as it was.
   edited.images[0].bytes[0] = 9;
   CHECK_FALSE(after.images.shares_with(before.images));
   CHECK(before.images[0].bytes[0] == 1);
@@ -31,13 +31,13 @@ TEST_CASE("an edited copy of a scene shares geometry, images and textures, and o
   edited.textures.push_back({.image = 1});
   CHECK(before.textures.size() == 2);
   CHECK(after.textures.size() == 3);
-  // Alone it is changed where it lies.
+  // A sole owner is changed in place.
   const uint8_t* at = after.images[0].bytes.data();
   edited.images[0].bytes[1] = 8;
   CHECK(after.images[0].bytes.data() == at);
 }
 
-TEST_CASE("an empty one reads as such") {
+TEST_CASE("an empty one reads as empty") {
   const SharedVector<int> none;
   CHECK(none.empty());
   CHECK(none.begin() == none.end());

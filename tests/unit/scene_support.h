@@ -1,5 +1,5 @@
 #pragma once
-// Tiny glTF files, made where they are needed.
+// Tiny glTF files, generated where needed.
 #include <OpenImageIO/imageio.h>
 
 #include <cstring>
@@ -14,7 +14,7 @@
 #include "support/folder.h"
 
 #if defined(__SANITIZE_ADDRESS__)
-// OpenImageIO 2.4 loses the text of an error when a PNG is cut short.
+// OpenImageIO 2.4 leaks the text of an error when a PNG is truncated.
 extern "C" const char* __lsan_default_suppressions() { return "leak:OpenImageIO_v2_4::ImageInput::geterror"; }
 #endif
 
@@ -43,8 +43,8 @@ inline std::string base64(const std::vector<uint8_t>& bytes) {
   return out;
 }
 
-/// Pixels of 8 or 16 bits or floats (T), `channels` each, through OpenImageIO; the name's ending chooses the
-/// format.
+/// Pixels of 8 or 16 bits or floats (T), `channels` each, through OpenImageIO; the name's extension selects
+/// the format.
 template <class T>
 void write_image(const std::filesystem::path& path, int width, int height, int channels,
                  const std::vector<T>& pixels) {
@@ -65,7 +65,7 @@ inline std::vector<uint8_t> bytes_of(const std::filesystem::path& path) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
-/// A document with one buffer, grown piece by piece.
+/// A document with one buffer, built step by step.
 struct Asset {
   json doc = {{"asset", {{"version", "2.0"}}}, {"scene", 0}, {"scenes", {{{"nodes", json::array()}}}}};
   std::vector<uint8_t> bin;
@@ -103,7 +103,7 @@ struct Asset {
     if (normalized) a["normalized"] = true;
     return add("accessors", a);
   }
-  /// A mesh of one primitive in a node of the scene; gives back the primitive.
+  /// Adds a mesh of one primitive in a node of the scene; returns the primitive.
   json& mesh(const json& primitive, const json& node = json::object()) {
     const int index = add("meshes", {{"primitives", {primitive}}});
     json n = node;
@@ -115,7 +115,7 @@ struct Asset {
   json& triangle(const json& node = json::object()) {
     return mesh({{"attributes", {{"POSITION", accessor<float>("VEC3", {0, 0, 0, 1, 0, 0, 0, 1, 0})}}}}, node);
   }
-  /// A triangle with texture coordinates and a material of its own, whose index is given back.
+  /// Adds a triangle with texture coordinates and its own material; returns the material's index.
   int textured_triangle(const json& material) {
     json& primitive = triangle();
     const int uv = accessor<float>("VEC2", {0, 0, 1, 0, 0, 1});
@@ -164,7 +164,7 @@ struct Asset {
   }
 };
 
-/// The message with which a load fails; empty when it does not.
+/// The message with which a load fails; empty if it succeeds.
 inline std::string failure(const std::filesystem::path& path) {
   try {
     scene::load(path);
@@ -178,7 +178,7 @@ inline std::string failure(const Asset& asset) {
   return failure(asset.gltf(folder));
 }
 
-/// How many warnings contain `text`.
+/// The number of warnings that contain `text`.
 inline size_t warnings_with(const scene::Scene& scene, const std::string& text) {
   size_t count = 0;
   for (const std::string& line : scene.warnings) count += line.find(text) != std::string::npos;

@@ -1,6 +1,6 @@
 // links: plan scene_io bvh_embree
-// The scenes that come with the program: every one loads in silence with settings that exist, is told of in
-// the list, and the rooms lose rays through their openings only.
+// The scenes that come with the program: each loads without warnings with valid settings, and is listed; rays
+// leave rooms only through their openings.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <filesystem>
@@ -30,12 +30,12 @@ std::set<std::string> names() {
   return out;
 }
 
-/// Where a ray may leave a room: an axis-aligned rectangle in the outer face of its wall or roof.
+/// An opening of a room: an axis-aligned rectangle in the outer face of its wall or roof.
 struct Opening {
   vec3 lo, hi;
 };
 
-/// Also true of rays that start outside, as from the eaves that a ray through a window may meet.
+/// Also true for rays that start outside, for example at the eaves that a ray through a window can hit.
 bool passes(const shared::Ray& ray, const Opening& o) {
   const int axis = o.lo.x == o.hi.x ? 0 : o.lo.y == o.hi.y ? 1 : 2;
   if (std::abs(ray.origin[axis]) > std::abs(o.lo[axis])) return true;
@@ -58,8 +58,8 @@ bvh::test::Mesh triangles(const scene::Scene& s) {
   return mesh;
 }
 
-/// Rays in all directions from the cameras, then from what they hit: those that hit nothing and passed no
-/// opening.
+/// Rays in all directions from the cameras, then from their hit points; returns the number of rays that hit
+/// nothing and passed no opening.
 size_t leaks(const scene::Scene& s, const std::vector<Opening>& openings, size_t& left) {
   const bvh::test::Mesh mesh = triangles(s);
   const bvh::HostTracer tracer(mesh.view());
@@ -99,7 +99,7 @@ size_t leaks(const scene::Scene& s, const std::vector<Opening>& openings, size_t
 
 }  // namespace
 
-TEST_CASE("every scene loads in silence, with settings that exist and a camera named main") {
+TEST_CASE("every scene loads without warnings, with valid settings and a camera named main") {
   REQUIRE(names().size() >= 14);
   for (const std::string& name : names()) {
     INFO(name);
@@ -122,7 +122,7 @@ TEST_CASE("every scene is in the list") {
   }
 }
 
-TEST_CASE("rooms lose rays through their openings only") {
+TEST_CASE("rays leave rooms only through their openings") {
   struct Room {
     const char* scene;
     std::vector<Opening> openings;
@@ -151,10 +151,10 @@ TEST_CASE("rooms lose rays through their openings only") {
   }
 }
 
-TEST_CASE("the arcade has about a thousand lamps of believable power") {
+TEST_CASE("the arcade has about a thousand lamps of plausible power") {
   const scene::Scene s = scene::load(file_of("arcade"));
   CHECK(s.cameras.size() == 3);
-  // Lamps with an extent: what shines and stands apart. Panes of the vault are the sky's.
+  // Lamps with an extent: connected emissive surfaces. Panes of the vault belong to the sky.
   size_t lamps = s.lights.size();
   double watts = 0, sky = 0;
   for (const scene::Light& light : s.lights) {
@@ -190,7 +190,7 @@ TEST_CASE("the arcade has about a thousand lamps of believable power") {
   CHECK(sky < 0.05 * watts);
 }
 
-TEST_CASE("the conference hall's twenty spots shine freely") {
+TEST_CASE("the conference hall's twenty spots are unobstructed") {
   const scene::Scene s = scene::load(file_of("conference"));
   REQUIRE(s.lights.size() == 20);
   const bvh::test::Mesh mesh = triangles(s);
@@ -208,8 +208,7 @@ TEST_CASE("the conference hall's twenty spots shine freely") {
   }
   std::vector<shared::Hit> hits(rays.size());
   tracer.trace(bvh::Query::closest, rays, hits, nullptr, static_cast<uint32_t>(rays.size()), false);
-  // Nothing of the ceiling, which the lamps are let into, is in their way: curtains and walls are the
-  // nearest.
+  // The ceiling around the recessed lamps does not block them: curtains and walls are the nearest surfaces.
   size_t near = 0;
   for (const shared::Hit& hit : hits) near += hit.prim == shared::k_no_hit || hit.t < 0.8f;
   CHECK(near == 0);

@@ -1,5 +1,5 @@
 // links: schedule
-// Adaptive tiles against simulated noise: who gets samples, when tiles leave, how the device is filled.
+// Adaptive tiles with simulated noise: which tiles get samples, when they stop, how the device is filled.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -13,7 +13,7 @@ using namespace lucerna::schedule;
 
 namespace {
 
-/// Plays the schedule to its end; tile t has the error sigma(t) / sqrt(samples).
+/// Runs the schedule to its end; tile t has the error sigma(t) / sqrt(samples).
 struct Player {
   AdaptiveSchedule schedule;
   std::map<uint32_t, uint32_t> samples;  // by block
@@ -29,7 +29,7 @@ struct Player {
       std::set<uint32_t> seen;
       for (const WorkBlock& b : item.blocks) {
         CHECK(seen.insert(b.index).second);
-        CHECK(b.first_sample == samples[b.index]);  // no sample twice, none left out
+        CHECK(b.first_sample == samples[b.index]);  // no sample twice, none skipped
         samples[b.index] += item.sample_count;
       }
       std::vector<TileErrors> errors;
@@ -45,7 +45,7 @@ struct Player {
 
 }  // namespace
 
-TEST_CASE("every tile ends under the target or with all it may have, and easy ones with the minimum") {
+TEST_CASE("every tile ends below the target or at the maximum, and easy ones at the minimum") {
   for (const uint32_t side : {8u, 16u}) {
     CAPTURE(side);
     constexpr uint32_t k_slots = 8192;
@@ -67,7 +67,7 @@ TEST_CASE("every tile ends under the target or with all it may have, and easy on
       if (t == hard) CHECK((tile.state == TileState::done && tile.samples >= 400 && tile.samples < 500));
       if (t != hopeless) CHECK(tile.error <= 0.05f);
     }
-    // Only the hard ones' neighbours went on beyond the minimum, and only while these were far over the
+    // Only neighbours of the hard ones continued beyond the minimum, and only while these were far above the
     // target.
     CHECK(p.schedule.count(TileState::capped) == 1);
     uint32_t beyond = 0;
@@ -78,7 +78,7 @@ TEST_CASE("every tile ends under the target or with all it may have, and easy on
   }
 }
 
-TEST_CASE("few tiles left: the samples a pixel double, so that the device stays full") {
+TEST_CASE("with few tiles left the samples per pixel double, so the device stays full") {
   constexpr uint32_t k_slots = 65536;  // 128 tiles of 64 pixels at 8 samples
   Player p{
       AdaptiveSchedule(
@@ -91,11 +91,11 @@ TEST_CASE("few tiles left: the samples a pixel double, so that the device stays 
   for (const WorkItem& item : p.items)
     if (item.blocks.size() < 100 && item.sample_count > 16) ++after, full += 2 * item.slots() >= k_slots;
   CHECK(after > 5);
-  // All but the items that end at somebody's cap.
+  // All except the items that end at a tile's maximum.
   CHECK(full == after);
 }
 
-TEST_CASE("work that is given back is given again; the same errors give the same schedule") {
+TEST_CASE("returned work is issued again; the same errors give the same schedule") {
   const AdaptiveOptions options{
       .tile = 16, .target_error = 0.05f, .min_samples = 8, .max_samples = 64, .slots = 2048};
   AdaptiveSchedule a(9, 7, options), b(9, 7, options);
@@ -118,7 +118,7 @@ TEST_CASE("work that is given back is given again; the same errors give the same
 }
 
 TEST_CASE("options at their limits") {
-  // A minimum above the maximum, odd numbers, a picture of one block, hardly any slots.
+  // A minimum above the maximum, odd numbers, a picture of one block, very few slots.
   Player p{
       AdaptiveSchedule(
           1, 1, {.tile = 16, .target_error = 0.1f, .min_samples = 1001, .max_samples = 77, .slots = 1024}),
@@ -137,7 +137,7 @@ TEST_CASE("options at their limits") {
   CHECK(AdaptiveSchedule().done());
 }
 
-TEST_CASE("uniform: every block once a pass, no sample twice") {
+TEST_CASE("uniform: every block once per pass, no sample twice") {
   UniformSchedule u(21, 37, 64 * 4);
   std::map<uint32_t, uint32_t> samples;
   while (!u.done()) {
@@ -151,7 +151,7 @@ TEST_CASE("uniform: every block once a pass, no sample twice") {
   for (const auto& [block, n] : samples) CHECK(n == 37);
 }
 
-TEST_CASE("another target lets the schedule go on: no sample is lost, none is given without need") {
+TEST_CASE("another target continues the schedule: no sample is lost or taken unnecessarily") {
   constexpr uint32_t k_slots = 8192;
   AdaptiveOptions options{
       .tile = 16, .target_error = 0.1f, .min_samples = 32, .max_samples = 2000, .slots = k_slots};
@@ -162,7 +162,7 @@ TEST_CASE("another target lets the schedule go on: no sample is lost, none is gi
   const uint32_t rounds = p.schedule.rounds();
   CHECK(rounds > 3);
 
-  // Tighter: the hardest go on from where they were (Player checks each first sample).
+  // Lower: the hardest tiles continue from their samples (Player checks each first sample).
   options.target_error = 0.05f;
   p.schedule.retarget(options);
   CHECK_FALSE(p.schedule.done());
@@ -177,7 +177,7 @@ TEST_CASE("another target lets the schedule go on: no sample is lost, none is gi
   CHECK(more < p.samples.size());
   for (const Tile& tile : p.schedule.tiles()) CHECK(tile.error <= 0.05f);
 
-  // Looser, and the same again: nothing is left to do.
+  // Higher, and the same again: nothing remains to do.
   const std::map<uint32_t, uint32_t> tight = p.samples;
   p.schedule.retarget(options);
   CHECK(p.schedule.done());
@@ -186,7 +186,7 @@ TEST_CASE("another target lets the schedule go on: no sample is lost, none is gi
   CHECK(p.schedule.done());
   CHECK(p.samples == tight);
 
-  // A smaller cap gives up what is over the target; a larger one takes it up again; a larger minimum too.
+  // A smaller maximum stops tiles above the target; a larger one continues them; so does a larger minimum.
   options.target_error = 0.02f, options.max_samples = 100;
   p.schedule.retarget(options);
   p.play(sigma, k_slots);
@@ -203,8 +203,8 @@ TEST_CASE("another target lets the schedule go on: no sample is lost, none is gi
   CHECK(p.schedule.most_samples() <= 4000);
 }
 
-TEST_CASE("another target in the middle of a round") {
-  constexpr uint32_t k_slots = 4096;  // several items a round
+TEST_CASE("another target during a round") {
+  constexpr uint32_t k_slots = 4096;  // several items per round
   AdaptiveOptions options{
       .tile = 8, .target_error = 0.1f, .min_samples = 16, .max_samples = 2000, .slots = k_slots};
   for (const uint32_t items : {1u, 5u, 17u, 40u}) {
@@ -230,14 +230,12 @@ TEST_CASE("another target in the middle of a round") {
   }
 }
 
-TEST_CASE(
-    "what samples do not take away: a tile is done when its sum is under the target, or given up as "
-    "limited") {
+TEST_CASE("error that samples do not reduce: a tile ends when its sum is below the target, or as limited") {
   constexpr uint32_t k_slots = 64 * 64;
   const AdaptiveOptions options{
       .tile = 8, .target_error = 0.05f, .min_samples = 16, .max_samples = 4096, .slots = k_slots};
-  // Of tiles apart from each other, what records and interpolation come to: nothing, half of the target,
-  // nearly all of it, more than it.
+  // The error of records and interpolation in separate tiles: zero, half of the target, almost the target,
+  // more than it.
   struct Floor {
     float records, interpolation;
     bool reached;
@@ -261,14 +259,14 @@ TEST_CASE(
     CHECK(tile.state == (f.reached ? TileState::done : TileState::capped));
     CHECK(tile.limited(0.05f) == !f.reached);
     CHECK(tile.samples < 4096);
-    // Under the target, and not long since; or as far as samples help.
+    // Just below the target; or where further samples do not help.
     if (f.reached) CHECK(tile.sum() <= 0.0501f);
     if (!f.reached) CHECK(tile.error <= (f.records + f.interpolation) / 3);
     if (!f.reached) CHECK(tile.sum() > 0.05f);
   }
   CHECK(s.tiles()[0].samples < s.tiles()[4].samples);
   CHECK(s.tiles()[4].samples < s.tiles()[8].samples);
-  // What is limited goes as far as samples help, and no further.
+  // A limited tile continues only as far as samples help.
   CHECK(s.tiles()[44].samples < s.tiles()[8].samples);
   CHECK(paths_goal(0.05f, 0, 0) == 0.05f);
   CHECK(std::hypot(paths_goal(0.05f, 0.03f, 0), 0.03f) == Approx(0.05f));
@@ -276,7 +274,8 @@ TEST_CASE(
   CHECK(paths_goal(0.05f, 0.09f, 0.03f) == Approx(0.04f));
 }
 
-TEST_CASE("uniform and adaptive take over from one another, at any time: no sample is lost or given twice") {
+TEST_CASE(
+    "uniform and adaptive sampling take over from each other at any time: no sample is lost or repeated") {
   constexpr uint32_t k_across = 9, k_down = 7, k_slots = 64 * 5;
   const auto sigma = [](uint32_t t) { return 0.3 + 0.05 * t; };
   const auto uniform = [&](UniformSchedule& u, std::map<uint32_t, uint32_t>& samples, int items) {
@@ -298,7 +297,7 @@ TEST_CASE("uniform and adaptive take over from one another, at any time: no samp
   };
   const AdaptiveOptions options{
       .tile = 16, .target_error = 0.05f, .min_samples = 16, .max_samples = 200, .slots = k_slots};
-  // After any number of items, be it none, in the middle of a pass, or all.
+  // After any number of items: none, during a pass, or all.
   for (const int items : {0, 1, 5, 13, 14, 40, 47, 1000}) {
     CAPTURE(items);
     std::map<uint32_t, uint32_t> samples;
@@ -310,7 +309,7 @@ TEST_CASE("uniform and adaptive take over from one another, at any time: no samp
       errors.push_back({.paths = float(sigma(t) / std::sqrt(std::max(1u, first.complete())))});
     Player p{AdaptiveSchedule(k_across, k_down, options, first.counts(), errors), samples, {}};
     CHECK(p.schedule.least_samples() == first.complete());
-    // An item that is not carried out is given again.
+    // An item that is not executed is issued again.
     const WorkItem item = p.schedule.next();
     p.schedule.give_back();
     const WorkItem again = p.schedule.next();
@@ -324,10 +323,10 @@ TEST_CASE("uniform and adaptive take over from one another, at any time: no samp
       const Tile& tile = p.schedule.tiles()[t];
       CHECK((tile.error <= 0.05f || tile.samples >= 200));
       for (const uint32_t b : p.schedule.blocks_of(t)) CHECK(p.samples.at(b) == tile.samples);
-      // None is given without need.
+      // No sample is taken unnecessarily.
       if (items == 1000 && sigma(t) / 8 < 0.025) CHECK(tile.samples == 64);
     }
-    // ... and back: the rest catches up.
+    // Back to uniform: the other blocks catch up.
     UniformSchedule last(p.schedule.counts(), 150, k_slots);
     CHECK(last.complete() == p.schedule.least_samples());
     const std::map<uint32_t, uint32_t> before = p.samples;
@@ -335,7 +334,7 @@ TEST_CASE("uniform and adaptive take over from one another, at any time: no samp
     CHECK(last.done());
     for (const auto& [block, n] : p.samples) CHECK(n == std::max(150u, before.at(block)));
   }
-  // Blocks that all have as many go on as if nothing had been.
+  // If all blocks have the same number the schedule continues as usual.
   UniformSchedule plain(12, 40, k_slots), resumed(std::vector<uint32_t>(12, 8), 40, k_slots);
   while (plain.complete() < 8) plain.next();
   while (!plain.done()) {
@@ -346,7 +345,7 @@ TEST_CASE("uniform and adaptive take over from one another, at any time: no samp
   CHECK(resumed.done());
 }
 
-TEST_CASE("items of one sample: all their blocks have the same next sample, whoever is behind") {
+TEST_CASE("items of one sample: all their blocks have the same next sample, whichever is behind") {
   constexpr uint32_t k_slots = 4096;
   AdaptiveOptions options{.tile = 16,
                           .target_error = 0.3f,
@@ -364,7 +363,7 @@ TEST_CASE("items of one sample: all their blocks have the same next sample, whoe
   Player p{AdaptiveSchedule(13, 9, options), {}, {}};
   p.play(sigma, k_slots);
   all_alike(p);
-  // Another target finds tiles with more samples beside others with fewer.
+  // After another target tiles with more samples lie beside others with fewer.
   options.target_error = 0.001f;
   p.schedule.retarget(options);
   p.play(sigma, k_slots);
@@ -393,7 +392,7 @@ TEST_CASE("items of one sample: all their blocks have the same next sample, whoe
   for (const uint32_t n : samples) CHECK(n == 8);
 }
 
-TEST_CASE("samples wanted later, more or fewer, are taken exactly once") {
+TEST_CASE("samples requested later, more or fewer, are taken exactly once") {
   const auto run = [](UniformSchedule& u, std::vector<uint32_t>& next) {
     while (!u.done()) {
       const WorkItem item = u.next();
@@ -416,7 +415,7 @@ TEST_CASE("samples wanted later, more or fewer, are taken exactly once") {
   CHECK(u.done());
   CHECK(u.complete() == 128);
   CHECK(u.counts() == have);
-  // In the middle of a pass too.
+  // Also during a pass.
   u.set_samples(200);
   for (const WorkBlock& b : u.next().blocks) have[b.index] = u.counts()[b.index];
   u.set_samples(8);

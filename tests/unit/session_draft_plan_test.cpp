@@ -1,6 +1,6 @@
 // links: session
-// When drafts get samples: a first one at once, a few while the picture fills, more while it has to wait, and
-// what share of the time they take.
+// When preview samples are drawn: the first immediately, a few while the picture fills, more while it waits;
+// and their share of the time.
 #include <catch2/catch.hpp>
 
 #include "session/draft_plan.h"
@@ -8,7 +8,7 @@
 using lucerna::session::DraftPlan;
 using Next = DraftPlan::Next;
 
-TEST_CASE("a picture that is begun gets a draft at once, a filled one none") {
+TEST_CASE("a new picture gets a preview sample immediately, a filled one none") {
   for (const bool preparing : {false, true}) {
     DraftPlan plan;
     plan.worked(0.001);
@@ -20,7 +20,7 @@ TEST_CASE("a picture that is begun gets a draft at once, a filled one none") {
   }
 }
 
-TEST_CASE("what surfaces pixels show is asked after the first draft, of pictures that are not filled") {
+TEST_CASE("primary visibility is traced after the first preview sample of an unfilled picture") {
   DraftPlan plan;
   CHECK(plan.next(false, false, true) == Next::coarse);
   plan.drawn(Next::coarse, 0.1);
@@ -33,7 +33,7 @@ TEST_CASE("what surfaces pixels show is asked after the first draft, of pictures
   CHECK(plan.next(false, false, false) == Next::coarse);
 }
 
-TEST_CASE("while the picture's samples come there are four of the coarse draft, whatever they take") {
+TEST_CASE("while the picture's samples arrive there are four coarse preview samples, whatever they take") {
   DraftPlan plan;
   int drawn = 0;
   for (int step = 0; step < 100; ++step) {
@@ -49,7 +49,7 @@ TEST_CASE("while the picture's samples come there are four of the coarse draft, 
   CHECK(drawn == 4);
 }
 
-TEST_CASE("while the samples wait drafts of a good picture take half of the time, then less, and end") {
+TEST_CASE("while the picture waits, previews with low error take half of the time, then less, and end") {
   constexpr double k_good = 0.05;
   DraftPlan plan;
   double drafts = 0, work = 0, halved = 0;
@@ -67,17 +67,17 @@ TEST_CASE("while the samples wait drafts of a good picture take half of the time
   CHECK(halved == Approx(0.5).margin(0.15));
   CHECK(coarse == 4);
   CHECK(fine == 64);
-  // All of the 68 samples together within a tenth of the time that they are spread over.
+  // All 68 samples together within a tenth of the time over which they are spread.
   CHECK(drafts / 0.3 == Approx(68));
 }
 
-TEST_CASE("while the samples wait drafts of a rough picture take most of the time, for some seconds") {
+TEST_CASE("while the picture waits, previews with high error take most of the time, for some seconds") {
   for (const std::optional<double> error : {std::optional<double>(), std::optional(0.2)}) {
     DraftPlan plan;
     double drafts = 0, work = 0, drafts_at_9 = 0;
     for (int step = 0; step < 4000; ++step) {
       if (drafts + work < 9) drafts_at_9 = drafts;
-      // Better light begins drafts anew, but does not hold up the work any longer.
+      // Changed light restarts the preview, but does not delay the work further.
       if (step % 100 == 99) plan.light_changed();
       if (const Next next = plan.next(true, false, false, error); next == Next::nothing) {
         plan.worked(0.02), work += 0.02;
@@ -90,7 +90,7 @@ TEST_CASE("while the samples wait drafts of a rough picture take most of the tim
   }
 }
 
-TEST_CASE("a draft that begins anew is no coarser than the one that there was") {
+TEST_CASE("a restarted preview is no coarser than the previous one") {
   DraftPlan plan;
   plan.drawn(Next::coarse, 0.1);
   plan.light_changed();
@@ -101,7 +101,7 @@ TEST_CASE("a draft that begins anew is no coarser than the one that there was") 
   plan.light_changed();
   CHECK_FALSE(plan.begun());
   CHECK(plan.next(true, false, false) == Next::fine);
-  CHECK(plan.next(false, false, false) == Next::coarse);  // the picture's own samples come now
+  CHECK(plan.next(false, false, false) == Next::coarse);  // the picture's own samples arrive now
   plan.drawn(Next::fine, 0.1);
   CHECK(plan.begun());
   CHECK((plan.coarse_samples() == 0 && plan.shows_fine()));
@@ -111,12 +111,12 @@ TEST_CASE("a draft that begins anew is no coarser than the one that there was") 
   CHECK(plan.next(true, false, false) == Next::coarse);
 }
 
-TEST_CASE("surfaces, the last coarse draft and every fine one of twice the samples are shown at once") {
+TEST_CASE("visibility, the last coarse sample and every doubling of fine samples are shown immediately") {
   DraftPlan plan;
   plan.drawn(Next::coarse, 0.1);
   CHECK_FALSE(plan.news());
   plan.drawn(Next::sight, 0.1, false);
-  CHECK_FALSE(plan.news());  // a piece of them
+  CHECK_FALSE(plan.news());  // a part of them
   plan.drawn(Next::sight, 0.1);
   CHECK(plan.news());
   plan.drawn(Next::coarse, 0.1);
@@ -127,7 +127,7 @@ TEST_CASE("surfaces, the last coarse draft and every fine one of twice the sampl
   for (int i = 0; i < 64; ++i) {
     plan.drawn(Next::fine, 0.1);
     shown += plan.news();
-    CHECK(plan.shows_fine() == (i > 0));  // one sample is no better than four of a quarter of the pixels
+    CHECK(plan.shows_fine() == (i > 0));  // one sample is no better than four at a quarter of the pixels
   }
   CHECK(shown == 6);
 }

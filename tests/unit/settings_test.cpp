@@ -1,6 +1,5 @@
 // links: plan
-// The settings' table: every option has a valid default and help; what is not valid is refused with its
-// place.
+// The option table: every option has a valid default and help; invalid values are refused with the key.
 #include <catch2/catch.hpp>
 #include <set>
 
@@ -26,7 +25,7 @@ std::string message(const std::string& key, const std::string& value) {
 
 }  // namespace
 
-TEST_CASE("every option: unique key, help that is a sentence, a default that is accepted") {
+TEST_CASE("every option: unique key, help that is a sentence, a valid default") {
   std::set<std::string> keys;
   for (const OptionInfo& o : options()) {
     INFO(o.key);
@@ -41,7 +40,7 @@ TEST_CASE("every option: unique key, help that is a sentence, a default that is 
   CHECK(find_option("no.such") == nullptr);
 }
 
-TEST_CASE("every option refuses what is outside of it, and says what is inside") {
+TEST_CASE("every option refuses values outside its range, and states the range") {
   for (const OptionInfo& o : options()) {
     INFO(o.key);
     switch (o.type) {

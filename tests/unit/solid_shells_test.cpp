@@ -1,5 +1,5 @@
 // links: upload scene
-// The shells of solids that enclose places where paths start.
+// Boxes around solids that can enclose the start of a path.
 #include <catch2/catch.hpp>
 
 #include "support/rooms.h"
@@ -7,7 +7,7 @@
 
 using namespace lucerna;
 
-TEST_CASE("boxes of solids hold the margin of their own triangles, whatever stands far away") {
+TEST_CASE("boxes of solids include the margin of their own triangles, whatever is far away") {
   scene::Scene s;
   s.materials = {{}, test::diffuse(vec3(0.5f))};
   s.materials[0].metallic = 0, s.materials[0].transmission = 1, s.materials[0].thickness = 1;

@@ -1,6 +1,6 @@
 // links: plan
-// What the solvers say of themselves agrees with itself and with the settings: from these tables panels,
-// keys, menus, commands and files are made.
+// The solvers' tables are consistent with each other and with the settings: panels, keys, menus, commands and
+// files are generated from them.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <set>
@@ -17,12 +17,13 @@ TEST_CASE("every setting of the picture has a row in each solver's table of chan
       const solvers::SolverInfo* owner = solvers::owner_of(option.key);
       if (owner && owner != solver) continue;
       INFO(solver->name << ": " << option.key);
-      CHECK(std::any_of(solver->changes.begin(), solver->changes.end(), [&](const solvers::ChangeRow& row) {
+      const std::vector<solvers::ChangeRow> rows = solvers::changes_of(*solver);
+      CHECK(std::any_of(rows.begin(), rows.end(), [&](const solvers::ChangeRow& row) {
         const auto* head = std::get_if<std::string_view>(&row.change);
         return head && option.key.starts_with(*head);
       }));
     }
-    // A mix where groups are not kept apart is an edit of all lights: surfaces are what they were.
+    // A mix without tracked groups is an edit of all lights: surfaces do not change.
     scene::Changes relit(scene::Change::lamp);
     relit.edits.insert({scene::Change::environment, scene::Change::colour});
     relit.settings = {"relight.mix"};
@@ -32,8 +33,36 @@ TEST_CASE("every setting of the picture has a row in each solver's table of chan
   }
 }
 
-TEST_CASE("views, commands and files of every solver are such as the window and scripts can use") {
-  const std::string windows = "ADEFKLQRSTW";  // keys that the window has for itself
+TEST_CASE(
+    "changes that mean the same to all solvers are in one table, and a solver's own row counts instead") {
+  solvers::SolverInfo solver{.name = "some"};
+  const auto invalidated = [&](const char* key) { return solvers::invalidated_by(solver, key); };
+  CHECK(invalidated("film.ev") == solvers::k_invalidates_nothing);
+  CHECK(invalidated("preview.filter") == solvers::k_invalidates_nothing);
+  CHECK(invalidated("relight.mix") == solvers::k_invalidates_light);
+  CHECK(invalidated("relight.layers") == solvers::k_invalidates_nothing);
+  CHECK(solvers::invalidated_by(solver, scene::Change::lamp) == solvers::k_invalidates_light);
+  CHECK(solvers::invalidated_by(solver, scene::Change::camera) == solvers::k_invalidates_all);
+  CHECK(invalidated("unheard.of") == solvers::k_invalidates_all);
+  solver.changes = {{"film.", solvers::k_invalidates_coverage, "as a test"},
+                    {"film.ev", solvers::k_invalidates_light, "as a test"},
+                    {scene::Change::lamp, solvers::k_invalidates_nothing, "as a test"}};
+  CHECK(invalidated("film.layer") == solvers::k_invalidates_coverage);
+  CHECK(invalidated("film.ev") == solvers::k_invalidates_light);
+  CHECK(solvers::invalidated_by(solver, scene::Change::lamp) == solvers::k_invalidates_nothing);
+  CHECK(invalidated("preview.filter") == solvers::k_invalidates_nothing);
+
+  // A row that says what the default says is a copy of it.
+  for (const solvers::SolverInfo* own : solvers::registered())
+    for (const solvers::ChangeRow& row : own->changes)
+      for (const solvers::ChangeRow& general : solvers::default_changes()) {
+        INFO(own->name << ": " << row.why);
+        CHECK_FALSE((row.change == general.change && row.invalidates == general.invalidates));
+      }
+}
+
+TEST_CASE("views, commands and files of every solver are valid for window and scripts") {
+  const std::string windows = "ADEFKLQRSTW";  // keys that the window uses itself
   std::set<std::string> names, extensions;
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     INFO(solver->name);

@@ -1,5 +1,5 @@
 // links: base
-// Rules on the sources that no type can state: JSON is written in one place, and std::filesystem never
+// Rules for the sources that no type can state: JSON is written in one place, and std::filesystem never
 // throws.
 #include <algorithm>
 #include <catch2/catch.hpp>
@@ -30,7 +30,7 @@ int line_of(const std::string& text, size_t at) {
   return 1 + int(std::count(text.begin(), text.begin() + std::ptrdiff_t(at), '\n'));
 }
 
-/// The arguments of a call, from behind its opening parenthesis on.
+/// The number of arguments of a call, from behind its opening parenthesis.
 size_t arguments(const std::string& text, size_t at) {
   int depth = 1;
   size_t commas = 0;
@@ -45,10 +45,9 @@ size_t arguments(const std::string& text, size_t at) {
   return any ? commas + 1 : 0;
 }
 
-/// Calls that throw std::filesystem::filesystem_error where the disk is not as expected, which ends the
-/// window.
+/// Calls that throw std::filesystem::filesystem_error on a failure of the disk, which would end the window.
 std::vector<std::string> throwing_calls(const std::string& text) {
-  // Arguments of the form that takes a std::error_code.
+  // Number of arguments of the form that takes a std::error_code.
   static const std::map<std::string, size_t> k_quiet = {{"absolute", 2},
                                                         {"canonical", 2},
                                                         {"weakly_canonical", 2},
@@ -85,7 +84,7 @@ std::vector<std::string> throwing_calls(const std::string& text) {
     const auto quiet = k_quiet.find((*call)[1]);
     if (quiet == k_quiet.end()) continue;
     const size_t count = arguments(text, size_t(call->position() + call->length()));
-    // An iterator without arguments is the end of all.
+    // An iterator without arguments is the end iterator.
     if (count == 0 && quiet->first.ends_with("iterator")) continue;
     if (count < quiet->second)
       found.push_back(std::to_string(line_of(text, size_t(call->position()))) + ": " + quiet->first);
@@ -100,7 +99,7 @@ std::vector<std::string> throwing_calls(const std::string& text) {
   return found;
 }
 
-/// Files of the program in which `rule` finds something, with that.
+/// The program's files that violate `rule`, with the violations.
 std::string violations(const std::function<std::vector<std::string>(const std::string&)>& rule) {
   const fs::path root = LUCERNA_SOURCE_DIR;
   std::string all;
@@ -120,7 +119,7 @@ std::string violations(const std::function<std::vector<std::string>(const std::s
 
 }  // namespace
 
-TEST_CASE("JSON becomes text by json_text alone, which names from outside cannot make throw") {
+TEST_CASE("JSON is written by json_text only, which no name from a file can make throw") {
   const auto dumps = [](const std::string& text) {
     std::vector<std::string> found;
     for (size_t at = text.find("dump("); at != std::string::npos; at = text.find("dump(", at + 1))

@@ -1,5 +1,5 @@
 // links: stats
-// The ledger's lines and what the forecasts make of made-up renders whose law is known.
+// The ledger's entries, and forecasts for synthetic renders with a known law.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <random>
@@ -10,7 +10,7 @@ using namespace lucerna::stats;
 
 namespace {
 
-/// A render whose error is c * work^-exponent, a second for every thousand paths.
+/// A render whose error is c * work^-exponent, one second per thousand paths.
 Ledger render(double exponent, uint64_t paths, double wobble = 0) {
   Ledger ledger;
   for (uint64_t p = 100; p <= paths; p += 100) {
@@ -25,12 +25,12 @@ Ledger render(double exponent, uint64_t paths, double wobble = 0) {
   return ledger;
 }
 
-/// Error of a tile with so many samples by the law of forecast.h, of this noise in one sample.
+/// Error of a tile after that many samples by the law of forecast.h, with this noise of one sample.
 double tile_error(double noise, double samples, double k) {
   return std::pow(std::pow(k_saturated_error, -k) + std::pow(samples / (noise * noise), 0.5 * k), -1 / k);
 }
 
-/// Tiles that follow it; tile 0 is the hard one.
+/// Tiles that follow the law; tile 0 is the hard one.
 std::vector<TileProgress> tiles(uint32_t count, double easy, double hard, double samples, double k) {
   std::vector<TileProgress> list(count);
   for (uint32_t t = 0; t < count; ++t) {
@@ -46,10 +46,10 @@ std::vector<TileProgress> tiles(uint32_t count, double easy, double hard, double
 
 }  // namespace
 
-TEST_CASE("a line each time the work has grown by half, later by a quarter, and one for the end") {
+TEST_CASE("an entry each time the work has grown by half, later by a quarter, and one for the end") {
   Ledger ledger;
   CHECK_FALSE(ledger.due(0, 10));
-  CHECK_FALSE(ledger.due(19, 10));  // fewer than two samples a pixel: no error can be told
+  CHECK_FALSE(ledger.due(19, 10));  // fewer than two samples per pixel: no error estimate
   CHECK(ledger.due(20, 10));
   ledger.add({.paths = 20});
   CHECK_FALSE(ledger.due(29, 10));
@@ -57,13 +57,13 @@ TEST_CASE("a line each time the work has grown by half, later by a quarter, and 
   ledger.add({.paths = 1000});
   CHECK_FALSE(ledger.due(1249, 10));
   CHECK(ledger.due(1250, 10));
-  ledger.add({.paths = 1000, .rays = 7});  // the same moment again replaces the line
+  ledger.add({.paths = 1000, .rays = 7});  // the same moment again replaces the entry
   REQUIRE(ledger.entries().size() == 2);
   CHECK(ledger.entries()[1].rays == 7);
   CHECK(render(0.5, 1000000).entries().size() < 60);
 }
 
-TEST_CASE("CSV: as many fields in every line, unknown ones empty") {
+TEST_CASE("CSV: the same number of fields in every line, unknown ones empty") {
   Ledger ledger;
   ledger.add({.wall_s = 0.5, .paths = 10});
   Entry full{.paths = 20};
@@ -84,7 +84,7 @@ TEST_CASE("CSV: as many fields in every line, unknown ones empty") {
   CHECK(csv.find(",1,2,3\n") != std::string::npos);
 }
 
-TEST_CASE("time to a smaller error: the law is found, the truth lies within the band") {
+TEST_CASE("time to a smaller error: the law is found, and the band contains the truth") {
   for (const double exponent : {0.5, 0.6, 1.0}) {
     for (const double wobble : {0.0, 0.03}) {
       CAPTURE(exponent, wobble);
@@ -104,7 +104,7 @@ TEST_CASE("time to a smaller error: the law is found, the truth lies within the 
       CHECK(band->middle == Approx(truth).epsilon(wobble > 0 ? 0.4 : 0.2));
     }
   }
-  // What was prepared before the first sample takes its time once: a forecast does not scale it.
+  // Preparation before the first sample takes its time once: a forecast does not scale it.
   Ledger prepared;
   const Ledger plain = render(0.5, 100000);
   for (Entry e : plain.entries()) e.prepared_s = 40, e.wall_s += 40, prepared.add(e);
@@ -114,7 +114,8 @@ TEST_CASE("time to a smaller error: the law is found, the truth lies within the 
     CHECK(with->middle == Approx(without->middle + 40));
     CHECK(with->high == Approx(without->high + 40));
   }
-  // Reached: when it was, between two lines; not by a line that tells no error, be it the last.
+  // Already reached: the time between two entries; an entry without an error does not count, even as the
+  // last.
   const auto reached = seconds_to(render(0.5, 100000), 0.21);
   REQUIRE(reached);
   CHECK(reached->low == reached->high);
@@ -129,7 +130,7 @@ TEST_CASE("time to a smaller error: the law is found, the truth lies within the 
 }
 
 TEST_CASE(
-    "what records and interpolation come to is never foretold to be gone under, nor said to be reached") {
+    "the error of records and interpolation is never forecast to be undercut, nor reported as reached") {
   Ledger plain = render(0.5, 3000000), ledger;
   for (Entry e : plain.entries()) {
     e.records = 0.03, e.interpolation = 0.02;
@@ -137,14 +138,14 @@ TEST_CASE(
   }
   CHECK(ledger.entries().back().sum() > 0.05);
   CHECK(ledger.entries().back().floor() == Approx(0.05));
-  // By the paths alone both have been reached.
+  // The paths alone have reached both.
   REQUIRE(plain.entries().back().error[0] < 0.04);
   REQUIRE(seconds_to(plain, 0.04));
   CHECK(paths_target(plain, 0.04) == 0.04);
   CHECK(paths_target(ledger, 0.04) == 0);
   CHECK_FALSE(seconds_to(ledger, 0.04));
   CHECK_FALSE(seconds_to(ledger, 0.0499));
-  // What can be reached is, when paths and records together are there: later than by the paths alone.
+  // A reachable target is reached when paths and records together are below it: later than by paths alone.
   CHECK(paths_target(ledger, 0.06) == Approx(std::sqrt(0.04 * 0.04 - 0.03 * 0.03)));
   const auto sum = seconds_to(ledger, 0.06), paths = seconds_to(plain, 0.06);
   REQUIRE(sum);
@@ -152,18 +153,18 @@ TEST_CASE(
   CHECK(sum->middle > 2 * paths->middle);
 }
 
-TEST_CASE("nothing is foretold before there is enough to tell by, and less is told of few pixels") {
+TEST_CASE("there is no forecast before enough entries exist, and wider bands for few pixels") {
   CHECK_FALSE(Outlook(Ledger()).known());
   for (const uint64_t samples : {2, 4, 8, 12}) CHECK_FALSE(seconds_to(render(0.5, 100 * samples), 0.01));
   CHECK(seconds_to(render(0.5, 2000), 0.01));
-  // A render that is looked at from the middle of it on has no past to tell by.
+  // A render observed only from its middle has no past to extrapolate.
   Ledger late;
   const Ledger whole = render(0.5, 3000), plain = render(0.5, 10000);
   for (const Entry& e : whole.entries())
     if (e.samples > 16) late.add(e);
   REQUIRE(late.entries().size() < 3);
   CHECK_FALSE(seconds_to(late, 0.01));
-  // Few degrees of freedom: a wider band, about the same middle.
+  // Few degrees of freedom: a wider band with about the same middle.
   const auto with_degrees = [&](double degrees) {
     Ledger ledger;
     for (Entry e : plain.entries()) e.degrees = degrees, ledger.add(e);
@@ -173,9 +174,9 @@ TEST_CASE("nothing is foretold before there is enough to tell by, and less is to
   CHECK(few.high / few.low > 1.5 * (many.high / many.low));
 }
 
-TEST_CASE("the band of 90 % holds the truth of made-up renders in nine cases of ten") {
-  // Pixels whose halves differ by a random walk, with noise of their own that falls as 1/N^(1 + q) for some
-  // and 1/N for the rest; a ledger's error is the sum of the squares.
+TEST_CASE("the 90 % band contains the truth of synthetic renders in nine cases of ten") {
+  // Pixels whose halves differ by a random walk, with noise that falls as 1/N^(1 + q) for some and 1/N for
+  // the rest; a ledger's error is the sum of the squares.
   std::mt19937 random(7);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
@@ -207,12 +208,12 @@ TEST_CASE("the band of 90 % holds the truth of made-up renders in nine cases of 
     std::optional<Band> before;
     for (const Entry& e : all) {
       ledger.add(e);
-      if (e.error[0] <= target) break;  // reached by luck, before the end
+      if (e.error[0] <= target) break;  // reached by chance, before the end
       if (e.samples > 500) break;
       const auto band = seconds_to(ledger, target);
       CHECK(band.has_value() == (e.samples >= 16));
       if (!band) continue;
-      // The truth: where the error comes under the target for good.
+      // The truth: where the error stays below the target.
       Ledger whole;
       for (const Entry& line : all) whole.add(line);
       const double truth = seconds_to(whole, target)->middle;
@@ -222,22 +223,23 @@ TEST_CASE("the band of 90 % holds the truth of made-up renders in nine cases of 
       width += std::log(band->high / band->low);
     }
   }
-  INFO(reported << " told, " << in << " held the truth, " << low << " were too short; on average "
+  INFO(reported << " forecasts, " << in << " held the truth, " << low << " were too short; on average "
                 << std::exp(width / reported) << " from end to end");
   REQUIRE(reported > 1000);
   CHECK(in > 0.88 * reported);
   CHECK(low < 0.1 * reported);
-  // What is said next was within what was said before.
+  // Each forecast lies within the previous one.
   CHECK(steady > 0.97 * pairs);
   CHECK(std::exp(width / reported) < 5);
 }
 
-TEST_CASE("paths of an adaptive render: easy tiles stop at the minimum, hard ones go on, the cap holds") {
+TEST_CASE(
+    "paths of an adaptive render: easy tiles stop at the minimum, hard ones continue, the maximum holds") {
   for (const double samples : {16.0, 64.0})
     for (const double k : {0.8, 1.2, 2.0}) {
       CAPTURE(samples, k);
       const auto list = tiles(16, 0.1, 1.0, samples, k);
-      // Tile 0 needs this many, its three neighbours run along until it is at twice the target.
+      // Tile 0 needs this many samples; its three neighbours run along until it is at twice the target.
       const double target = 0.05;
       const auto needed = [&](double error) {
         return std::pow(std::pow(error, -k) - std::pow(k_saturated_error, -k), 2 / k);
@@ -253,7 +255,7 @@ TEST_CASE("paths of an adaptive render: easy tiles stop at the minimum, hard one
       CHECK(band->high < 5 * band->low);
       CHECK(total_paths(list, 4, target, 64, 100)->high <=
             256 * (4 * 100 + 12 * 64) * 1.0001 + 256 * 12 * 36);
-      // What has gone before says how it goes on: without, the band is wider.
+      // Earlier samples determine the law: without them the band is wider.
       auto unknown = list;
       for (TileProgress& t : unknown) t.earlier_samples = 0;
       const auto wide = total_paths(unknown, 4, target, 64, 1e6);
@@ -263,15 +265,15 @@ TEST_CASE("paths of an adaptive render: easy tiles stop at the minimum, hard one
   for (TileProgress& t : closed) t.open = false;
   CHECK(total_paths(closed, 2, 1e-3, 64, 1e6)->high == 4 * 256 * 100);
   CHECK(total_paths({}, 0, 0.1, 2, 10)->high == 0);
-  // Nothing is told from few samples, unless nothing is open.
+  // No forecast from few samples, unless no tile is open.
   CHECK_FALSE(total_paths(tiles(4, 1, 1, 8, 1), 2, 0.05, 64, 1e6));
-  // Where the error is beyond its ceiling, or not known, the answer stays a number.
+  // If the error is above its ceiling, or unknown, the result stays finite.
   CHECK(std::isfinite(samples_to({.error = 1.2, .samples = 2, .pixels = 256}, 0.01, 1)));
   CHECK(samples_to({.error = 0, .samples = 8, .pixels = 256}, 0.01, 1) == 8);
   CHECK(samples_to({.error = 0.1, .samples = 8, .pixels = 256}, 5, 1) < 8);
 }
 
-TEST_CASE("an open tile whose error rises is never taken for done") {
+TEST_CASE("an open tile whose error rises is never counted as finished") {
   for (const double jump : {1.0, 2.0, 5.0, 10.0, 15.0, 30.0, 60.0, 1e4, 1e8}) {
     CAPTURE(jump);
     std::vector<TileProgress> list(4, {.error = 0.01, .samples = 64, .pixels = 256, .open = false});
@@ -289,14 +291,14 @@ TEST_CASE("an open tile whose error rises is never taken for done") {
     CHECK(band->low <= band->middle);
     CHECK(band->middle <= band->high);
     CHECK(band->high <= 1.0001 * most);
-    // From twenty times the target it is far: the cap is in sight.
+    // From twenty times the target it is far: close to the maximum.
     if (jump >= 10) CHECK(band->high > 0.9 * most);
   }
 }
 
 TEST_CASE("the error at the end of a render with a fixed number of samples lies within its band") {
   for (const double exponent : {0.5, 0.6}) {
-    const Ledger ledger = render(exponent, 20000);  // 200 samples a pixel
+    const Ledger ledger = render(exponent, 20000);  // 200 samples per pixel
     const auto band = error_at(ledger, 1000);
     REQUIRE(band);
     const double truth = 2 * std::pow(1000.0, -exponent);
@@ -311,7 +313,7 @@ TEST_CASE("the error at the end of a render with a fixed number of samples lies 
   CHECK_FALSE(error_at(render(0.5, 800), 1000));
 }
 
-TEST_CASE("a pace that changes widens the band of seconds, both ways") {
+TEST_CASE("a changing speed widens the band of seconds in both directions") {
   Ledger slowing;
   const Ledger even = render(0.5, 100000);
   for (Entry e : even.entries()) {
@@ -325,9 +327,9 @@ TEST_CASE("a pace that changes widens the band of seconds, both ways") {
   CHECK(wide->high / wide->low > 1.3 * (plain->high / plain->low));
 }
 
-TEST_CASE("what is left of work whose amount is an estimate does not jump") {
-  // Relighting as it was met: the first rays cost eight times as much, what a ray is said to cost falls to
-  // the truth within a quarter of the work, and estimates are off by a tenth now and then.
+TEST_CASE("the remaining time of work of estimated size does not jump") {
+  // Relighting as measured: the first rays cost eight times as much, the estimated cost per ray reaches the
+  // truth within a quarter of the work, and estimates are occasionally off by a tenth.
   WorkPace pace;
   std::vector<double> totals;
   const double work = 1000;
@@ -338,7 +340,7 @@ TEST_CASE("what is left of work whose amount is an estimate does not jump") {
     if (const auto rest = pace.follow(seconds, done, left)) {
       CHECK(seconds >= WorkPace::k_least_seconds);
       CHECK(*rest >= 0);
-      // It counts down: never up by more than a tenth of what it was.
+      // It counts down: it never rises by more than a tenth.
       CHECK(*rest < 1.1 * left_before);
       left_before = *rest;
       totals.push_back(seconds + *rest);
@@ -351,6 +353,6 @@ TEST_CASE("what is left of work whose amount is an estimate does not jump") {
     CHECK(total > seconds / 1.6);
   }
   for (size_t i = 1; i < totals.size(); ++i) CHECK(totals[i] == Approx(totals[i - 1]).epsilon(0.12));
-  // The next work begins from nothing.
+  // The next work starts from zero.
   CHECK_FALSE(pace.follow(seconds + 1, 5, 100));
 }

@@ -1,5 +1,5 @@
 // links: upload
-// Means of emission textures over triangles: above 0 wherever a read may find light, and means.
+// Means of emission textures over triangles: above 0 wherever a lookup can find light, and accurate.
 #include "upload/texture_mean.h"
 
 #include <catch2/catch.hpp>
@@ -29,7 +29,7 @@ void light_texel(scene::Scene& s, uint32_t x, uint32_t y, float value) {
 
 }  // namespace
 
-TEST_CASE("one lit texel counts wherever a triangle may read it, whichever way the texture goes on") {
+TEST_CASE("one bright texel counts wherever a triangle can read it, for every wrap mode") {
   std::mt19937 random(5);
   const auto uniform = [&](float lo, float hi) { return lo + (hi - lo) * float(random() >> 8) * 0x1p-24f; };
   scene::TextureUse use;
@@ -46,7 +46,7 @@ TEST_CASE("one lit texel counts wherever a triangle may read it, whichever way t
         std::array<vec2, 3> p;
         for (vec2& corner : p) corner = at + vec2(uniform(0, size), uniform(0, size));
         const double mean = means.over(use, p);
-        // Random reads, at each of the four texels that a bilinear one mixes.
+        // Random lookups, at each of the four texels of a bilinear one.
         double read = 0;
         for (int k = 0; k < 300; ++k) {
           float a = uniform(0, 1), b = uniform(0, 1);
@@ -75,7 +75,7 @@ TEST_CASE("the mean over a large triangle is that of its texels") {
   upload::TextureMeans means(s);
   scene::TextureUse use;
   use.texture = 0;
-  // Of its area three quarters lie in the left half.
+  // Three quarters of its area lie in the left half.
   CHECK(means.over(use, {vec2(0, 0), vec2(1, 0), vec2(0, 1)}) == Approx(2.5).epsilon(0.05));
   CHECK(means.over(use, {vec2(0, 0), vec2(300, 0), vec2(0, 300)}) == Approx(2));
   CHECK(means.over(use, {vec2(0.1f), vec2(0.1f), vec2(0.1f)}) == Approx(3));

@@ -8,7 +8,7 @@
 
 namespace lucerna::test {
 
-/// A workspace whose session is given time until a condition holds.
+/// A workspace whose session runs until a condition holds.
 struct WorkspaceBench {
   session::Session session{session::Options{}};
   commands::Workspace work{session};
@@ -36,7 +36,7 @@ struct WorkspaceBench {
     }
     return true;
   }
-  /// Runs a line as a script does: to its end.
+  /// Runs a line to its end, as a script does.
   void run(const std::string& line, uint64_t gesture = 0) {
     refresh();
     const commands::Line done = work.run(line, gesture);
@@ -44,7 +44,7 @@ struct WorkspaceBench {
       REQUIRE(until([&] { return done.command->done(done.arguments); }));
   }
   void open(const std::string& file = "hall.gltf") { run("scene.open " + file), run("wait_scene"); }
-  /// Everything that the session has been told has arrived.
+  /// Every command has reached the session.
   bool settled() {
     return until([&] {
       const commands::Document d = work.document();

@@ -1,5 +1,5 @@
 // links: ui
-// What the panel of accuracy computes: axes, words, forecasts, earlier runs. Without a window.
+// The computations of the Accuracy panel: axes, texts, forecasts, earlier runs. Without a window.
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <set>
@@ -56,7 +56,7 @@ session::Accuracy adaptive(double target) {
 
 }  // namespace
 
-TEST_CASE("a logarithmic axis goes both ways, and what cannot be drawn lies outside") {
+TEST_CASE("a logarithmic axis maps both ways, and values that cannot be drawn are outside") {
   const LogAxis x{0.1, 1000, 50, 450}, up{0.001, 1, 180, 20};
   CHECK(x.at(0.1) == Approx(50));
   CHECK(x.at(10) == Approx(250));
@@ -68,7 +68,7 @@ TEST_CASE("a logarithmic axis goes both ways, and what cannot be drawn lies outs
   CHECK(up.at(0) > 180);
 }
 
-TEST_CASE("ticks: 1-2-5 where there is room, decades where not, and never on top of one another") {
+TEST_CASE("ticks: 1-2-5 with enough room, otherwise decades, and never overlapping") {
   const LogAxis percent{0.001, 1, 400, 0};
   CHECK(labels(percent, Unit::relative, 20) == std::vector<std::string>{"0.1 %", "0.2 %", "0.5 %", "1 %",
                                                                         "2 %", "5 %", "10 %", "20 %", "50 %",
@@ -124,13 +124,13 @@ TEST_CASE("round numbers") {
   CHECK(percent_text(1.82) == "182 %");
 }
 
-TEST_CASE("a dragged target lands on two figures within what the setting takes") {
+TEST_CASE("a dragged target is rounded to two figures within the setting's range") {
   CHECK(snapped_target(0.01234) == Approx(0.012));
   CHECK(snapped_target(0.0999) == Approx(0.1));
   CHECK(snapped_target(3.456) == Approx(3.5));
   CHECK(snapped_target(1e-9) == Approx(0.0001));
   CHECK(snapped_target(50) == 10);
-  // All along a drag over the plot: the value follows the pointer.
+  // Along a drag over the plot the value follows the pointer.
   const LogAxis up{0.001, 1, 180, 20};
   double before = 0;
   for (float y = 180; y >= 20; y -= 1) {
@@ -141,10 +141,10 @@ TEST_CASE("a dragged target lands on two figures within what the setting takes")
   }
 }
 
-TEST_CASE("uniform sampling: what a smaller error will cost, in words") {
+TEST_CASE("uniform sampling: the cost of a smaller error in words") {
   const session::Accuracy a = uniform(100);
   const double now = a.ledger.entries().back().wall_s, error = a.ledger.entries().back().error[0];
-  // Four times the time for half the error, or a little less: nobody knows yet that noise is all there is.
+  // Four times the time for half the error, or slightly less: whether all error is noise is still unknown.
   const auto band = session::seconds_to(a, 0.5 * error);
   REQUIRE(band);
   CHECK(band->middle == Approx(4 * now).epsilon(0.2));
@@ -155,7 +155,7 @@ TEST_CASE("uniform sampling: what a smaller error will cost, in words") {
   CHECK(texts.at(0) == "1 % will take about 2 min 10 s (1 min 40 s to 3 min)");
   CHECK(texts.back() == "1 %");
   for (size_t i = 1; i < texts.size(); ++i) CHECK(texts[i].size() < texts[i - 1].size());
-  // A wide range has no middle to name, and of a very wide one only the beginning is known.
+  // A wide range is given without its middle, a very wide one by its lower end only.
   CHECK(target_texts(a, 0.01, stats::Band{100, 200, 600}, now).at(0) == "1 % will take 1 min 40 s to 10 min");
   CHECK(target_texts(a, 0.01, stats::Band{100, 500, 3000}, now).at(0) ==
         "1 % will take more than 1 min 40 s");
@@ -166,10 +166,10 @@ TEST_CASE("uniform sampling: what a smaller error will cost, in words") {
   REQUIRE(reached);
   CHECK_THAT(target_texts(a, 0.16, reached, now).at(0), Catch::StartsWith("16 % was reached after "));
   CHECK(target_texts({}, 0.01, {}, 0).at(0) == "1 %");
-  // Too few samples to tell by: nothing is made up.
+  // Too few samples: no forecast.
   const session::Accuracy early = uniform(12);
   CHECK_FALSE(session::seconds_to(early, 0.01));
-  CHECK(target_texts(early, 0.01, {}, 6).at(0) == "1 %: too early to tell");
+  CHECK(target_texts(early, 0.01, {}, 6).at(0) == "1 %: no forecast yet");
 }
 
 TEST_CASE("a target beyond the last sample of uniform sampling is not promised") {
@@ -200,7 +200,8 @@ TEST_CASE("a target beyond the last sample of uniform sampling is not promised")
              Catch::StartsWith("10 % was reached after "));
 }
 
-TEST_CASE("noise has four names: as seen, of the median tile, of the worst tenth of the tiles, of the mean") {
+TEST_CASE(
+    "noise has four figures: as seen, of the median tile, of the worst tenth of the tiles, of the mean") {
   stats::Entry line;
   line.has_error = true, line.error = {0.01, 0.01, 0, 0, 0}, line.tile_median = 0.04,
   line.tile_worst_tenth = 0.2;
@@ -227,8 +228,7 @@ TEST_CASE("noise has four names: as seen, of the median tile, of the worst tenth
   CHECK(plot_range(a, {}, 0.01, {}, 1).e_hi >= 0.2);
 }
 
-TEST_CASE(
-    "where samples read records the error has three more names, and what they keep it over is not promised") {
+TEST_CASE("with records the error has three more figures, and a target below their limit is not promised") {
   session::Accuracy a = uniform(100);
   stats::Ledger ledger;
   for (stats::Entry e : a.ledger.entries()) {
@@ -257,7 +257,7 @@ TEST_CASE(
         "1 of 4 tiles stay over 5 %: lookups are the limit, more samples hardly help");
 }
 
-TEST_CASE("where samples read photons alone no records are named beside their bias") {
+TEST_CASE("with photons but no records only the bias is named") {
   session::Accuracy a = uniform(100);
   stats::Entry last = a.ledger.entries().back();
   CHECK_FALSE(looks_up(last));
@@ -273,11 +273,11 @@ TEST_CASE("where samples read photons alone no records are named beside their bi
   CHECK(figures[5].help.find("photons.radius") != std::string::npos);
 }
 
-TEST_CASE("adaptive sampling: the forecast is of the rays that the tiles still need") {
+TEST_CASE("adaptive sampling: the forecast counts the rays that the tiles still need") {
   const session::Accuracy a = adaptive(0.05);
   const auto band = session::seconds_to(a, 0.05);
   REQUIRE(band);
-  // The hard tile wants (2 / 0.05)^2 = 1600 samples, the others are done or nearly so.
+  // The hard tile needs (2 / 0.05)^2 = 1600 samples, the others are finished or almost.
   const double now = a.ledger.entries().back().wall_s, a_path = now / a.ledger.entries().back().paths;
   CHECK(band->middle > now + 0.7 * 250 * 1536 * a_path);
   CHECK(band->middle < now + 2 * 250 * 1536 * a_path);
@@ -289,7 +289,7 @@ TEST_CASE("adaptive sampling: the forecast is of the rays that the tiles still n
   CHECK(looser->high == Approx(now).epsilon(0.3));
   CHECK_THAT(target_texts(a, 0.05, band, now).at(0), Catch::StartsWith("Every tile under 5 % will take "));
 
-  // The hard tile would need more than it is given.
+  // The hard tile would need more than the maximum.
   session::Accuracy few = a;
   few.max_samples = 512;
   CHECK(session::tiles_out_of_reach(a, 0.05) == 0);
@@ -305,12 +305,12 @@ TEST_CASE("adaptive sampling: the forecast is of the rays that the tiles still n
   CHECK(target_texts(over, 0.05, stats::Band{60, 60, 60}, 60).at(0) == "Every tile under 5 % after 1 min");
 }
 
-TEST_CASE("the plot reaches as far as its lines, its target and, within reason, its forecast") {
+TEST_CASE("the plot contains its lines, its target and, within limits, its forecast") {
   const session::Accuracy a = uniform(100);
   const PlotRange r = plot_range(a, {}, 0.01, stats::Band{3000, 6000, 1e9}, 50);
   CHECK(r.t_lo <= 0.5);
   CHECK(r.t_hi >= 50);
-  CHECK(r.t_hi <= 50 * 300 * 2);  // not to the end of time
+  CHECK(r.t_hi <= 50 * 300 * 2);  // the forecast is limited
   CHECK(r.e_lo < 0.01);
   CHECK(r.e_hi >= 0.8);
   // Earlier runs count.
@@ -324,7 +324,7 @@ TEST_CASE("the plot reaches as far as its lines, its target and, within reason, 
   CHECK(none.e_hi > none.e_lo);
 }
 
-TEST_CASE("earlier runs of a scene are kept, told apart and forgotten with it") {
+TEST_CASE("earlier runs of a scene are kept and compared, and discarded with it") {
   Runs runs;
   const auto scene = std::make_shared<scene::Scene>();
   session::Snapshot s;

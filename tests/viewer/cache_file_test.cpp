@@ -1,12 +1,12 @@
 // links: film_io
-// Caches as files in the window: a script saves one as soon as it is complete and loads it again.
+// Cache files in the window: a script saves a cache as soon as it is complete and loads it again.
 #include "support.h"
 
 #include <fstream>
 
 using namespace lucerna;
 
-TEST_CASE("a script saves the cache when it is complete, loads it, and goes on when one is refused") {
+TEST_CASE("a script saves the cache when it is complete, loads it, and continues if one is refused") {
   if (test::no_program()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
@@ -15,7 +15,7 @@ TEST_CASE("a script saves the cache when it is complete, loads it, and goes on w
       "-v scenes/cornell/cornell.gltf",
       "window.size 1100 700\nwait_scene\n"
       "view.size 64 48\nset components.secondary cache\nset components.tertiary cache\ncache.save " +
-          file("a.cache") +  // it is not there yet: waits
+          file("a.cache") +  // not complete yet: waits
           "\ncache.load " + file("a.cache") + "\ncache.save " + file("b.cache") + "\ncache.load " +
           file("broken.cache") + "\nset cache.error 0.4\ncache.load " + file("a.cache") + "\ncache.save " +
           file("c.cache") + "\nscript.save " + file("session.lucerna") + "\nquit 0\n",

@@ -1,6 +1,6 @@
 // links: ui film_io
-// The panel of the irradiance cache and the card of what lies under the pointer: over a session without a
-// renderer, and in the program itself.
+// The panel of the irradiance cache and the card of the inspected point: over a session without a renderer,
+// and in the program itself.
 #include "inside.h"
 
 using namespace lucerna;
@@ -12,7 +12,7 @@ const vec3 k_gold(255, 219, 115), k_accent(112, 164, 222), k_teal(64, 184, 172),
 
 }  // namespace
 
-TEST_CASE("the panel opens beside the scene's, says when nobody uses the cache, and how to") {
+TEST_CASE("the panel opens beside the scene's, and says if the cache is not used, and how to use it") {
   if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
@@ -31,13 +31,13 @@ TEST_CASE("the panel opens beside the scene's, says when nobody uses the cache, 
   CHECK_THAT(script, Catch::Contains("set components.secondary cache\nset components.tertiary cache"));
   const test::Picture scene(file("scene.png")), empty(file("empty.png")), cache(file("cache.png")),
       back(file("back.png"));
-  // The line over the title of what is shown.
+  // The line over the title of the displayed panel.
   for (const auto& [picture, left] :
        {std::pair{&scene, true}, {&empty, false}, {&cache, false}, {&back, true}}) {
     CHECK((test::near_colour(*picture, 1150, 32, 1218, 36, k_accent) > 70) == left);
     CHECK((test::near_colour(*picture, 1224, 32, 1292, 36, k_accent) > 70) == !left);
   }
-  // Numbers, bars of the overlap, inks of the passes; none of them in the empty panel.
+  // Numbers, bars of the overlap, colours of the passes; none of them in the empty panel.
   const vec3 unserved(191, 31, 41), first_pass(255, 154, 99);
   CHECK(test::near_colour(cache, 1150, 260, 1436, 350, unserved) > 20);
   CHECK(test::near_colour(empty, 1150, 260, 1436, 350, unserved) == 0);
@@ -45,23 +45,23 @@ TEST_CASE("the panel opens beside the scene's, says when nobody uses the cache, 
   CHECK(cache.contrast(1150, 90, 1430, 240) > 0.05);
 }
 
-TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks what lies under it") {
+TEST_CASE("keys show the cache over the picture, and a pointer at rest inspects the point under it") {
   if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   const auto outcome = test::window(
       "wait_scene\nwait_samples 2\nrender.pause\ncomponents.secondary cache\nwait 0.3\n"
-      // Nothing lies over the picture yet: nothing is asked.
+      // No view is on yet: no inspection.
       "mouse.move 500 400\nwait 0.7\nscreenshot " +
       file("nothing.png") + "\nkey c\nkey n\nkey v\nkey v\nwait 0.7\nscreenshot " + file("card.png") +
-      // While the view is turned nothing is asked; when it stands still again it is.
+      // No inspection while the view is rotated; after that there is.
       "\nmouse.down\nmouse.move 520 420\nmouse.move 560 440\nwait 0.5\nscreenshot " + file("turning.png") +
       "\nmouse.up\nwait 0.7\nscreenshot " + file("turned.png") +
-      // Where the card would be in the way it makes room; away from the picture it goes.
+      // The card moves away from the pointer, and disappears when the pointer leaves the picture.
       "\nmouse.move 1000 120\nwait 0.7\nscreenshot " + file("aside.png") +
       "\nmouse.move 640 800\nwait 0.5\nscreenshot " + file("gone.png") +
       "\ninspect.at 0.25 0.75\nscreenshot " + file("asked.png") +
-      // Where nothing asks for records, or in vain, it says so in place of weights.
+      // Where lookups are not possible, or find no record, the card says so instead of listing weights.
       "\ninspect.at 0.02 0.5\nscreenshot " + file("mirror.png") + "\ninspect.at 0.98 0.5\nscreenshot " +
       file("steep.png") + "\ninspect.none\nscript.save " + file("session.lucerna") + "\nquit\n");
   INFO(outcome.output);
@@ -86,7 +86,7 @@ TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks wha
     const test::Picture note(file(name));
     CHECK(note.contrast(820, 84, 1132, 108) > 0.05);
     CHECK((test::near_colour(note, 820, 82, 1132, 124, k_warning) > 50) == steep);
-    // Its second line: one that is merely not served has but one.
+    // Its second line, which a point without records does not have.
     CHECK((test::near_colour(note, 820, 107, 1132, 124, k_warning) > 20) == steep);
   }
   // Light by part has its component's colour.
@@ -95,10 +95,10 @@ TEST_CASE("keys lay the cache over the picture, and the pointer at rest asks wha
   CHECK(test::near_colour(card, 818, 200, 860, 300, k_violet) > 30);
   const std::string script = read_file(file("session.lucerna"));
   CHECK_THAT(script, Catch::Contains("set overlay.records true\nset overlay.normals true"));
-  CHECK_THAT(script, !Catch::Contains("inspect"));  // looking is no deed
+  CHECK_THAT(script, !Catch::Contains("inspect"));  // inspection is not recorded
 }
 
-TEST_CASE("in the program lines lead from a point to the records that serve it") {
+TEST_CASE("in the program lines lead from a point to the records that it reads") {
   if (test::no_program()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
@@ -128,7 +128,7 @@ TEST_CASE("in the program lines lead from a point to the records that serve it")
   CHECK(differ(normals, 290, 80, 800, 470) > 500);
 }
 
-TEST_CASE("asking a cache that nobody uses is a mistake that says what to do") {
+TEST_CASE("inspecting a cache that is not used is an error with advice") {
   if (test::no_display()) return;
   const auto outcome = test::window("wait_scene\ninspect.at 0.5 0.5\nquit\n");
   INFO(outcome.output);

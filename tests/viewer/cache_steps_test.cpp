@@ -1,13 +1,13 @@
 // links: ui film_io
-// Building of the irradiance cache led from stage to stage, by keys, buttons and commands: over a session
-// without a renderer, and in the program itself.
+// Building the irradiance cache stage by stage, by keys, buttons and commands: over a session without a
+// renderer, and in the program itself.
 #include "inside.h"
 
 using namespace lucerna;
 
 namespace {
 
-/// The middle of the line under the stage that has ended last, in the strip of stages; -1: there is none.
+/// The middle of the line under the last completed stage, in the strip of stages; -1 if there is none.
 int marked_stage(const test::Picture& p) {
   const vec3 accent(112, 164, 222);
   for (int y = 380; y < 560; ++y) {
@@ -26,7 +26,7 @@ const char* const k_start =
 
 }  // namespace
 
-TEST_CASE("keys and commands lead from stage to stage, and the panel says where building waits") {
+TEST_CASE("keys and commands advance stage by stage, and the panel shows where building waits") {
   if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
@@ -44,7 +44,7 @@ TEST_CASE("keys and commands lead from stage to stage, and the panel says where 
   CHECK(at_probe > 1150);
   CHECK(at_choose > at_probe + 25);
   CHECK(at_thin > at_choose + 45);
-  // The legend at the picture's lower left: inks of what is chosen; none when nothing is shown.
+  // The legend at the picture's lower left: colours of chosen candidates; none when nothing is shown.
   const vec3 chosen(255, 219, 115);
   CHECK(test::near_colour(thin, 280, 560, 600, 680, chosen) > 40);
   CHECK(test::near_colour(probe, 280, 560, 600, 680, chosen) == 0);
@@ -55,7 +55,7 @@ TEST_CASE("keys and commands lead from stage to stage, and the panel says where 
   CHECK_THAT(script, Catch::Contains("set overlay.placement off\ncache.run"));
 }
 
-TEST_CASE("a script that waits for a picture while the cache waits is told so") {
+TEST_CASE("a script that waits for a picture while the cache waits gets an error") {
   if (test::no_display()) return;
   auto outcome = test::window(std::string(k_start) + "wait_samples 2\nquit\n");
   INFO(outcome.output);
@@ -71,7 +71,7 @@ TEST_CASE("a script that waits for a picture while the cache waits is told so") 
   }
 }
 
-TEST_CASE("in the program candidates, clusters and what is chosen lie over the picture in their turn") {
+TEST_CASE("in the program candidates, clusters and chosen candidates are drawn in turn") {
   if (test::no_program()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };

@@ -1,9 +1,9 @@
 #pragma once
-// A session without a renderer: the same class, defined here with a moving gradient for a picture, so that
-// the window can be run and tested on its own. Included by one test file, which then does not take the real
-// one from its library. Names with "missing" fail to load and to be saved; names with "slow" load for three
-// seconds and are saved after half a one; the name "empty" makes a scene without cameras and lights, "sheen"
-// one that needs an extension that is not supported.
+// A session without a renderer: the same class, defined here with a moving gradient as picture, so that the
+// window can be run and tested alone. Included by one test file, which replaces the real one of its library.
+// Files with "missing" in their names fail to load and to save; those with "slow" load in three seconds and
+// save in half a second; "empty" is a scene without cameras and lights, "sheen" one that needs an unsupported
+// extension.
 #include <atomic>
 #include <cmath>
 #include <condition_variable>
@@ -24,13 +24,13 @@ const std::array<const char*, k_components> k_component_names{"primary", "second
 
 namespace fake {
 
-/// What one more solver tells, of a test that brings one; it is given the settings and where somebody looks.
+/// The report of an additional solver of a test, from the settings and the inspected point.
 inline std::function<std::optional<solvers::Report>(const plan::Settings&, std::optional<vec2>)> more;
 
-/// How long each command takes.
+/// Duration of each command.
 inline std::atomic<int> busy_ms{0};
 
-/// How long the first picture after each command takes.
+/// Duration of the first picture after each command.
 inline std::atomic<int> drawing_ms{0};
 
 inline scene::Scene make_scene(const std::filesystem::path& file) {
@@ -113,7 +113,7 @@ struct Session::Impl {
   bool paused = false;
   std::string reference;
   std::optional<vec2> looked_at;
-  // Building of the cache, as far as it has come since it was to wait: six stages, then it is complete.
+  // The build of the cache since the last pause: six stages, then it is complete.
   uint32_t stages = 0;
   bool cache_runs = false;
   uint64_t done = 0;
@@ -198,8 +198,8 @@ struct Session::Impl {
     if (report) report();
   }
 
-  /// A render whose noise falls as it should, every other from twice as high: seconds grow with samples,
-  /// whatever the machine does.
+  /// A render whose noise falls as expected; every other one starts at twice the noise. Seconds grow with
+  /// samples, independent of the machine.
   std::shared_ptr<const Accuracy> accuracy() const {
     auto a = std::make_shared<Accuracy>();
     a->run = run_number, a->scene_id = scene_id, a->settings = settings.all();
@@ -248,7 +248,7 @@ struct Session::Impl {
     return cached() && !cache_runs && settings.text("cache.pause") != "off" && stages < 6;
   }
 
-  /// A cache of four passes; a record in the middle of the picture is looked at where somebody looks.
+  /// A cache of four passes; an inspection finds a record in the middle of the picture.
   irradiance_cache::CacheReport cache() const {
     irradiance_cache::CacheReport c;
     irradiance_cache::CacheStatus& status = c.status;
@@ -294,7 +294,7 @@ struct Session::Impl {
     found.x = uint32_t(looked_at->x * float(width)), found.y = uint32_t(looked_at->y * float(height));
     found.solid = true, found.lookup = shared::k_lookup_possible, found.surface.position = {1, 0, 2},
     found.surface.normal = {0, 1, 0}, found.surface.size = 0.003f;
-    // A mirror at the left border, a steep normal map at the right.
+    // A mirror at the left border, a strongly tilted normal map at the right.
     if (looked_at->x < 0.05f) found.lookup = shared::k_lookup_none;
     if (looked_at->x > 0.95f) found.lookup = shared::k_lookup_too_steep;
     if (found.lookup != shared::k_lookup_possible) return c;
@@ -387,7 +387,7 @@ Session::~Session() = default;
 void Session::load(const std::filesystem::path& file) {
   impl_->post([this, file, number = ++impl_->loads] { impl_->load(file, number); });
 }
-/// A mix of lights that is named "nonsense" is refused.
+/// A light mix named "nonsense" is refused.
 void Session::set(const std::string& key, const std::string& value, SceneId scene) {
   impl_->post(
       [this, key, value] {
@@ -406,6 +406,10 @@ void Session::set_size(uint32_t width, uint32_t height) {
     if (width > 4096) throw Error("size", "too large");
     impl_->width = width, impl_->height = height, impl_->restart(), impl_->publish();
   });
+}
+void Session::set_window_scale(uint32_t scale) {
+  (void)scale;
+  impl_->post([] {});
 }
 void Session::set_light(uint32_t index, const scene::Light& light, SceneId scene) {
   impl_->post(
@@ -433,7 +437,7 @@ void Session::set_environment(float scale, float rotation, SceneId scene) {
       },
       scene);
 }
-/// Files that are named "broken" cannot be read.
+/// Files named "broken" cannot be read.
 void Session::set_environment_file(const std::filesystem::path& file, std::optional<float> scale,
                                    std::optional<float> rotation, SceneId scene) {
   impl_->post(
@@ -453,7 +457,7 @@ void Session::set_environment_file(const std::filesystem::path& file, std::optio
       },
       scene);
 }
-/// A grey of half the middle one's brightness, black at the left border; the whole asks for 2.5 stops more.
+/// A grey of half of middle brightness, black at the left border; the whole picture needs 2.5 stops more.
 std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at, SceneId scene) {
   auto promise = std::make_shared<std::promise<film::Brightness>>();
   impl_->post(
@@ -549,7 +553,7 @@ void Session::solver_load(const std::string&, const std::filesystem::path& file,
 void Session::solver_command(const std::string& solver, const std::string& command, SceneId scene) {
   impl_->post(
       [this, solver, command] {
-        if (solver != "cache") log::info("{} is told to {}", solver, command);
+        if (solver != "cache") log::info("{}: command {}", solver, command);
         if (solver + "." + command == "cache.step") ++impl_->stages;
         if (solver + "." + command == "cache.run") impl_->cache_runs = true;
         impl_->paused = false;

@@ -1,7 +1,7 @@
 // links: ui film_io
-// What the hand does in the window: lamps and materials edited in the panel, the camera led by the mouse, the
-// sky turned, the exposure taken from a grey, an image dropped; all of it commands that a saved session
-// holds.
+// Interaction by hand: lamps and materials edited in the panel, the camera moved by the mouse, the sky
+// rotated, the exposure picked from a grey point, an image dropped. All of them are commands that a saved
+// session contains.
 #include "inside.h"
 
 #include <sstream>
@@ -10,7 +10,7 @@ using namespace lucerna;
 
 namespace {
 
-/// The lines that a saved session of these steps holds, after the scene's.
+/// The lines of a saved session of these steps, after the scene's lines.
 std::vector<std::string> session_of(const std::string& steps) {
   const test::Folder folder;
   const std::string file = (folder.path / "session.lucerna").string();
@@ -22,7 +22,7 @@ std::vector<std::string> session_of(const std::string& steps) {
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   REQUIRE(lines.size() >= 4);
-  lines.erase(lines.begin(), lines.begin() + 4);  // a remark, the scene, the wait for it, the size
+  lines.erase(lines.begin(), lines.begin() + 4);  // a comment, the scene, its wait, the size
   return lines;
 }
 
@@ -47,14 +47,14 @@ constexpr const char* k_start = "camera.place 3,1.5,20 1,0.5,-1.5 0,1,0\n";
 
 }  // namespace
 
-TEST_CASE("the right button looks about from where one stands, the left one turns about what it is on") {
+TEST_CASE("the right button looks around, the left one orbits around the point under the pointer") {
   if (test::no_display()) return;
   const auto looked = session_of(k_start + drag(700, 300, 20, 5, "right"));
   REQUIRE(looked.size() == 2);
   CHECK(vector_in(looked[1], 1) == vec3(3, 1.5f, 20));
   CHECK(vector_in(looked[1], 2) != vec3(1, 0.5f, -1.5f));
 
-  // The triangle's middle is in the middle of the picture: its distance stays what it was.
+  // The triangle's middle is in the centre of the picture: its distance does not change.
   const auto turned = session_of(k_start + std::string("wait 0.5\n") + drag(712, 372, 25, 6));
   REQUIRE(turned.size() == 2);
   const vec3 eye = vector_in(turned[1], 1), middle(1, 0.5f, -1.5f);
@@ -62,7 +62,7 @@ TEST_CASE("the right button looks about from where one stands, the left one turn
   CHECK(glm::length(eye - middle) == Approx(glm::length(vec3(3, 1.5f, 20) - middle)).epsilon(0.05));
 }
 
-TEST_CASE("a drag with Ctrl turns the sky, one step to undo") {
+TEST_CASE("a drag with Ctrl rotates the sky, one step to undo") {
   if (test::no_display()) return;
   const auto lines = session_of("mouse.move 700 300\nkey.hold ctrl on\n" + drag(700, 300, 25, 0) +
                                 "key.hold ctrl off\nkey ctrl+z\n");
@@ -71,9 +71,9 @@ TEST_CASE("a drag with Ctrl turns the sky, one step to undo") {
   CHECK(lines[1] == "undo");
 }
 
-TEST_CASE("a lamp's mark is dragged along the picture, with Shift up and down, one step each") {
+TEST_CASE("a lamp's mark is dragged parallel to the picture, with Shift vertically, one step each") {
   if (test::no_display()) return;
-  // The lamps stand at 0,2,0: in the middle of the picture.
+  // The lamps are at 0,2,0: in the centre of the picture.
   const std::string view = "camera.place 0,2,6 0,2,0 0,1,0\nselect light 2\nwait 0.5\n";
   const auto lines = session_of(view + drag(712, 372, 20, -10) + "key.hold shift on\n" +
                                 drag(792, 332, 15, -10) + "key.hold shift off\nkey ctrl+z\n");
@@ -90,9 +90,9 @@ TEST_CASE("a lamp's mark is dragged along the picture, with Shift up and down, o
   CHECK(lines[4] == "undo");
 }
 
-TEST_CASE("a surface that emits has a mark, by which its material is selected and nothing is moved") {
+TEST_CASE("an emissive surface has a mark that selects its material and moves nothing") {
   if (test::no_display()) return;
-  // The mark is in the middle of the picture.
+  // The mark is in the centre of the picture.
   const std::string view =
       "camera.place 3,1.5,20 1,1,-1.333333 0,1,0\nmaterial.set 1 strength=2\nview.lamps true\nwait 0.5\n"
       "mouse.move 712 372\n";
@@ -100,13 +100,13 @@ TEST_CASE("a surface that emits has a mark, by which its material is selected an
   INFO(fmt::format("{}", fmt::join(clicked, "\n")));
   REQUIRE(!clicked.empty());
   CHECK(clicked.back() == "select material 1");
-  // A drag from there turns the camera, as everywhere.
+  // A drag from there moves the camera, as everywhere.
   const auto dragged = session_of(view + drag(712, 372, 25, 6));
   REQUIRE(!dragged.empty());
   CHECK_THAT(dragged.back(), Catch::StartsWith("camera.place "));
 }
 
-TEST_CASE("a click on a grey sets the exposure, and the wheel is one step") {
+TEST_CASE("a click on a grey point sets the exposure, and wheel turns are one step") {
   if (test::no_display()) return;
   const auto lines = session_of(
       "key b\nmouse.move 700 300\nmouse.down\nmouse.up\nwait 0.5\n"
@@ -117,14 +117,14 @@ TEST_CASE("a click on a grey sets the exposure, and the wheel is one step") {
   CHECK_THAT(lines[2], Catch::StartsWith("camera.place "));
 }
 
-TEST_CASE("H walks, W leads along the floor, Ctrl+B keeps the view") {
+TEST_CASE("H walks, W moves along the floor, Ctrl+B saves the view") {
   if (test::no_display()) return;
-  // The fake's one triangle is a ramp that rises towards +z; at (2, -3) its height is 0.375.
+  // The fake scene's triangle is a ramp that rises towards +z; at (2, -3) its height is 0.375.
   const auto lines = session_of(
       "camera.place 2,1,-3 2,1,-2 0,1,0\nwait 0.5\nmouse.move 700 300\nkey h\n"
       "key.hold w on\nwait 0.4\nkey.hold w off\nwait 3\nkey ctrl+b\n");
   INFO(fmt::format("{}", fmt::join(lines, "\n")));
-  // The way ends some frames after the key is let go, which on a busy machine take their time.
+  // Walking ends some frames after the key is released, which take long on a busy machine.
   REQUIRE(lines.size() >= 4);
   CHECK(lines[1] == "camera.walking true");
   for (size_t i = 2; i + 1 < lines.size(); ++i) CHECK_THAT(lines[i], Catch::StartsWith("camera.place "));
@@ -135,7 +135,7 @@ TEST_CASE("H walks, W leads along the floor, Ctrl+B keeps the view") {
   CHECK(lines.back() == "camera.bookmark");
 }
 
-TEST_CASE("a dropped image lights the scene; the first steps are shown when asked for") {
+TEST_CASE("a dropped image lights the scene; the first steps are shown on request") {
   if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
@@ -153,7 +153,7 @@ TEST_CASE("a dropped image lights the scene; the first steps are shown when aske
   CHECK(greys("after.png") < 20000);
 }
 
-TEST_CASE("a lamp's strength, temperature and place are dragged in the panel, each drag one step") {
+TEST_CASE("a lamp's strength, temperature and position are dragged in the panel, each drag one step") {
   if (test::no_display()) return;
   const auto lines =
       session_of("select light 3\nwait 0.3\n" + drag(1200, 494, 10, 0) + drag(1200, 546, 10, 0) +
@@ -166,7 +166,7 @@ TEST_CASE("a lamp's strength, temperature and place are dragged in the panel, ea
   for (size_t i = 5; i < 8; ++i) CHECK(lines[i] == "undo");
 }
 
-TEST_CASE("a colour is picked; surfaces that emit stand among the lights") {
+TEST_CASE("a colour is picked; emissive surfaces are listed among the lights") {
   if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };

@@ -1,6 +1,6 @@
 #pragma once
-// The case that opens the window of test::window(): over a session without a renderer. Included by one file
-// of an executable.
+// The test case that opens the window of test::window(): over a session without a renderer. Included by one
+// file of an executable.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -9,7 +9,7 @@
 #include "support.h"
 #include "ui/viewer.h"
 
-/// LUCERNA_TEST_SCENE: what it opens, hall.gltf if not set; LUCERNA_TEST_SCALE of text; LUCERNA_TEST_SIZE:
+/// LUCERNA_TEST_SCENE: the scene, default hall.gltf; LUCERNA_TEST_SCALE: scale of text; LUCERNA_TEST_SIZE:
 /// WIDTHxHEIGHT.
 TEST_CASE("inside: one window", "[.][inside]") {
   using namespace lucerna;

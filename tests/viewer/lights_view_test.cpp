@@ -1,6 +1,6 @@
 // links: session
-// Views of learned lights in the window of the real program: arrows and their card at a point, the heat map
-// with its legend.
+// Views of learned lights in the real program's window: arrows and their card at a point, the heat map with
+// its legend.
 #include "viewer/support.h"
 
 using namespace lucerna;
@@ -17,7 +17,7 @@ size_t differ(const test::Picture& a, const test::Picture& b, uint32_t x0, uint3
 
 }  // namespace
 
-TEST_CASE("lights of a point are shown with their shares, and where shadow rays arrive") {
+TEST_CASE("a point's lights are shown with their shares, and a map shows where shadow rays arrive") {
   if (test::no_program()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
@@ -34,7 +34,7 @@ TEST_CASE("lights of a point are shown with their shares, and where shadow rays 
   const auto outcome = test::run(test::with_display(
       std::string(LUCERNA_BINARY) + " scenes/window/window.gltf --script " + test::script_of(steps)));
   INFO(outcome.output);
-  // Without the view, and without a cache, there is nothing to inspect.
+  // Without the view and without a cache there is nothing to inspect.
   CHECK(outcome.status == 1);
   CHECK_THAT(outcome.output, Catch::Contains("inspect.at: no component takes its light from the cache"));
   const test::Picture plain(file("plain.png")), arrows(file("arrows.png")), heat(file("heat.png")),

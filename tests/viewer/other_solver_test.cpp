@@ -1,6 +1,6 @@
 // links: ui film_io
-// A solver of which the window has never heard, made up here: its table and its report alone give it a panel,
-// keys, a legend, a card, files and commands. Over a session without a renderer.
+// A solver unknown to the window, defined here: its table and report give it a panel, keys, a legend, a card,
+// files and commands. Over a session without a renderer.
 #include "inside.h"
 #include "solvers/registry.h"
 #include "solvers/solver.h"
@@ -63,7 +63,7 @@ solvers::Report reported(const plan::Settings& settings, std::optional<vec2> loo
   return r;
 }
 
-/// Before anything asks for the list of solvers.
+/// Before the first use of the solver list.
 const bool k_added = [] {
   solvers::add(k_lantern);
   session::fake::more = [](const plan::Settings& settings,
@@ -76,7 +76,7 @@ const bool k_added = [] {
 
 }  // namespace
 
-TEST_CASE("a solver that the window has never heard of has its panel, keys, legend, card and commands") {
+TEST_CASE("a solver unknown to the window has its panel, keys, legend, card and commands") {
   REQUIRE(k_added);
   if (test::no_display()) return;
   const test::Folder folder;
@@ -84,7 +84,7 @@ TEST_CASE("a solver that the window has never heard of has its panel, keys, lege
   const auto outcome = test::window(
       "wait_scene\nwait_samples 2\nrender.pause\nwindow.side lantern\nwait 0.2\nscreenshot " +
       file("empty.png") +
-      // The button of the empty panel, where that of every solver is.
+      // The button of the empty panel, at the same place for every solver.
       "\nmouse.move 1290 154\nmouse.down\nmouse.up\nwait 0.3\nkey k\nkey k\nkey m\nkey "
       "y\nwait_lantern\nmouse.move 500 400\nwait "
       "0.7\nscreenshot " +
@@ -98,15 +98,14 @@ TEST_CASE("a solver that the window has never heard of has its panel, keys, lege
              Catch::Contains("set components.caustic lantern\nwindow.side scene\nwindow.side lantern\n"
                              "set overlay.slides rims\nlantern.next\nwait_lantern\n"));
   CHECK_THAT(script, Catch::Contains("set overlay.slides whole\nset overlay.slides off\nlantern.save"));
-  CHECK_THAT(outcome.output,
-             Catch::Contains("lantern is told to next") && Catch::Contains("saved slow.tray"));
+  CHECK_THAT(outcome.output, Catch::Contains("lantern: command next") && Catch::Contains("saved slow.tray"));
   CHECK_THAT(outcome.output, Catch::Contains("preparation of the magic lantern") &&
                                  Catch::Contains("Writes the slides of the lantern"));
   const test::Picture empty(file("empty.png")), all(file("all.png")), off(file("off.png"));
-  // The last of three titles is that of what is shown.
+  // The last of three titles is that of the displayed panel.
   CHECK(test::near_colour(all, 1345, 32, 1435, 36, k_accent) > 100);
   CHECK(test::near_colour(all, 1150, 32, 1335, 36, k_accent) == 0);
-  // The histogram, half of one column in another ink; the legend; the card's bars.
+  // The histogram, half of one column in another colour; the legend; the card's bars.
   CHECK(test::near_colour(empty, 1150, 80, 1436, 400, k_pink) == 0);
   CHECK(test::near_colour(all, 1150, 80, 1436, 400, k_pink) > 1000);
   CHECK(test::near_colour(all, 1150, 80, 1436, 400, k_green) > 500);

@@ -1,6 +1,6 @@
 #pragma once
-// Lines for every command of a registry, made from the types of its parameters, and the check that each is
-// read, written and read again as the same.
+// Lines for every command of a registry, made from its parameters' types, and the check that each is
+// unchanged after read, write and read.
 #include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace lucerna::test {
 
-/// Values that a parameter takes, the ends of its range among them.
+/// Values of a parameter, including the ends of its range.
 inline std::vector<std::string> samples(const commands::Parameter& p) {
   using commands::Type;
   const double lo = std::isfinite(p.lo) ? p.lo : -1e6, hi = std::isfinite(p.hi) ? p.hi : 1e6;
@@ -40,7 +40,7 @@ inline std::vector<std::string> samples(const commands::Parameter& p) {
   return {};
 }
 
-/// Checks each parameter's samples, the others at their first. Returns how many lines were checked.
+/// Checks each parameter's samples with the others at their first one. Returns the number of lines.
 inline size_t round_trip(const commands::Registry& registry) {
   size_t lines = 0;
   const auto check = [&](const std::string& line) {
@@ -55,7 +55,7 @@ inline size_t round_trip(const commands::Registry& registry) {
     ++lines;
   };
   for (const auto& [name, command] : registry.all()) {
-    // What a check excludes from being given together is given one by one; settings are below.
+    // Parameters that exclude each other are given one by one; settings are below.
     const bool refuses = command.check != nullptr;
     if (name == "set" || name == "reset" || name == "key" || name == "key.hold") continue;
     std::string all = name;

@@ -1,6 +1,6 @@
 // links: ui film_io
-// What scripts promise: they end, they wait for what they save, they tell failure by their exit status, and
-// they replace no file that is not theirs. Over a session without a renderer, and in the program itself.
+// Guarantees of scripts: they end, wait for files that they save, report failure by exit status, and replace
+// no file of another kind. Over a session without a renderer, and in the program itself.
 #include <sys/stat.h>
 
 #include <future>
@@ -16,24 +16,24 @@ std::string bytes(const std::string& file) { return read_file(file); }
 
 }  // namespace
 
-TEST_CASE("a script ends the program, with 1 after an error unless it says otherwise") {
+TEST_CASE("a script ends the program, with 1 after an error unless it sets a status") {
   if (test::no_display()) return;
-  // Its end is a quit.
+  // Its end acts as quit.
   CHECK(test::window("wait_scene\n").status == 0);
   CHECK(test::window("wait_scene\nquit\n").status == 0);
-  // An error that no step waited for, told after the last step.
+  // An error that no step waited for is reported after the last step.
   const std::string broken = "wait_scene\nreference.load missing.exr\n";
   CHECK(test::window(broken).status != 0);
   CHECK(test::window(broken + "quit\n").status != 0);
   CHECK(test::window(broken + "quit 0\n").status == 0);
   CHECK(test::window("wait_scene\nscene.open missing.gltf\nwait_load\nquit\n").status != 0);
-  // A load that is given up is no error.
+  // A cancelled load is no error.
   const auto given_up = test::window("wait_scene\nscene.open slow.gltf\nscene.cancel\nquit\n");
   INFO(given_up.output);
   CHECK(given_up.status == 0);
 }
 
-TEST_CASE("a script waits for what it saves, and fails when that fails") {
+TEST_CASE("a script waits for its saves, and fails if one fails") {
   if (test::no_display()) return;
   const auto saved = test::window("wait_scene\nimage.save slow.exr\ncache.save slow.cache\n");
   INFO(saved.output);
@@ -47,7 +47,7 @@ TEST_CASE("a script waits for what it saves, and fails when that fails") {
   }
 }
 
-TEST_CASE("names of other formats are refused before anything is done") {
+TEST_CASE("file names of other formats are refused before the script runs") {
   session::Session session({});
   ui::Ui window(session);
   ui::Runner runner(window, {}, "");
@@ -58,7 +58,7 @@ TEST_CASE("names of other formats are refused before anything is done") {
         Catch::StartsWith("s: line 1: ") && Catch::Contains("expected a file name that ends in ."));
 }
 
-TEST_CASE("the renderer is said to be busy with the command that it carries out, not one that is done") {
+TEST_CASE("the busy card names the running command, not a finished one") {
   session::Session session({});
   ui::Ui window(session);
   session::fake::busy_ms = 150, session::fake::drawing_ms = 300;
@@ -69,7 +69,7 @@ TEST_CASE("the renderer is said to be busy with the command that it carries out,
     window.refresh(window.time());
     window.follow_busy();
     const std::string text = window.busy.command == 0 ? "" : window.busy.done ? "drawing" : window.busy.text;
-    // What is done is not shown.
+    // A finished command is not shown.
     if (!window.busy.done && window.busy.command != 0) CHECK(session.commands_done() <= window.busy.command);
     if (!text.empty() && (texts.empty() || texts.back() != text)) texts.push_back(text);
     REQUIRE(std::chrono::steady_clock::now() - begin < std::chrono::seconds(20));
@@ -79,7 +79,7 @@ TEST_CASE("the renderer is said to be busy with the command that it carries out,
   CHECK(texts == std::vector<std::string>{"film.ev 1", "image.save slow.exr", "drawing"});
 }
 
-TEST_CASE("a script that calls itself is told so") {
+TEST_CASE("a script that calls itself is refused") {
   if (test::no_display()) return;
   const test::Folder folder;
   const std::string a = (folder.path / "a.lucerna").string(), b = (folder.path / "b.lucerna").string();
@@ -90,12 +90,12 @@ TEST_CASE("a script that calls itself is told so") {
   CHECK(outcome.status != 0);
   CHECK_THAT(outcome.output, Catch::Contains("b.lucerna: line 1: script.run: ") &&
                                  Catch::Contains("a script cannot run itself"));
-  // Twice one after the other is no circle.
+  // Two calls in sequence are no recursion.
   std::ofstream(b) << "wait_scene\n";
   CHECK(test::window("script.run " + a + "\nscript.run " + a + "\n").status == 0);
 }
 
-TEST_CASE("at the console a script that fails stops, and the window stays") {
+TEST_CASE("in the console a failing script stops, and the window stays") {
   if (test::no_display()) return;
   const test::Folder folder;
   const std::string a = (folder.path / "a.lucerna").string(), end = (folder.path / "end.png").string();
@@ -108,7 +108,7 @@ TEST_CASE("at the console a script that fails stops, and the window stays") {
   CHECK(std::filesystem::exists(end));
 }
 
-TEST_CASE("screenshots and saved sessions replace their like alone") {
+TEST_CASE("screenshots and saved sessions replace only files of their kind") {
   if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
@@ -121,7 +121,7 @@ TEST_CASE("screenshots and saved sessions replace their like alone") {
     const auto refused = test::window((script ? "script.save " : "screenshot ") + file(name) + "\nquit 0\n");
     INFO(refused.output);
     CHECK(refused.status != 0);
-    CHECK_THAT(refused.output, Catch::Contains("is there already and no "));
+    CHECK_THAT(refused.output, Catch::Contains("exists and is no "));
   }
   CHECK(bytes(file("letter.png")) == "dear");
   CHECK(bytes(file("holiday.png")) == holiday);
@@ -140,7 +140,7 @@ TEST_CASE("screenshots and saved sessions replace their like alone") {
   CHECK_THAT(read.get().output, Catch::EndsWith("select light 2\n"));
 }
 
-TEST_CASE("in the program the picture that a script saves is there, whole, however soon the script ends") {
+TEST_CASE("in the program a picture saved by a script is complete, however soon the script ends") {
   if (test::no_program()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
@@ -164,7 +164,7 @@ TEST_CASE("in the program the picture that a script saves is there, whole, howev
   CHECK(failed.status == 1);
   CHECK_THAT(failed.output, Catch::Contains("the folder '") && Catch::Contains("nothing was written"));
 
-  // A session that saved its picture saves the same again: it waits for as many samples.
+  // The script of a session that saved a picture saves the same one: it waits for the number of samples.
   const std::string session = file("session.lucerna"), again = file("again.lucerna");
   const auto first = test::program("scenes/cornell/cornell.gltf",
                                    start + "samples 40\nwait_samples 40\nimage.save " + file("b.exr") +
@@ -185,7 +185,7 @@ TEST_CASE("in the program the picture that a script saves is there, whole, howev
   CHECK(bytes(again) == bytes(session));
 }
 
-TEST_CASE("in the program a saved picture shows the camera and the size that were commanded before it") {
+TEST_CASE("in the program a saved picture shows the camera and the size of earlier commands") {
   if (test::no_program()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
@@ -208,7 +208,7 @@ TEST_CASE("in the program a saved picture shows the camera and the size that wer
   CHECK(e.width == d.width / 4);
 }
 
-TEST_CASE("the target that is asked about stays when the way of sampling changes, in one step to undo") {
+TEST_CASE("the what-if target stays when the sampling mode changes, in one step to undo") {
   session::Session session({});
   ui::Ui window(session);
   const auto target = [&] { return window.setting_real("sampling.target_error"); };
@@ -220,12 +220,12 @@ TEST_CASE("the target that is asked about stays when the way of sampling changes
   act("undo");
   CHECK(window.setting("sampling.mode") == "uniform");
   CHECK(target() == Approx(0.05));
-  // What was set outright is not overridden, neither before nor after.
+  // A target that is set directly is not overridden, neither before nor after.
   act("accuracy.what_if 0.03");
   act("set sampling.target_error 0.2");
   act("set sampling.mode adaptive");
   CHECK(target() == Approx(0.2));
-  // And back: the line stays.
+  // Back to uniform: the line stays.
   act("set sampling.mode uniform");
   CHECK(window.target() == Approx(0.2));
 }

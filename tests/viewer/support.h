@@ -1,6 +1,6 @@
 #pragma once
-// For tests that open a window: a display (xvfb-run starts one where there is none), and a look at what was
-// drawn.
+// For tests that open a window: a display (xvfb-run starts one if there is none), and checks of the drawn
+// window.
 #include <sys/wait.h>
 #include <unistd.h>
 #include <algorithm>
@@ -20,8 +20,8 @@
 
 namespace lucerna::test {
 
-/// A file for the display's authority. xvfb-run's own lies in a folder that it sometimes fails to remove,
-/// and then it returns a status of its own.
+/// A file for the display's authority. xvfb-run sometimes fails to remove the folder of its own file, and
+/// then returns an exit status of its own.
 inline const std::string& authority() {
   struct File {
     std::string path =
@@ -36,23 +36,23 @@ inline const std::string& authority() {
   return file.path;
 }
 
-/// A command line that runs `command` with a display, or "" where neither a display nor xvfb-run exists.
+/// A command line that runs `command` with a display, or "" if neither a display nor xvfb-run exists.
 inline std::string with_display(const std::string& command) {
   const char* display = std::getenv("DISPLAY");
   if (display && *display) return command;
   if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0) return "";
-  // Display numbers start apart, so that tests running side by side do not race for one.
+  // Different first display numbers, so concurrent tests do not race for one.
   return "xvfb-run -a -n " + std::to_string(100 + getpid() % 20000) + " -f " + authority() +
          " -s '-screen 0 1600x1000x24' " + command;
 }
 
-/// Says so where a test is skipped because no window can be opened.
+/// Warns if a test is skipped because no window can be opened.
 inline bool no_display() {
   if (!with_display("x").empty()) return false;
   WARN("skipped: neither a display nor xvfb-run");
   return true;
 }
-/// ... or because there is no program to open one.
+/// Warns if a test is skipped because there is no program either.
 inline bool no_program() {
   if (std::filesystem::exists(LUCERNA_BINARY)) return no_display();
   WARN("skipped: the program is not built");
@@ -64,7 +64,7 @@ struct Outcome {
   std::string output;
 };
 
-/// Runs through the shell for `seconds` at most; standard output and error together.
+/// Runs through the shell for at most `seconds`; returns standard output and error together.
 inline Outcome run(const std::string& command, int seconds = 120) {
   Outcome outcome;
   FILE* pipe = popen(("timeout " + std::to_string(seconds) + " " + command + " 2>&1").c_str(), "r");
@@ -77,7 +77,7 @@ inline Outcome run(const std::string& command, int seconds = 120) {
   return outcome;
 }
 
-/// A file of these steps, until the next ones.
+/// A file with these steps, valid until the next call.
 inline std::string script_of(const std::string& steps) {
   static const Folder folder;
   const auto script = folder.path / "steps.txt";
@@ -85,15 +85,15 @@ inline std::string script_of(const std::string& steps) {
   return script.string();
 }
 
-/// Runs the steps in a window of the test program itself, in its case '[inside]' (inside.h); `environment`:
-/// NAME=value, for the shell.
+/// Runs the steps in a window of the test program itself, in its test case '[inside]' (inside.h);
+/// `environment`: NAME=value, for the shell.
 inline Outcome window(const std::string& steps, const std::string& environment = "") {
   const std::string self = std::filesystem::read_symlink("/proc/self/exe").string();
   return run("env LUCERNA_TEST_SCRIPT='" + script_of(steps) + "' " + environment + " " +
              with_display(self + " '[inside]'"));
 }
 
-/// Runs the steps in a window of the program, which is given `arguments`.
+/// Runs the steps in a window of the program with `arguments`.
 inline Outcome program(const std::string& arguments, const std::string& steps, int seconds = 120) {
   return run(with_display(std::string(LUCERNA_BINARY) + " " + arguments + " --script " + script_of(steps)),
              seconds);
@@ -119,7 +119,7 @@ struct Picture {
   }
 };
 
-/// How many pixels of a rectangle are near a colour (0..255).
+/// The number of pixels of a rectangle near a colour (0..255).
 inline int near_colour(const Picture& p, int x0, int y0, int x1, int y1, vec3 colour, float reach = 0.06f) {
   int n = 0;
   for (int y = y0; y < y1; ++y)

@@ -1,5 +1,5 @@
 // links: film_io
-// The program as a person starts it: a window, a scene, a few samples, a screenshot, the end.
+// The program in normal use: a window, a scene, a few samples, a screenshot, the end.
 #include "support.h"
 
 using namespace lucerna;
@@ -25,9 +25,9 @@ TEST_CASE("the viewer starts, renders cornell, saves a screenshot and quits") {
   const test::Picture window(png);
   CHECK(window.image.width == 1100);
   CHECK(window.image.height == 700);
-  CHECK(window.contrast(300, 80, 780, 480) > 0.05);  // the box, lit
+  CHECK(window.contrast(300, 80, 780, 480) > 0.05);  // the lit box
   CHECK(window.contrast(10, 40, 270, 400) > 0.02);   // the panel
-  // Cornell's left wall is red and its right wall green: the picture stands the right way round.
+  // Cornell's left wall is red and its right wall green: the picture is not mirrored.
   double red = 0, green = 0;
   for (uint32_t y = 200; y < 360; ++y)
     for (uint32_t x = 0; x < 524; ++x) {
@@ -39,11 +39,11 @@ TEST_CASE("the viewer starts, renders cornell, saves a screenshot and quits") {
   CHECK(green > 500);
 }
 
-TEST_CASE("SIGTERM closes the window as its user does, and what it remembers is kept") {
+TEST_CASE("SIGTERM closes the window like its close button, and the window's state is saved") {
   if (test::no_program()) return;
   const test::Folder folder;
   const std::string kept = (folder.path / "lucerna/window.json").string();
-  // The first steps are remembered as soon as they are shown: the window is open then.
+  // The state of the first steps is saved as soon as they are shown: then the window is open.
   std::ofstream(folder.path / "steps.sh")
       << "XDG_STATE_HOME=" << folder.path.string() << ' ' << LUCERNA_BINARY << " &\n"
       << "until test -s " << kept << "; do sleep 0.1; done\nkill -TERM $!\nwait $!\n";
@@ -53,7 +53,7 @@ TEST_CASE("SIGTERM closes the window as its user does, and what it remembers is 
   CHECK_THAT(read_file(kept), Catch::Contains("\"welcomed\": true"));
 }
 
-TEST_CASE("a scene that is not there is an error in the window, and the script's failure the exit status") {
+TEST_CASE("a missing scene is an error in the window, and the script fails with its exit status") {
   if (test::no_program()) return;
   const test::Folder folder;
   const auto png = folder.path / "window.png";
@@ -74,7 +74,7 @@ TEST_CASE("a scene that is not there is an error in the window, and the script's
              Catch::Contains("--set: set: there is no setting 'film.evv'; did you mean 'film.ev'?"));
 }
 
-TEST_CASE("a broken file that is dropped leaves the scene, and a click selects what is under it") {
+TEST_CASE("a damaged file that is dropped keeps the scene, and a click selects the object under it") {
   if (test::no_program()) return;
   const test::Folder folder;
   const auto broken = folder.path / "broken.glb", png = folder.path / "window.png";
@@ -112,7 +112,7 @@ TEST_CASE("a reference is loaded for a picture of its size, and refused with bot
   CHECK(test::Picture(png).contrast(60, 540, 420, 680) > 0.03);  // the lines
 }
 
-TEST_CASE("a PNG is saved as it is shown or unfiltered, by name; an EXR only as it is") {
+TEST_CASE("a PNG is saved as shown or unfiltered, by option; an EXR always unfiltered") {
   if (test::no_program()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };

@@ -1,7 +1,6 @@
 // links: ui film_io
-// Every control of every panel, without a display: each has an id that no other has in the same frame, and a
-// click on it reaches it. ImGui's items pass through this file (tests/CMakeLists.txt wraps them), so that no
-// panel has to cooperate.
+// Every control of every panel, without a display: each has a unique id in its frame, and receives a click on
+// it. ImGui's items pass through this file (tests/CMakeLists.txt wraps them), so panels need no changes.
 #include "fake_session.h"
 #include "support.h"
 #include "ui/theme.h"
@@ -29,22 +28,22 @@ struct Item {
   ImRect box;
 };
 
-/// A button or an entry of a list, as it was drawn in the last frame.
+/// A button or an entry of a list, as drawn in the last frame.
 struct Control {
   std::string name;  ///< its own part of the id
   ImGuiID id;
   ImGuiWindow* window;
-  ImRect box, seen;  ///< in full; what its window shows of it
+  ImRect box, seen;  ///< complete; and the part its window shows
   bool disabled, pressed;
 };
 
-/// What the last frame drew.
+/// The last frame's content.
 struct Frame {
   std::vector<Item> items;
   std::vector<Control> controls;
-  std::string tooltip;  ///< text of the tooltip that is shown
+  std::string tooltip;  ///< text of the displayed tooltip
 } g_frame;
-/// The control whose press is answered; all other presses are recorded and withheld, so that nothing changes.
+/// The control whose press is passed on; all other presses are recorded and withheld, so nothing changes.
 std::optional<ImGuiID> g_answered;
 
 bool withheld(const char* name, ImGuiID id, bool pressed) {
@@ -98,7 +97,7 @@ void wrap_text(const char* begin, const char* end) {
 
 namespace {
 
-/// A window's panels without a window: frames are drawn into lists that nothing shows.
+/// A window's panels without a window: frames are drawn into lists that are not displayed.
 class Walk {
  public:
   explicit Walk(float width = 1600, float height = 1000) : session_({}), ui_(session_) {
@@ -120,8 +119,8 @@ class Walk {
 
   ui::Ui& ui() { return ui_; }
 
-  /// Carries out a command and draws until the session has done it and has taken its samples: then nothing
-  /// moves while controls are clicked.
+  /// Runs a command and draws until the session has executed it and has all samples: nothing moves while
+  /// controls are clicked.
   void act(const std::string& line) {
     ui_.act_line(line);
     settle();
@@ -143,7 +142,7 @@ class Walk {
     for (int i = 0; i < n; ++i) frame();
   }
 
-  /// Checks that no id is used twice in a frame. `where`: the part of the window that is looked at.
+  /// Checks that no id is used twice in a frame. `where`: the tested part of the window.
   void check_ids(const std::string& where) {
     frame();
     std::map<std::pair<ImGuiWindow*, ImGuiID>, int> uses;
@@ -159,8 +158,8 @@ class Walk {
       }
   }
 
-  /// Clicks every control that `of` takes and checks that the press reaches it. What opens a list or a picker
-  /// is opened, and its controls are clicked too. Returns how many were clicked.
+  /// Clicks every control that `of` accepts and checks that it receives the press. Lists and pickers are
+  /// opened, and their controls are clicked too. Returns the number of clicks.
   template <class Of>
   int click_all(const std::string& where, const Of& of) {
     check_ids(where);
@@ -193,7 +192,7 @@ class Walk {
   }
   static bool anywhere(const Control&) { return true; }
 
-  /// Opens a menu by its place among those of the bar, or among those in the menu that is open.
+  /// Opens a menu by its index among those of the bar, or among those in the open menu.
   bool open_menu(size_t n, bool in_bar) {
     frame();
     std::vector<Item> menus;
@@ -210,7 +209,7 @@ class Walk {
     return true;
   }
 
-  /// The tooltip of what is at a place where the pointer rests, with so many seconds between frames.
+  /// The tooltip at a place where the pointer rests, with this many seconds between frames.
   std::string tooltip_at(const ImVec2& at, float between_frames) {
     ImGuiIO& io = ImGui::GetIO();
     io.MousePos = {-1, -1};
@@ -231,7 +230,7 @@ class Walk {
     frames(2);
   }
 
-  /// The control of that name whose box begins nearest to a place, if any.
+  /// The controls of that name.
   std::vector<Control> named(const std::string& name) const {
     std::vector<Control> list;
     for (const Control& c : g_frame.controls)
@@ -277,7 +276,7 @@ class Walk {
     frame();
   }
 
-  /// Scrolls the control's window where that is needed; false: it has no room to be seen (folded away).
+  /// Scrolls the control's window if necessary; false: it cannot be visible (folded away).
   bool bring_into_view(ImGuiID id, int nth) {
     frame();
     const Control* c = find(id, nth);
@@ -312,12 +311,12 @@ void open_hall(Walk& walk) {
 
 }  // namespace
 
-TEST_CASE("no id is used twice in a frame, and a click reaches every control of every panel") {
+TEST_CASE("no id is used twice in a frame, and every control of every panel receives a click") {
   Walk walk;
   open_hall(walk);
   ui::Ui& ui = walk.ui();
   int clicked = 0;
-  SECTION("the scene's side, nothing selected, then a lamp, a surface and a material") {
+  SECTION("the scene's panel, with no selection, then a lamp, a surface and a material") {
     clicked += walk.click_all("scene", Walk::anywhere);
     for (const char* selected : {"light 3", "material 5", "material 1"}) {
       walk.act(std::string("select ") + selected);
@@ -326,7 +325,7 @@ TEST_CASE("no id is used twice in a frame, and a click reaches every control of 
     }
     CHECK(clicked > 150);
   }
-  SECTION("every solver's side, in use or not") {
+  SECTION("every solver's panel, in use or not") {
     for (const bool used : {false, true})
       for (const solvers::SolverInfo* solver : solvers::registered()) {
         if (!solver->has_panel()) continue;
@@ -377,7 +376,7 @@ TEST_CASE("no id is used twice in a frame, and a click reaches every control of 
                              [](const Control& c) { return c.name == "##begin" || c.name == "##dismiss"; });
     CHECK(clicked == 2);
   }
-  SECTION("folded panels, and a window as small as it can be") {
+  SECTION("folded panels, and a window of minimum size") {
     for (const char* panel : {"left", "right", "bottom"}) walk.act(fmt::format("window.fold {} true", panel));
     clicked = walk.click_all("folded", Walk::anywhere);
     CHECK(clicked > 10);
@@ -389,7 +388,7 @@ TEST_CASE("no id is used twice in a frame, and a click reaches every control of 
   }
 }
 
-TEST_CASE("solo of the first group of the light mix mutes the others") {
+TEST_CASE("solo of the first light group mutes the others") {
   Walk walk;
   open_hall(walk);
   const std::vector<Control> solos = walk.named("##solo");
@@ -410,12 +409,12 @@ TEST_CASE("solo of the first group of the light mix mutes the others") {
   CHECK(found->second.solo);
 }
 
-TEST_CASE("components, solvers and the entries of their lists have tooltips, however slowly frames come") {
+TEST_CASE("components, solvers and list entries have tooltips, at any frame rate") {
   Walk walk;
   open_hall(walk);
   std::vector<Control> names = walk.named("##name");
   names.resize(session::k_components);
-  // Of each component the field of its solver is the first that opens below its name.
+  // The field of a component's solver is the first list below its name.
   for (const float between : {1.0f / 30, 0.8f}) {
     INFO(between << " s between frames");
     CHECK_THAT(walk.tooltip_at(names[0].box.GetCenter(), between), Catch::StartsWith("Primary: "));
@@ -447,7 +446,7 @@ TEST_CASE("components, solvers and the entries of their lists have tooltips, how
   walk.close();
 }
 
-TEST_CASE("Ctrl+S pressed and released within a frame, or let go after Ctrl, does not move the camera") {
+TEST_CASE("Ctrl+S pressed and released within a frame, or released after Ctrl, does not move the camera") {
   Walk walk;
   open_hall(walk);
   REQUIRE(walk.ui().view);
@@ -475,7 +474,7 @@ TEST_CASE("Ctrl+S pressed and released within a frame, or let go after Ctrl, doe
   CHECK(eye() != before);
 }
 
-TEST_CASE("what a scene needs and is not supported is said over the picture") {
+TEST_CASE("unsupported features of a scene are reported over the picture") {
   Walk walk;
   open_hall(walk);
   CHECK(walk.ui().note.text.empty());
@@ -483,7 +482,7 @@ TEST_CASE("what a scene needs and is not supported is said over the picture") {
   CHECK_THAT(walk.ui().note.text, Catch::Contains("Not supported") && Catch::Contains("KHR_materials_sheen"));
 }
 
-TEST_CASE("what has been saved is named over the picture, with how") {
+TEST_CASE("a saved file is named over the picture, with its form") {
   Walk walk;
   open_hall(walk);
   for (const auto& [line, said] : {std::pair{"image.save a.png as=shown", "Saved a.png, as shown"},
@@ -499,7 +498,7 @@ TEST_CASE("what has been saved is named over the picture, with how") {
 }
 
 TEST_CASE(
-    "the Open dialog goes to the folder above and to places, and greets an empty folder without blame") {
+    "the Open dialog goes to the parent folder and to places, and shows an empty folder without an error") {
   const test::Folder folder;
   const auto inner = folder.path / "inner";
   std::filesystem::create_directory(inner);
@@ -508,7 +507,7 @@ TEST_CASE(
   open_hall(walk);
   walk.ui().recent = {(folder.path / "a.gltf").string()};
   walk.act("dialog.open");
-  ImGui::ClearActiveID();  // the field holds its own text while it has the keyboard
+  ImGui::ClearActiveID();  // the field has its own text while it has the keyboard
   walk.ui().dialog.pictures = false, walk.ui().dialog.path = inner.string() + "/";
   walk.frames(3);
   const auto press = [&](const char* name, int nth = 0) {

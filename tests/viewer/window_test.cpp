@@ -1,6 +1,6 @@
 // links: ui film_io
-// The window over a session without a renderer: panels, steps, errors. Each case runs this executable again
-// under a display.
+// The window over a session without a renderer: panels, steps, errors. Each test case runs this executable
+// again with a display.
 #include "inside.h"
 #include "round_trip.h"
 #include "ui/layout.h"
@@ -13,7 +13,7 @@ using namespace lucerna;
 
 namespace {
 
-/// Runs the steps in a window of this program; SCENE and steps travel in the environment.
+/// Runs the steps in a window of this program; SCENE and steps are passed in the environment.
 test::Outcome window(const std::string& scene, const std::string& steps, const std::string& more = "") {
   return test::window(steps, "LUCERNA_TEST_SCENE='" + scene + "' " + more);
 }
@@ -51,7 +51,7 @@ TEST_CASE("a script is checked before it runs") {
   CHECK(ui::parse_script(window.registry, {"", "quit 0"}, "s").at(0).where == "s: line 2");
 }
 
-TEST_CASE("every command of the window is read, written and read again as the same") {
+TEST_CASE("every command of the window is unchanged after read, write and read") {
   session::Session session({});
   ui::Ui window(session);
   ui::Runner runner(window, {}, "");
@@ -65,7 +65,7 @@ TEST_CASE("the parts of the window tile it and leave room for the picture") {
        {std::array{1440.0f, 900.0f, 1.0f}, {1100.0f, 700.0f, 1.0f}, {2200.0f, 1400.0f, 2.0f}})
     for (int folds = 0; folds < 8; ++folds) {
       ui::Layout layout;
-      layout.left = 4000, layout.right = 10, layout.bottom = 3000;  // what splitters may ask for
+      layout.left = 4000, layout.right = 10, layout.bottom = 3000;  // the most that splitters can set
       layout.left_open = folds & 1, layout.right_open = folds & 2, layout.bottom_open = folds & 4;
       const ui::Areas areas = ui::arrange(layout, {width, height}, scale);
       float covered = 0;
@@ -83,7 +83,7 @@ TEST_CASE("the parts of the window tile it and leave room for the picture") {
     }
 }
 
-TEST_CASE("a small window folds and narrows panels, and a larger one has them again as they were") {
+TEST_CASE("a small window folds and narrows panels, and a larger one restores them") {
   ui::Layout chosen;
   chosen.left = 300, chosen.right = 320, chosen.bottom = 260;
   for (const auto& [width, height] : {std::array{640.0f, 420.0f}, {700.0f, 480.0f}, {900.0f, 600.0f}}) {
@@ -99,7 +99,7 @@ TEST_CASE("a small window folds and narrows panels, and a larger one has them ag
         const float size = left ? small.left.width() : small.right.width();
         CHECK(size >= (open ? ui::k_least_side : ui::k_folded));
       }
-      // What was asked for last is there.
+      // The panel opened last is shown.
       if (last == ui::Panel::left) CHECK(small.shown.left_open);
       if (last == ui::Panel::right) CHECK(small.shown.right_open);
       if (last == ui::Panel::bottom) CHECK(small.shown.bottom_open);
@@ -109,6 +109,37 @@ TEST_CASE("a small window folds and narrows panels, and a larger one has them ag
   CHECK(large.left.width() == 300);
   CHECK(large.right.width() == 320);
   CHECK(large.log.height() == 260);
+}
+
+TEST_CASE("the picture has half of a small window until the user arranges panels, which then stay") {
+  for (const auto& [width, height, scale] : {std::array{1100.0f, 700.0f, 1.0f},
+                                             {1280.0f, 720.0f, 1.0f},
+                                             {640.0f, 420.0f, 1.0f},
+                                             {1600.0f, 1000.0f, 2.0f},
+                                             {2200.0f, 1400.0f, 2.0f},
+                                             {1024.0f, 1200.0f, 1.0f},
+                                             {2560.0f, 600.0f, 1.0f}}) {
+    INFO(width << " x " << height << ", scale " << scale);
+    const auto share = [&](const ui::Layout& layout) {
+      const ui::Area picture = ui::arrange(layout, {width, height}, scale).picture;
+      return picture.width() * picture.height() / (width * height);
+    };
+    CHECK(share({}) >= 0.499f);  // whole pixels
+    // The user opens the panel on the right.
+    ui::Layout opened;
+    opened.right_open = opened.right_arranged = true, opened.opened_last = ui::Panel::right;
+    CHECK(ui::arrange(opened, {width, height}, scale).shown.right_open);
+  }
+  // What was arranged stays, though it leaves less than half.
+  ui::Layout all;
+  all.left_arranged = all.right_arranged = all.bottom_arranged = true;
+  const ui::Areas areas = ui::arrange(all, {1100, 700}, 1);
+  CHECK(areas.left.width() == all.left);
+  CHECK(areas.right.width() == all.right);
+  CHECK(areas.log.height() == all.bottom);
+  // A window with room shows all.
+  const ui::Layout shown = ui::arrange({}, {1440, 900}, 1).shown;
+  CHECK((shown.left_open && shown.right_open && shown.bottom_open));
 }
 
 TEST_CASE("percentiles") {
@@ -133,16 +164,16 @@ TEST_CASE("a picture is shown, panels hide, and the window is saved at its size"
   CHECK(panels.image.height == 700);
   CHECK(panels.contrast(400, 150, 700, 400) > 0.02);  // the picture
   CHECK(panels.contrast(10, 40, 270, 400) > 0.02);    // text on the left panel
-  // Panels are neutral: no channel differs from another where nothing is written.
+  // Panels are neutral: all channels are equal without text.
   const vec3 grey = panels.at(3, 300);
   CHECK(grey.x == grey.y);
   CHECK(grey.y == grey.z);
   CHECK(grey.x > 0.08f);
   CHECK(grey.x < 0.18f);
-  CHECK(bare.contrast(0, 0, 200, 200) > 0.02);  // the picture reaches the corner
+  CHECK(bare.contrast(0, 0, 200, 200) > 0.02);  // the picture extends to the corner
 }
 
-TEST_CASE("an error is shown over the old scene, and a script that fails says where") {
+TEST_CASE("an error is shown over the previous scene, and a failing script reports the line") {
   if (test::no_display()) return;
   const test::Folder folder;
   const std::string a = (folder.path / "a.png").string(), b = (folder.path / "b.png").string();
@@ -182,26 +213,26 @@ TEST_CASE("an empty window, a cancelled load, and every step run") {
   REQUIRE(outcome.status == 0);
   CHECK_THAT(outcome.output, Catch::Contains("\"measure\"") && Catch::Contains("\"answered\": 1"));
   const test::Picture empty(file("empty.png")), end(file("end.png"));
-  CHECK(empty.contrast(450, 300, 1000, 560) > 0.01);  // the invitation
+  CHECK(empty.contrast(450, 300, 1000, 560) > 0.01);  // the empty state
   CHECK(end.image.width == 1200);
   CHECK(end.image.height == 800);
 }
 
-TEST_CASE("mouse, keys and console act by commands, which a saved session holds") {
+TEST_CASE("mouse, keys and console act through commands, which a saved session contains") {
   if (test::no_display()) return;
   const test::Folder folder;
   const std::string saved = (folder.path / "session.lucerna").string();
   const auto outcome =
       window("hall.gltf",
              "wait_scene\nwindow.size 1440 900\nwait 0.3\n"
-             // A click in the picture on the room's one triangle.
+             // A click in the picture on the room's triangle.
              "camera.place 3,1.5,20 1,0.5,-1.5 0,1,0\nmouse.move 712 380\nmouse.down\nmouse.up\n"
-             // A drag there turns the view; it is no click.
+             // A drag there moves the view; it is no click.
              "mouse.down\nmouse.move 740 390\nmouse.move 780 400\nmouse.up\n"
-             // A drag of the exposure in the toolbar, undone and done again by keys.
+             // A drag of the exposure in the toolbar, undone and redone by keys.
              "mouse.move 980 50\nmouse.down\nmouse.move 990 50\nmouse.move 1000 50\nmouse.up\n"
              "key ctrl+z\nkey ctrl+shift+z\n"
-             // The console completes, reports mistakes and goes on.
+             // The console completes, reports errors and continues.
              "key ctrl+l\nwait 0.3\ntype \"film.tone_curve ag\"\nkey tab\nkey enter\nwait 0.3\n"
              "type \"film.ev bright\"\nkey enter\nwait 0.3\n"
              "script.save " +
@@ -223,7 +254,7 @@ TEST_CASE("mouse, keys and console act by commands, which a saved session holds"
   CHECK(lines[9] == "redo");
   CHECK(lines[10] == "set film.tone_curve agx");
 
-  // The script runs, and a session of it is the same script.
+  // The script runs, and its session gives the same script.
   const std::string again = (folder.path / "again.lucerna").string();
   const auto replay = window("", "script.run " + saved + "\nscript.save " + again + "\nquit\n");
   INFO(replay.output);
@@ -236,7 +267,7 @@ TEST_CASE("mouse, keys and console act by commands, which a saved session holds"
   }
 }
 
-TEST_CASE("a dropped scene opens; what cannot be opened is an error over the scene that stays") {
+TEST_CASE("a dropped scene opens; a file that cannot be opened is an error, and the scene stays") {
   if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
@@ -257,14 +288,14 @@ TEST_CASE("a dropped scene opens; what cannot be opened is an error over the sce
   };
   CHECK(strip("missing.png"));
   CHECK(strip("jpg.png"));
-  CHECK_FALSE(strip("other.png"));  // a scene that opens takes the messages away
+  CHECK_FALSE(strip("other.png"));  // opening a scene closes the messages
   CHECK(test::Picture(file("missing.png")).contrast(400, 300, 900, 500) > 0.02);
   const std::string script = read_file(file("session.lucerna"));
-  // What failed is not done again.
+  // Failed commands are not recorded.
   CHECK_THAT(script, !Catch::Contains("missing.glb") && Catch::Contains("other.gltf\nwait_scene"));
 }
 
-TEST_CASE("in mid-render the strip shows error over time, the forecast and the passes") {
+TEST_CASE("during a render the strip shows error over time, the forecast and the passes") {
   if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
@@ -304,12 +335,13 @@ TEST_CASE("in mid-render the strip shows error over time, the forecast and the p
   CHECK(test::near_colour(uniform, 288, 380, 580, 660, {254, 159, 109}, 0.05f) == 0);
 }
 
-TEST_CASE("the target's line is dragged: a question in uniform sampling, the setting in adaptive") {
+TEST_CASE(
+    "dragging the target's line sets a what-if value in uniform sampling, the setting in adaptive sampling") {
   if (test::no_display()) return;
   const test::Folder folder;
   const std::string saved = (folder.path / "session.lucerna").string();
   const std::string png = (folder.path / "a.png").string();
-  // Where the line is: found in a first picture; both runs are paused at the same sample.
+  // The line's position is read from a first picture; both runs are paused at the same sample.
   const std::string start =
       "wait_scene\nwindow.size 1440 900\nwait 0.3\nsamples 32\nwait_samples 32\nwait 0.3\n";
   REQUIRE(window("hall.gltf", start + "screenshot " + png + "\nquit\n").status == 0);
@@ -328,13 +360,13 @@ TEST_CASE("the target's line is dragged: a question in uniform sampling, the set
                                                png + "\nscript.save " + saved + "\nquit\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
-  const auto asked = lines_of(saved);
+  const auto recorded = lines_of(saved);
   double what_if = 0;
-  for (const std::string& l : asked)
+  for (const std::string& l : recorded)
     if (l.starts_with("accuracy.what_if ")) what_if = std::stod(l.substr(17));
   CHECK(what_if > 0.012);
   CHECK(what_if < 0.1);
-  CHECK(std::count_if(asked.begin(), asked.end(), [](const std::string& l) {
+  CHECK(std::count_if(recorded.begin(), recorded.end(), [](const std::string& l) {
           return l.starts_with("accuracy.what_if") || l.starts_with("set sampling.target_error");
         }) == 2);  // one gesture, one line
 

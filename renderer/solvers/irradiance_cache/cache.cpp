@@ -200,7 +200,7 @@ void Cache::draw_discontinuity(const overlay::Canvas& canvas, const CacheView& v
   DiscontinuityOptions options = c.options.screen;
   if (options.irradiance_weight <= 0) options.irradiance_weight = DiscontinuityOptions{}.irradiance_weight;
   c.picture.screen.measure(stream, of, options, c.dark());
-  c.picture.screen.draw(stream, canvas.film.picture(), level);
+  c.picture.screen.draw(canvas, level);
   stream.run();
   stream.take_times();
 }

@@ -160,16 +160,18 @@ Placement::Screen Discontinuity::screen() const {
           d.points(),         d.sight.pixel(), k_cell_share};
 }
 
-void Discontinuity::draw(gpu::Stream& stream, const gpu::Buffer& picture, uint32_t level) {
+void Discontinuity::draw(const overlay::Canvas& canvas, uint32_t level) {
   Impl& d = *impl_;
   d.resources.set("surface_texels", d.sight.surfaces());
   d.resources.set("Details", d.buffers.details);
-  d.resources.set("Picture", picture);
+  d.resources.set("Picture", canvas.picture());
   level = std::min(level, d.levels() - 1);
   const overlay::Sight& s = d.sight;
-  const DiscontinuityDrawPush push{s.width(),  s.height(), s.across(),    s.down(),
-                                   s.stride(), level,      d.first[level]};
-  d.run(stream, d.ready(d.kernels.draw, "discontinuity_draw"), &push, sizeof push, s.width() * s.height());
+  const DiscontinuityDrawPush push{
+      canvas.width(), canvas.height(), s.across(), s.down(), canvas.scale() * s.stride(),
+      level,          d.first[level]};
+  d.run(canvas.stream(), d.ready(d.kernels.draw, "discontinuity_draw"), &push, sizeof push,
+        uint32_t(canvas.pixels()));
 }
 
 uint64_t Discontinuity::bytes() const {

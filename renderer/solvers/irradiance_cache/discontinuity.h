@@ -8,6 +8,7 @@
 #include <functional>
 #include <vector>
 
+#include "overlay/canvas.h"
 #include "overlay/sight.h"
 #include "shaders/shared/irradiance_cache/discontinuity.h"
 #include "solvers/irradiance_cache/placement.h"
@@ -71,9 +72,9 @@ class Discontinuity {
               uint32_t seed);
   /// Input of Placement::collect, after dither().
   Placement::Screen screen() const;
-  /// Draws one level of the latest pyramid over a picture of the frame's size, as colours (k_ramp_magma, 0 to
-  /// 1). Levels beyond the last show the last. The stream is not run.
-  void draw(gpu::Stream& stream, const gpu::Buffer& picture, uint32_t level);
+  /// Lays a level of the pyramid that was measured last over a picture of the frame's size, as colours
+  /// (k_ramp_magma, 0 to 1); levels beyond the last count as that. The stream is not run.
+  void draw(const overlay::Canvas& canvas, uint32_t level);
 
   uint32_t levels() const;  ///< the last one has one cell
   uint64_t bytes() const;

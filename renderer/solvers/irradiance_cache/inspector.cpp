@@ -56,8 +56,9 @@ Inspector::Inspector(gpu::Device& device, gpu::ShaderCompiler& compiler)
     : impl_(new Impl(device, compiler)) {}
 Inspector::~Inspector() = default;
 
-Inspection Inspector::inspect(const overlay::Canvas& canvas, const Cache& cache, uint32_t x, uint32_t y) {
+Inspection Inspector::inspect(const overlay::Canvas& sheet, const Cache& cache, uint32_t x, uint32_t y) {
   Impl& i = *impl_;
+  const overlay::Canvas canvas = sheet.at_film();
   const film::Film& film = canvas.film;
   const gpu::Kernel& kernel = i.ready(i.kernels.inspect, "irradiance_cache/inspect.comp");
   const InspectPush push{film.width(), film.height(), y * film.width() + x, i.bind(canvas, cache)};
@@ -91,8 +92,9 @@ Inspection Inspector::inspect(const overlay::Canvas& canvas, const Cache& cache,
   return found;
 }
 
-Overlap Inspector::overlap(const overlay::Canvas& canvas, const Cache& cache) {
+Overlap Inspector::overlap(const overlay::Canvas& sheet, const Cache& cache) {
   Impl& i = *impl_;
+  const overlay::Canvas canvas = sheet.at_film();
   const film::Film& film = canvas.film;
   const gpu::Kernel& kernel = i.ready(i.kernels.overlap, "irradiance_cache/overlap.comp");
   const OverlapPush push{film.width(), film.height(), i.bind(canvas, cache)};
@@ -115,8 +117,9 @@ Overlap Inspector::overlap(const overlay::Canvas& canvas, const Cache& cache) {
   return o;
 }
 
-void Inspector::look_up(const overlay::Canvas& canvas, const Cache& cache, const gpu::Defines& defines) {
+void Inspector::look_up(const overlay::Canvas& sheet, const Cache& cache, const gpu::Defines& defines) {
   Impl& i = *impl_;
+  const overlay::Canvas canvas = sheet.at_film();
   const film::Film& film = canvas.film;
   const uint64_t pixels = uint64_t{film.width()} * film.height();
   if (!i.kernels.look_up)
@@ -131,9 +134,10 @@ void Inspector::look_up(const overlay::Canvas& canvas, const Cache& cache, const
 void Inspector::draw_lines(const overlay::Canvas& canvas, const Cache& cache, const Inspection& found) {
   if (!found.solid) return;
   Impl& i = *impl_;
-  const film::Film& film = canvas.film;
-  const float width = float(film.width()), height = float(film.height());
-  const vec2 here(float(found.x) + 0.5f, float(found.y) + 0.5f);
+  // Found in pixels of the film.
+  const auto scale = float(canvas.scale());
+  const float width = float(canvas.width()), height = float(canvas.height());
+  const vec2 here = scale * (vec2(found.x, found.y) + 0.5f);
   vec2 lo = here - 4.0f, hi = here + 4.0f;
   const auto cover = [&](const vec2& p, float reach) {
     // A centre may be far outside the picture.
@@ -144,15 +148,17 @@ void Inspector::draw_lines(const overlay::Canvas& canvas, const Cache& cache, co
   for (auto s = found.serving.rbegin(); s != found.serving.rend(); ++s) {  // heaviest last, on top
     if (s->weight < k_least_weight || s->depth <= 0) continue;
     const float strength = std::sqrt(s->weight / found.serving.front().weight);
-    list.push_back({here, s->at, found.surface.depth, s->depth, 0.4f + 1.2f * strength,
+    const vec2 centre = scale * s->at;
+    list.push_back({here, centre, found.surface.depth, s->depth, 0.4f + 1.2f * strength,
                     0.3f + 0.65f * strength, k_line_ink});
-    cover(s->at, 4);
-    // The centre, as a point.
-    list.push_back({s->at, s->at, s->depth, s->depth, 1.5f + strength, 0.5f + 0.5f * strength, k_line_ink});
+    cover(centre, 4);
+    // Its centre: a point.
+    list.push_back({centre, centre, s->depth, s->depth, 1.5f + strength, 0.5f + 0.5f * strength, k_line_ink});
   }
   list.push_back({here, here, found.surface.depth, found.surface.depth, 2.0f, 1.0f, vec3(1)});
   if (found.under)
-    cover(found.under->at, 1.5f * found.under->record.radius / std::max(found.surface.size, 1e-20f) + 4);
+    cover(scale * found.under->at,
+          1.5f * scale * found.under->record.radius / std::max(found.surface.size, 1e-20f) + 4);
 
   const vec2 first = glm::clamp(glm::floor(lo), vec2(0), vec2(width, height));
   const vec2 last = glm::clamp(glm::ceil(hi), vec2(0), vec2(width, height));
@@ -164,7 +170,7 @@ void Inspector::draw_lines(const overlay::Canvas& canvas, const Cache& cache, co
                                gpu::Memory::host);
   lines.write(list.data(), list.size() * sizeof(OverlayLine));
   i.resources.set("OverlayLines", lines);
-  const CacheLinesPush push{film.width(),          film.height(),
+  const CacheLinesPush push{canvas.width(),        canvas.height(),
                             uint32_t(first.x),     uint32_t(first.y),
                             uint32_t(size.x),      uint32_t(size.y),
                             uint32_t(list.size()), found.under ? found.under->index : k_no_record};

@@ -39,7 +39,7 @@ void RecordsOverlay::draw(const overlay::Canvas& canvas, const Cache::Overlay& o
   const SightGrid sight = bind_sight(resources_);
   const OverlayPush push{canvas.width(), canvas.height(), overlay.discs, overlay.overlap, overlay.color, lo,
                          hi, k_overlap_scale,
-                         // Discs are drawn on the film's surfaces.
+                         // Discs are drawn on the surfaces of the sheet.
                          overlay.overlap ? sight : overlay::k_no_sight};
   canvas.stream().dispatch(kernel_, resources_, push, gpu::groups_for(canvas.pixels(), 64));
   canvas.finish();

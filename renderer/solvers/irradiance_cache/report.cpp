@@ -260,20 +260,26 @@ Legend record_legend(const CacheReport& r) {
         if (p.records > 0) most = std::max(most, p.number);
       for (uint32_t i = 0; i <= most; ++i)
         legend.marks.push_back({shared::ramp_hue(i), fmt::format("{}", i + 1)});
+      legend.note = "Ring: where a record is valid. Colour: the pass of building that placed it.";
       return legend;
     }
     case shared::k_record_by_origin:
       legend.title = "Records, by the origin of their candidate";
       add_origins(legend);
+      legend.note = "Ring: where a record is valid. Colour: the lookup that found no record there.";
       return legend;
     case shared::k_record_by_rays:
       legend.title = "Records, by their rays";
+      legend.note = "Ring: where a record is valid. Colour: rays traced for its irradiance.";
       break;
     case shared::k_record_by_distance:
-      legend.title = "Records, by mean distance of the surfaces around";
+      legend.title = "Records, by the mean distance they see";
+      legend.note =
+          "Ring: where a record is valid. Colour: harmonic mean distance of the surfaces around, in metres.";
       break;
     default:
       legend.title = "Records, by their error (irradiance)";
+      legend.note = "Ring: where a record is valid. Colour: standard error of its irradiance, in W/m\u00b2.";
   }
   legend.ramp = shared::k_ramp_viridis;
   legend.range =
@@ -295,6 +301,7 @@ Legend placement_legend(const CacheReport& r) {
   if (r.placement == PlacementShow::candidates) {
     legend.title = "Candidates, by origin";
     add_origins(legend);
+    legend.note = "Dot: a place where a lookup found no record. Colour: the lookup.";
   } else if (r.placement == PlacementShow::clusters) {
     legend.title = "Candidates, by their cluster";
     constexpr uint32_t k_inks = 5;
@@ -302,6 +309,7 @@ Legend placement_legend(const CacheReport& r) {
       legend.marks.push_back({shared::placed_cluster_ink(i),
                               i + 1 < k_inks ? "" : counted("clusters", pass ? pass->clusters : 0)});
     legend.marks.push_back({shared::k_tried_ink, counted("tried", pass ? pass->tried : 0)});
+    legend.note = "Dots of one colour: a cluster of candidates. Few of each cluster are tried.";
   } else {
     legend.title = "Tried places with their radii";
     if (pass && pass->records > 0) {
@@ -310,6 +318,8 @@ Legend placement_legend(const CacheReport& r) {
     } else {
       legend.marks.push_back({shared::k_tried_ink, counted("tried", pass ? pass->tried : 0)});
     }
+    legend.note =
+        "Ring: where the record of a place would be valid. Rejected places lie too close to others.";
   }
   return legend;
 }
@@ -324,6 +334,7 @@ Legend overlap_legend() {
   legend.marks = {{shared::k_gathered_ink, "none: paths gather there"},
                   {shared::k_unserved_ink, "none: path traced"}};
   legend.marks_in_line = false;
+  legend.note = "Colour: how many records each pixel interpolates.";
   return legend;
 }
 
@@ -331,13 +342,16 @@ Legend overlap_legend() {
 Legend detail_legend(const std::string& of, int64_t level) {
   return {.title = fmt::format("Detail of {}, cells of {} pixel{}", of, 1u << level, level == 0 ? "" : "s"),
           .ramp = shared::k_ramp_magma,
-          .ticks = {{0.0f, "0 flat"}, {0.25f, "0.25"}, {0.5f, "0.5"}, {0.75f, "0.75"}, {1.0f, "1 full"}}};
+          .ticks = {{0.0f, "0 flat"}, {0.25f, "0.25"}, {0.5f, "0.5"}, {0.75f, "0.75"}, {1.0f, "1 full"}},
+          .note = "Share of the most detail a cell can have; more candidates are drawn where it is high."};
 }
 
 std::vector<Legend> legends(const CacheReport& r, const OptionValues& settings) {
   std::vector<Legend> list;
-  if (settings.boolean("overlay.records") || settings.boolean("overlay.normals"))
+  if (settings.boolean("overlay.records") || settings.boolean("overlay.normals")) {
     list.push_back(record_legend(r));
+    if (settings.boolean("overlay.normals")) list.back().note += " Line: its normal.";
+  }
   if (r.placement != PlacementShow::off) list.push_back(placement_legend(r));
   if (settings.boolean("overlay.overlap")) list.push_back(overlap_legend());
   if (const std::string& of = settings.text("overlay.discontinuity"); of != "off")

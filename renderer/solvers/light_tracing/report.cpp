@@ -48,6 +48,7 @@ Report make_report(const LightTracingReport& r) {
                              .note = "",
                              .items = {OptionRow{"overlay.light_paths"}, OptionRow{"overlay.light_paths_of"},
                                        OptionRow{"overlay.light_aim"}}});
+  if (r.paths_shown) report.legends.push_back(light_paths_legend());
   if (r.aim_shown && !r.aimed.empty()) report.legends.push_back(aim_legend());
   report.figures = {
       {"rounds", double(r.rounds)},   {"light paths", double(r.paths)},  {"joined", double(r.joined)},

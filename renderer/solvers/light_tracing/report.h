@@ -15,8 +15,8 @@ struct LightTracingReport {
   uint32_t casters = 0;
   double unaimed = 1;                     ///< unaimed share of the paths
   std::vector<overlay::AimedPair> aimed;  ///< largest share first
-  bool aim_shown = false;
-  double sent_per_s = 0;  ///< 0: not measured yet
+  bool paths_shown = false, aim_shown = false;
+  double sent_per_s = 0;  ///< 0: not yet known
   uint64_t bytes = 0;
 };
 

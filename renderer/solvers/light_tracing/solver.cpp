@@ -177,6 +177,7 @@ LightTracingReport LightTracingSolver::state(const Picture& picture) const {
   r.unaimed = lights_.shares().empty() ? 1 : lights_.shares()[0];
   r.sent_per_s = trace_s_ > 0 ? double(paths_) / trace_s_ : 0;
   r.bytes = splats_.bytes() + lights_.bytes();
+  r.paths_shown = picture.task.settings.boolean("overlay.light_paths");
   r.aim_shown = picture.task.settings.boolean("overlay.light_aim");
   r.aimed = pairs_;
   return r;

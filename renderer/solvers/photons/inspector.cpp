@@ -43,8 +43,9 @@ const gpu::Kernel& PhotonInspector::ready(gpu::Kernel& kernel, const char* file)
   return kernel;
 }
 
-bool PhotonInspector::look_up(const overlay::Canvas& canvas, const std::function<void(gpu::Resources&)>& bind,
+bool PhotonInspector::look_up(const overlay::Canvas& sheet, const std::function<void(gpu::Resources&)>& bind,
                               uint32_t of) {
+  const overlay::Canvas canvas = sheet.at_film();
   gpu::make_room(device_, densities_, {.name = "densities of photons", .bytes = canvas.pixels() * 4});
   canvas.bind(resources_);
   bind(resources_);
@@ -73,7 +74,7 @@ DensityScale PhotonInspector::draw_density(const overlay::Canvas& canvas,
   if (of > k_density_of_irradiance || drawn_.of != of || drawn_version_ != version) {
     drawn_ = {};
     if (!look_up(canvas, bind, of)) return {};
-    if (smooths) smooth(canvas, photons);
+    if (smooths) smooth(canvas.at_film(), photons);
     const auto most = std::bit_cast<float>(*static_cast<const uint32_t*>(most_.mapped()));
     drawn_ = {.of = of}, drawn_version_ = version;
     if (most > 0) drawn_.hi = rounded_up(most), drawn_.lo = k_decades * drawn_.hi;
@@ -82,8 +83,8 @@ DensityScale PhotonInspector::draw_density(const overlay::Canvas& canvas,
   canvas.bind(resources_);
   resources_.set("PhotonDensities", smooths ? smoothed_ : densities_);
   canvas.stream().dispatch(ready(heat_, "photons/heat.comp"), resources_,
-                           PhotonHeatPush{canvas.width(), canvas.height(), scale.hi > 0 ? scale.lo : 1.0f,
-                                          scale.hi > 0 ? scale.hi : 2.0f},
+                           PhotonHeatPush{canvas.width(), canvas.height(), canvas.scale(),
+                                          scale.hi > 0 ? scale.lo : 1.0f, scale.hi > 0 ? scale.hi : 2.0f},
                            gpu::groups_for(canvas.pixels(), 64));
   canvas.finish();
   return scale;
@@ -110,14 +111,18 @@ std::vector<float> PhotonInspector::densities() const { return densities_.read_a
 
 std::optional<Inspected> PhotonInspector::inspect(const overlay::Canvas& canvas,
                                                   const std::function<void(gpu::Resources&)>& bind,
-                                                  uint32_t x, uint32_t y) {
-  canvas.bind(resources_);
+                                                  const vec2& place) {
+  const overlay::Canvas film = canvas.at_film();
+  const auto at = [](float share, uint32_t pixels) {
+    return std::min(uint32_t(std::clamp(share, 0.0f, 1.0f) * float(pixels)), pixels - 1);
+  };
+  const uint32_t pixel = at(place.y, film.height()) * film.width() + at(place.x, film.width());
+  film.bind(resources_);
   bind(resources_);
   through_.bind(resources_);
   resources_.set("PhotonInspection", inspection_);
-  canvas.stream().dispatch(
-      ready(inspect_, "photons/inspect.comp"), resources_,
-      PhotonInspectPush{canvas.width(), canvas.height(), y * canvas.width() + x, through_.grid()}, 1);
+  canvas.stream().dispatch(ready(inspect_, "photons/inspect.comp"), resources_,
+                           PhotonInspectPush{film.width(), film.height(), pixel, through_.grid()}, 1);
   canvas.finish();
   const auto* header = static_cast<const PhotonInspectHeader*>(inspection_.mapped());
   if (header->solid == 0) return std::nullopt;

@@ -42,9 +42,10 @@ class PhotonInspector {
   bool look_up(const overlay::Canvas& canvas, const std::function<void(gpu::Resources&)>& bind, uint32_t of);
   /// The stored values by pixel; shared::k_density_none without a surface. For tests.
   std::vector<float> densities() const;
-  /// nullopt without a surface. Draws the disc and its photons.
+  /// Of a place of the picture, 0..1 to the right and down; nothing where no surface is seen. Draws the disc
+  /// and its photons.
   std::optional<Inspected> inspect(const overlay::Canvas& canvas,
-                                   const std::function<void(gpu::Resources&)>& bind, uint32_t x, uint32_t y);
+                                   const std::function<void(gpu::Resources&)>& bind, const vec2& place);
 
  private:
   const gpu::Kernel& ready(gpu::Kernel& kernel, const char* file);

@@ -42,7 +42,16 @@ Card make_card(const Inspected& found) {
   return card;
 }
 
-/// Radii of rounds 1, 2, 4, ...; completed ones in the accent colour.
+/// What the heat map of densities shows.
+const char* density_note(uint32_t of) {
+  if (of == k_density_of_photons) return "Colour: photons stored per m\u00b2. Dark: few, or none.";
+  if (of == k_density_of_caustics) return "Colour: share of the samples. Elsewhere caustics are path traced.";
+  if (of == k_density_of_importance)
+    return "Colour: how much the picture depends on photons there. More are sent to bright places.";
+  return "Colour: irradiance of the photons, in W/m\u00b2. Dark: little, or none.";
+}
+
+/// The radius of rounds 1, 2, 4, ...; those that the picture has had in the accent's ink.
 Histogram radius_columns(const PhotonReport& r) {
   constexpr uint32_t k_columns = 13;  // to round 4096
   constexpr vec3 k_had{0.44f, 0.64f, 0.87f}, k_to_come{0.38f, 0.38f, 0.42f};
@@ -192,17 +201,30 @@ Report make_report(const PhotonReport& r) {
        .items = {OptionRow{"overlay.photons"}, OptionRow{"overlay.photon_density"},
                  OptionRow{"overlay.photon_paths"}, OptionRow{"overlay.photon_paths_of"},
                  OptionRow{"overlay.photon_aim"}}});
+  if (r.paths_shown) report.legends.push_back(light_paths_legend());
   if (r.aim_shown && !r.aimed.empty()) report.legends.push_back(aim_legend());
+  if (r.view == shared::k_photons_by_flux)
+    report.legends.push_back({.title = "Photons, by their light",
+                              .note = "Dot: a photon of the last pass, in the colour of its light."});
+  if (r.view == shared::k_photons_by_light)
+    report.legends.push_back(
+        {.title = "Photons, by the light that sent them",
+         .note = "Dot: a photon of the last pass. One colour per light; colours repeat."});
+  if (r.view == shared::k_photons_by_round)
+    report.legends.push_back({.title = "Photons, by pass",
+                              .note = "Dot: a photon of the last pass. The colour changes with each pass."});
   if (r.view == shared::k_photons_by_map) {
     Legend legend{.title = "Light of", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
     for (const auto& [hue, name] : {std::pair{0u, "secondary"}, {1u, "tertiary"}, {2u, "caustic"}})
       legend.marks.push_back({shared::ramp_hue(hue), name});
+    legend.note = "Dot: a photon of the last pass. Colour: the component it contributes to.";
     report.legends.push_back(std::move(legend));
   }
   if (r.view == shared::k_photons_by_bounce) {
     Legend legend{.title = "Bounces", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
     for (uint32_t bounce = 0; bounce < 6; ++bounce)
       legend.marks.push_back({shared::ramp_hue(bounce), fmt::format("{}{}", bounce, bounce == 5 ? "+" : "")});
+    legend.note = "Dot: a photon of the last pass. Colour: surfaces on its path before this one.";
     report.legends.push_back(std::move(legend));
   }
   if (r.density.of > 0 && r.density.hi > 0)
@@ -214,7 +236,8 @@ Report make_report(const PhotonReport& r) {
          .ramp = k_ramp_magma,
          .ticks = {},
          .range = Legend::Range{.lo = r.density.lo, .hi = r.density.hi},
-         .marks = {}});
+         .marks = {},
+         .note = density_note(r.density.of)});
   report.looked_at = r.looked_at;
   if (r.inspected) report.card = make_card(*r.inspected);
   report.figures = {{"rounds", double(r.rounds)},

@@ -31,7 +31,7 @@ struct PhotonReport {
   double delegation_gain = 1;             ///< estimated efficiency gain of this choice
   bool ready = true;                      ///< the pilot is complete
   std::vector<overlay::AimedPair> aimed;  ///< largest share first
-  bool aim_shown = false;
+  bool paths_shown = false, aim_shown = false;
   uint64_t bytes = 0;
   double trace_s = 0, build_s = 0;                               ///< of the picture's rounds
   double emitted_per_s = 0, stored_per_s = 0, sorted_per_s = 0;  ///< 0: not measured yet

@@ -440,11 +440,7 @@ void PhotonSolver::draw(const overlay::Canvas& canvas, const Picture& picture) {
   if (settings.boolean("overlay.photon_aim") && lights_.strata() > 1)
     paths_view_.draw_aim(canvas, picture.flat, lights_, boxes_);
   if (!looked_at_ || !shown.complete()) return;
-  const auto at = [](float place, uint32_t pixels) {
-    return std::min(uint32_t(std::clamp(place, 0.0f, 1.0f) * float(pixels)), pixels - 1);
-  };
-  inspected_ =
-      inspector_.inspect(canvas, read, at(looked_at_->x, canvas.width()), at(looked_at_->y, canvas.height()));
+  inspected_ = inspector_.inspect(canvas, read, *looked_at_);
 }
 
 PhotonReport PhotonSolver::state(const Picture& picture) const {
@@ -480,6 +476,7 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.limited = r.radius_pixels * pixel >
               double(picture.frame.orthographic ? most_radius(picture.frame) : k_photon_most_slope);
   r.view = uint32_t(s.choice("overlay.photons"));
+  r.paths_shown = s.boolean("overlay.photon_paths");
   r.aim_shown = s.boolean("overlay.photon_aim");
   r.aimed = pairs_;
   return r;

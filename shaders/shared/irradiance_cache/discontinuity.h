@@ -43,8 +43,8 @@ struct DitherPush {
 };
 
 struct DiscontinuityDrawPush {
-  uint width, height;  ///< of the picture
-  uint across, down, stride;
+  uint width, height;         ///< of the sheet
+  uint across, down, stride;  ///< in its pixels
   uint level, first;  ///< as in DetailPush
 };
 

@@ -28,8 +28,9 @@ struct PhotonSmoothPush {
 };
 
 struct PhotonHeatPush {
-  uint width, height;
-  float lo, hi;     ///< ends of the logarithmic scale
+  uint width, height;  ///< of the sheet
+  uint scale;          ///< SheetView::scale: densities are of the film's pixels
+  float lo, hi;        ///< of a logarithmic scale
 };
 
 struct PhotonInspectPush {

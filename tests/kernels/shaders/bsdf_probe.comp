@@ -1,4 +1,4 @@
-// shaders/lib/bsdf.glsl and the samplers below it, asked one question an invocation.
+// shaders/lib/bsdf.glsl and the samplers below it, one query per invocation.
 // TEST_DRAW 0: value and density in a direction; 1: draws a direction.
 // TEST_SUBJECT 0: the whole BSDF; 1: GGX visible normals; 2: cosine lobe. alpha = roughness^2.
 #include "shaders/lib/invocation.glsl"
@@ -8,7 +8,7 @@
 layout(local_size_x = 64) in;
 layout(scalar, push_constant) uniform Push {
   uint count;
-  uint material;  // draws: of all
+  uint material;  // draws: the same for all
   uint seed;
   vec3 wo;
 } push;
@@ -60,7 +60,8 @@ SurfaceParameters parameters(Material m) {
   return s;
 }
 
-// Five independent uniform numbers an invocation, of a family of their own: rounds of xorshift-multiply over a counter.
+// Five independent uniform numbers per invocation, from a separate generator: rounds of xorshift-multiply over a
+// counter.
 uint scramble(uint x) {
   x = (x ^ (x >> 17)) * 0xed5ad4bbu;
   x = (x ^ (x >> 11)) * 0xac4c1b51u;

@@ -1,4 +1,4 @@
-// shaders/lib/emission.glsl: the beginnings of light paths, one an invocation.
+// shaders/lib/emission.glsl: starts of light paths, one per invocation.
 #include "shaders/lib/invocation.glsl"
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/emission.glsl"

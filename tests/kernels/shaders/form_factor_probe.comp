@@ -1,4 +1,4 @@
-// shaders/irradiance_cache/form_factor.glsl: one edge an invocation.
+// shaders/irradiance_cache/form_factor.glsl: one edge per invocation.
 #include "shaders/lib/invocation.glsl"
 #include "shaders/irradiance_cache/form_factor.glsl"
 

@@ -1,5 +1,5 @@
-// shaders/lib/lights.glsl with learned lights: draws a light by a row, and asks for the density that a scattered ray would be
-// weighted against which met the same.
+// shaders/lib/lights.glsl with learned lights: draws a light from a row, and evaluates the density that weights a
+// scattered ray which hits the same light.
 #include "shaders/lib/invocation.glsl"
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/surface.glsl"

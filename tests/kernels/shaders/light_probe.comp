@@ -1,4 +1,4 @@
-// shaders/lib/lights.glsl, asked one question an invocation.
+// shaders/lib/lights.glsl, one query per invocation.
 // TEST_ASK 0: draws a light and a direction to it; 1: the environment's radiance and density; 2: the density of a
 // direction to a triangle; 3: an entry of an alias table.
 #include "shaders/lib/invocation.glsl"
@@ -32,7 +32,7 @@ layout(scalar) readonly buffer Questions { vec4 questions[]; };
 layout(scalar) writeonly buffer Draws { Draw draws[]; };
 layout(scalar) writeonly buffer Answers { Answer answers[]; };
 
-// Independent uniform bits of a family of their own.
+// Independent uniform bits from a separate generator.
 uint scramble(uint x) {
   x = (x ^ (x >> 17)) * 0xed5ad4bbu;
   x = (x ^ (x >> 11)) * 0xac4c1b51u;

@@ -1,5 +1,5 @@
-// What the octree says of every point: spheres that contain it, a checksum of their indices, the length of its list, and
-// whether the list is in order.
+// The octree's result for every point: the number of spheres that contain it, a checksum of their indices, the length
+// of its list, and whether the list is in order.
 #include "shaders/lib/invocation.glsl"
 #include "shaders/lib/variants.glsl"
 #include "shaders/lib/octree.glsl"

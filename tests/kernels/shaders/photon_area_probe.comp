@@ -1,4 +1,4 @@
-// shaders/photons/area.glsl: the surface around places, one an invocation.
+// shaders/photons/area.glsl: the surface area around points, one per invocation.
 #include "photons/area.glsl"
 #include "shaders/lib/invocation.glsl"
 

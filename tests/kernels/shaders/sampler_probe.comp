@@ -1,4 +1,4 @@
-// One point of shaders/lib/sampler.glsl an invocation, by pad or by vertex and purpose.
+// One point of shaders/lib/sampler.glsl per invocation, by pad or by vertex and purpose.
 #include "shaders/lib/invocation.glsl"
 #ifndef TEST_VERTEX
 #define TEST_VERTEX 0
@@ -28,7 +28,7 @@ void main() {
   Sampler s = make_sampler(p.pixel, p.width, p.sample_index, p.seed);
   Point result;
 #if TEST_VERTEX
-  // pad: depth * 256 + what
+  // pad: depth * 256 + purpose
   result.bits = sample_vertex_bits(s, p.pad >> 8, p.pad & 255u);
   result.unit = sample_vertex(s, p.pad >> 8, p.pad & 255u);
 #elif TEST_UNIT

@@ -1,4 +1,4 @@
-// Every invocation adds to one sum, some of them nothing.
+// Every invocation adds to one sum, some of them 0.
 #include "shaders/lib/invocation.glsl"
 #include "shaders/lib/wide_sum.glsl"
 

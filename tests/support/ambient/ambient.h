@@ -1,7 +1,7 @@
 #pragma once
-// A solver that the program does not know, for tests of how solvers are made part of it: tertiary light is
-// the same from everywhere, radiance `ambient.radiance`. It has an option, a view, a report, a hook and
-// figures, and no file of the program was touched for it.
+// A solver unknown to the program, for tests of how solvers are added: tertiary light is the constant
+// radiance `ambient.radiance`. It has an option, a view, a report, a hook and figures, and needs no change of
+// the program's files.
 #include <algorithm>
 #include <array>
 
@@ -99,10 +99,10 @@ class AmbientSolver final : public solvers::Solver {
   paths::LookupRoutes routes_;
   float radiance_;
   gpu::Buffer block_;
-  uint32_t begun_ = 0;  ///< pictures that have spoiled its work
+  uint32_t begun_ = 0;  ///< pictures that invalidated its work
 };
 
-/// How many have been made.
+/// The number of instances created.
 inline int& ambient_made() {
   static int count = 0;
   return count;

@@ -4,7 +4,7 @@
 #include "transport/vertex_hook.glsl"
 
 layout(scalar) readonly buffer AmbientBlock {
-  uint component[k_automaton_states];  // that it brings light to, k_component_count: none
+  uint component[k_automaton_states];  // component of the light looked up there, k_component_count: none
   float radiance;
 } ambient_light;
 
