@@ -174,7 +174,7 @@ void frame_inside(Viewpoint& view, const Box& box, float aspect, const Look& loo
   Viewpoint wanted = view;
   frame(wanted, box, aspect);
   const vec3 eye = eye_of(view.camera);
-  // Straight back, not to the scene's middle: that may be in another room.
+  // Directly back, not to the scene's centre, which may be in another room.
   const float back = std::max(0.0f, glm::dot(eye_of(wanted.camera) - eye, -forward_of(view.camera)));
   const vec3 end = step_straight(look, eye, -back * forward_of(view.camera), clearance(view.extent));
   view.distance += glm::length(end - eye);

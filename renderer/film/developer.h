@@ -20,8 +20,8 @@ class Developer {
   /// Compiles the kernel of mix(), so that the first mix does not wait. Does nothing if already done or if
   /// the film is not Film::quick(). Runs the stream. Throws Error, located.
   void prepare_mix(gpu::Stream& stream, const Film& film, const View& view);
-  /// Draws over a picture the state of the film's tiles, where the view has any. `scale`: pixels of that
-  /// picture per pixel of the film, along a side; lines are one pixel of it wide. Runs the stream.
+  /// Draws the state of the film's tiles over a picture, if the view shows it. `scale`: pixels of that
+  /// picture per pixel of the film, along a side; lines are one of its pixels wide. Runs the stream.
   void draw_tiles(gpu::Stream& stream, const Film& film, const View& view, const gpu::Buffer& picture,
                   uint32_t scale);
 

@@ -1,5 +1,5 @@
 #pragma once
-// What overlays are drawn on: a sheet over the picture, with the surfaces that its pixels show.
+// Target of overlays: a sheet over the picture, with the visible surfaces of its pixels.
 #include <functional>
 
 #include "film/film.h"
@@ -8,19 +8,18 @@
 
 namespace lucerna::overlay {
 
-/// The wavefront's frame must be the picture's; its stream is run. Surfaces are those traced for the sheet;
-/// before these are known, those of the film's samples, and of the coarse film (shared::k_coarse_step) where
-/// there are none.
+/// The wavefront's frame must be the picture's; its stream is run. Surfaces are those traced for the sheet,
+/// or before these are known, those of the film's samples, and of the coarse film (shared::k_coarse_step) in
+/// pixels without samples.
 struct Canvas {
   transport::Wavefront& wavefront;
   const film::Film& film;
   const film::Film& coarse;
   const Sheet& sheet;
-  /// Asked by what takes long: true when the picture is out of date already. What is drawn may then be left
-  /// out.
+  /// Called during long operations; true: the picture is outdated, and drawing may be omitted.
   std::function<bool()> cancel = {};
 
-  /// True: pixels are the film's, for what is computed once per pixel of the picture.
+  /// True: pixels are those of the film, for values computed once per pixel of the picture.
   bool of_film = false;
   Canvas at_film() const { return {wavefront, film, coarse, sheet, cancel, true}; }
 
@@ -30,7 +29,7 @@ struct Canvas {
   uint64_t pixels() const { return uint64_t{width()} * height(); }
   const gpu::Buffer& picture() const { return of_film ? film.picture() : sheet.picture(film); }
   gpu::Stream& stream() const { return wavefront.stream(); }
-  /// Sets what shaders/overlay/seen.glsl reads, and the picture, in place of what was in the table.
+  /// Binds the resources of shaders/overlay/seen.glsl, and the picture, replacing all earlier bindings.
   void bind(gpu::Resources& resources) const;
   /// Runs the recorded commands; not part of the picture's cost.
   void finish() const;

@@ -43,7 +43,7 @@ struct Predecessor {
   std::shared_ptr<solvers::Solver> solver;
   MadeFor made_for;
   scene::Changes since;  ///< its last picture
-  bool kept = false;     ///< it has been out of use meanwhile: `since` are all changes
+  bool kept = false;     ///< it was unused meanwhile: `since` contains all changes
 };
 
 class Engine {

@@ -1,7 +1,7 @@
 #pragma once
-// Solvers that are out of use, with their work: the plan has no task for them any more, or settings have
-// changed so that none of it holds. When one of their kind is called for again, by undo or by hand, it takes
-// up that work instead of starting from nothing.
+// Unused solvers with their prepared data: the plan has no task for them any more, or changed settings have
+// invalidated all of it. When a solver of the same type is used again, by undo or by the user, it continues
+// with this data instead of from scratch.
 #include <map>
 #include <memory>
 #include <set>
@@ -15,12 +15,12 @@ namespace lucerna::session {
 
 class KeptSolvers {
  public:
-  /// Keeps the solvers of `before` whose work `after` has not taken up, at most one of a kind, and forgets
-  /// those whose work it has. `edits`: of the scene, from one to the other.
+  /// Keeps the solvers of `before` whose data `after` does not use, at most one of a type, and drops those
+  /// whose data it uses. `edits`: edits of the scene between the two engines.
   void replace(const Engine& before, const Engine& after, const std::set<scene::Change>& edits);
-  /// The scene is edited: forgets the work of which nothing holds any more.
+  /// Notes edits of the scene; drops solvers without any valid data left.
   void note(const std::set<scene::Change>& edits);
-  /// For an engine with these settings. `edits`: besides those noted.
+  /// Predecessors for an engine with these settings. `edits`: further edits, not noted yet.
   std::vector<Predecessor> predecessors(const plan::Settings& settings,
                                         const std::set<scene::Change>& edits) const;
   bool empty() const { return kept_.empty(); }
@@ -30,7 +30,7 @@ class KeptSolvers {
   struct Kept {
     std::shared_ptr<solvers::Solver> solver;
     MadeFor made_for;
-    // Of its last picture: settings by value, for what is set back is as it was; and edits since.
+    // Settings of its last picture, so that settings changed back count as unchanged; and edits since.
     std::map<std::string, std::string> settings;
     std::set<scene::Change> edits;
   };

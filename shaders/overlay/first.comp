@@ -1,5 +1,5 @@
-// First surface on a ray through a pixel; holes of cut-out materials are passed. In place of transport/shade.comp
-// (transport/wavefront.h, PathEnds::vertex), from overlay/centre.comp to overlay/first_keep.comp.
+// Finds the first surface on a ray through a pixel, passing holes of cut-out materials. Replaces transport/shade.comp
+// (transport/wavefront.h, PathEnds::vertex), between overlay/centre.comp and overlay/first_keep.comp.
 #include "lib/variants.glsl"
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"

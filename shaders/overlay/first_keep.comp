@@ -1,4 +1,4 @@
-// Stores what overlay/first.comp has found: normal on the visible side, depth along the view axis [m], 0 for none.
+// Stores the surface found by overlay/first.comp: normal on the visible side, depth along the view axis [m], 0 for none.
 #include "shaders/shared/sight.h"
 #include "lib/frame.glsl"
 #include "lib/invocation.glsl"

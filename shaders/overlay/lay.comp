@@ -1,5 +1,5 @@
-// Lays the marks of strokes over the picture. It may be dimmed, so that they stand out on any ground; where there are no
-// samples yet the coarse picture's noise would drown them: there surfaces are then shown in greys, by how they face the eye.
+// Draws the marks of strokes over the picture, optionally dimmed, so that they are visible on any background. In a dimmed
+// picture, surfaces of pixels without samples are grey by orientation, because the coarse picture's noise would hide the marks.
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "overlay/seen.glsl"
@@ -25,7 +25,7 @@ float grey_of(uvec2 xy, uvec2 coarse_film) {
   return mix(k_edge_on, k_facing, abs(dot(normalize(normal), view))) * mix(0.5, 1.0, light);
 }
 
-// Smooth between the coarse film's pixels.
+// Grey of a pixel, interpolated between the coarse film's pixels.
 float grey_at(uvec2 xy) {
   uvec2 coarse_film = max(uvec2(sheet.film_width, sheet.film_height) / k_coarse_step, uvec2(1u));
   vec2 at = (vec2(xy) + 0.5) / float(sheet.scale * k_coarse_step) - 0.5, low = floor(at), part = at - low;
@@ -38,7 +38,7 @@ float grey_at(uvec2 xy) {
   return sum;
 }
 
-// Of the surface traced for the sheet.
+// Grey of a surface traced for the sheet.
 float grey_of(Seen s) {
   if (!s.solid) return k_background;
   vec3 view = normalize(frame.orthographic != 0u ? frame.camera_forward : s.position - frame.camera_origin);

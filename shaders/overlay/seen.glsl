@@ -1,5 +1,5 @@
-// Where in the scene the surface of a pixel of the sheet lies, and where in the sheet a place of the scene. The surface is the
-// one traced through the middle of the pixel; before that is known, the plane of the film's samples, or of the coarse film's.
+// Position in the scene of the surface of a sheet's pixel, and projection of a point of the scene onto the sheet. The surface is
+// the one traced through the pixel's centre; before it is known, the plane of the film's samples, or of the coarse film's.
 #ifndef LUCERNA_OVERLAY_SEEN
 #define LUCERNA_OVERLAY_SEEN
 #include "lib/frame.glsl"
@@ -12,9 +12,9 @@ uniform samplerBuffer coarse_albedo, coarse_normal;
 layout(scalar) readonly buffer CoarseCount { uint coarse_count[]; };
 
 struct Seen {
-  bool solid;       // false where most samples of the pixel met nothing: there is no place then
+  bool solid;       // false if most samples of the pixel have no hit; then there is no position
   float depth;      // along the view axis [m]
-  float size;       // of the pixel there [m]
+  float size;       // width of the pixel there [m]
   vec3 position, normal;
 };
 
@@ -23,7 +23,7 @@ vec3 shift_at(vec2 at) {
   return ndc.x * frame.camera_right - ndc.y * frame.camera_up;
 }
 
-// Of a place of the picture, 0..1 to the right and down, and a depth.
+// Sets depth and position for a point of the picture, 0..1 to the right and down.
 void place_seen(inout Seen s, vec2 at, float depth) {
   vec3 shift = shift_at(at);
   s.depth = depth;
@@ -31,20 +31,20 @@ void place_seen(inout Seen s, vec2 at, float depth) {
                                         : frame.camera_origin + depth * (frame.camera_forward + shift);
 }
 
-// Depth at a place of the picture of the plane that has this depth at another place, and this normal.
+// Depth at the point `to` of the picture of the plane with this normal and this depth at the point `from`.
 float depth_on_plane(vec3 normal, vec2 from, float depth, vec2 to) {
   vec3 a = shift_at(from), b = shift_at(to);
   if (frame.orthographic != 0u) return depth + dot(normal, a - b) / dot(normal, frame.camera_forward);
   return depth * dot(normal, frame.camera_forward + a) / dot(normal, frame.camera_forward + b);
 }
 
-// Number of the film's pixel below a pixel of the sheet.
+// Index of the film's pixel below a pixel of the sheet.
 uint film_pixel_below(uint pixel, uint width) {
   uvec2 xy = uvec2(pixel % width, pixel / width) / sheet.scale;
   return xy.y * sheet.film_width + xy.x;
 }
 
-// `width`, `height`: of the sheet.
+// Visible surface of a pixel of the sheet. `width`, `height`: size of the sheet.
 Seen seen_at(uint pixel, uint width, uint height) {
   uvec2 sheet_xy = uvec2(pixel % width, pixel / width);
   Seen s;
@@ -76,23 +76,23 @@ Seen seen_at(uint pixel, uint width, uint height) {
   return s;
 }
 
-// On the plane of a surface, from the place in the middle of a pixel to those of its neighbours on the right and below [m].
+// Steps on the plane of a surface from a pixel's centre to those of its right and lower neighbours [m].
 mat2x3 pixel_steps(Seen s, uint width, uint height) {
   bool parallel = frame.orthographic != 0u;
   vec3 along = parallel ? frame.camera_forward : (s.position - frame.camera_origin) / max(s.depth, 1e-20);
   float facing = dot(s.normal, along), least = 0.02 * length(along);
-  facing = facing < 0.0 ? min(facing, -least) : max(facing, least);  // bounded on surfaces seen edge-on
+  facing = facing < 0.0 ? min(facing, -least) : max(facing, least);  // limited for surfaces at grazing angles
   float scale = parallel ? 1.0 : s.depth;
   vec3 right = 2.0 / float(width) * frame.camera_right, down = -2.0 / float(height) * frame.camera_up;
   return mat2x3(scale * (right - dot(s.normal, right) / facing * along), scale * (down - dot(s.normal, down) / facing * along));
 }
 
-// Depth at a share t of the way between two places of the picture, on the line between them in the scene.
+// Depth at parameter t (0..1) between two points of the picture, on the line between them in the scene.
 float depth_between(float a, float b, float t) {
   return frame.orthographic != 0u ? mix(a, b, t) : 1.0 / mix(1.0 / a, 1.0 / b, t);
 }
 
-// Pixels from the upper left corner, and depth; behind the eye the depth is not above 0 and the rest means nothing.
+// Projection: pixels from the upper left corner, and depth; 0 or less behind the eye, where the pixels are invalid.
 vec3 to_picture(vec3 position, uint width, uint height) {
   vec3 away = position - frame.camera_origin;
   float depth = dot(away, frame.camera_forward);
@@ -102,7 +102,7 @@ vec3 to_picture(vec3 position, uint width, uint height) {
   return vec3((0.5 * ndc + 0.5) * vec2(width, height), depth);
 }
 
-// Of a picture of that height, at a depth [m].
+// Width of a pixel at a depth [m], in a picture of that height.
 float pixel_size(float depth, uint height) {
   return 2.0 * length(frame.camera_up) / float(height) * (frame.orthographic != 0u ? 1.0 : depth);
 }

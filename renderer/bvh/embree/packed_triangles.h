@@ -4,7 +4,7 @@
 //
 // S. Woop, C. Benthin, I. Wald, "Watertight Ray/Triangle Intersection", JCGT 2(1), 2013. Vertices are moved
 // so that the ray starts at the origin and sheared so that it runs along an axis; then the signs of three 2D
-// edge functions decide. A vertex lands on the same 2D point whichever triangle asks. Rounding can turn an
+// edge functions decide. A vertex has the same 2D point for all of its triangles. Rounding can turn an
 // edge function into zero (its two products round to the same float) but never change its sign, and zeros are
 // recomputed exactly. So the signs are those of exact geometry on those 2D points, and no ray passes between
 // triangles that share an edge or a vertex.
