@@ -20,14 +20,14 @@ namespace lucerna::film {
 struct PreviewShares {
   double stale = 0;     ///< light from before the last edit, by luminance
   double filtered = 0;  ///< filtered light of the present, by luminance
-  /// Of the tiles, as samples have judged it that the pictures before had not used. None: no preview.
+  /// Error of the tiles, calibrated by samples that earlier pictures had not used. None: no preview.
   std::optional<ShownError> error;
 };
 
-/// Of the film's pixels, which have samples.
+/// Which of the film's pixels have samples.
 enum class Sampled { none, some, all };
 
-/// Where the picture was taken from.
+/// The camera of a picture.
 struct PreviewCamera {
   shared::PreviewCamera axes{};
   bool orthographic = false;
@@ -41,7 +41,7 @@ class Preview {
 
   /// True if pictures of that size can have a preview on this device.
   static bool fits(const gpu::Limits& limits, uint32_t width, uint32_t height);
-  /// Nothing has been shown yet.
+  /// Resets: no picture has been shown yet.
   void forget();
   /// Starts a new picture: the last one becomes the history. `scale`: known factor of the edit on all light;
   /// `repainted`: surfaces may have other colours; `same_light`: only the camera or the computation of light
@@ -49,18 +49,17 @@ class Preview {
   void keep(const vec3& scale = vec3(1), bool repainted = false, bool same_light = false);
   /// Starts a new picture with better light. The history stays unchanged.
   void better();
-  /// Film -> its picture, of the layers that show light (View::layer up to shared::k_layer_primary + 3).
-  /// `draft`: a film of the same view with pixels of whole pixels, or null; `filtered`: noise is filtered,
-  /// not only where there are no samples. `seen`: the surfaces that the film's pixels show, or null
-  /// (shaders/film/preview_look.comp). Films must fit(). Throws Error when memory is short. The stream is
-  /// run.
+  /// Makes the film's picture, for layers that show light (View::layer up to shared::k_layer_primary + 3).
+  /// `draft`: a preview sample, a film of the same view whose pixels cover whole pixels, or null. `filtered`:
+  /// filters pixels with samples too. `seen`: visible surfaces of the film's pixels, or null
+  /// (shaders/film/preview_look.comp). Films must fit(). Throws Error if memory is short. Runs the stream.
   PreviewShares develop(gpu::Stream& stream, const Film& film, const Film* draft, const View& view,
                         const PreviewCamera& camera, bool filtered, Sampled sampled = Sampled::some,
                         const gpu::Buffer* seen = nullptr);
   /// True if there is a history.
   bool has_history() const { return history_.known; }
-  /// Has the device compile what an edit needs – recall(), and develop() in other light –, which takes it
-  /// seconds, so that the first one does not wait for it. After develop() or take(). The stream is run.
+  /// Makes the device compile the kernels of edits (recall(), and develop() in changed light), which takes
+  /// seconds, so that the first edit does not wait. After develop() or take(). Runs the stream.
   void warm(gpu::Stream& stream, const Film& film);
   /// Makes the history, reprojected to this camera, the film's picture: it can be shown without new light.
   /// Requires has_history(). Newly visible parts are filled from their surroundings. Throws and runs the

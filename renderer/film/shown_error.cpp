@@ -8,23 +8,22 @@ namespace {
 
 using shared::PreviewTile;
 
-// Of what was measured before, how much counts beside the next measurement.
+// Weight of earlier measurements at the next measurement.
 constexpr double k_decay = 0.25;
-// Standard deviation of the whole picture's ratio over the one expected first, and of a level's over that of
-// the level above.
+// Standard deviation of the whole picture's ratio relative to the first expectation, and of a level's ratio
+// relative to that of the level above.
 constexpr double k_first_spread = 1, k_spread = 0.7;
 constexpr double k_most_first = 4;
-// Half sides of the neighbourhoods that are pooled [tiles], and the standard deviation of a level's ratio
-// over that of the level above.
+// Half sides of the pooled neighbourhoods [tiles].
 constexpr int k_reaches[] = {4, 1, 0};
-// Over how many tiles to each side noise is averaged: a tile whose few samples met no rare path seems to have
-// none.
+// Tiles to each side over which noise is averaged: a tile whose few samples have no rare path seems
+// noise-free.
 constexpr int k_noise_reach = 3;
 constexpr double k_least_ratio = 0.02;
 // Mean square of the errors of 3x3 pixels' means over the square of a tile's mean error.
 constexpr double k_fine = 2;
-// Mean deviation of 3x3 pixels' means in a tile over the quadratic mean estimated so; measured after edits of
-// rooms (lucerna bench latency), where errors of filtered light are finer than k_fine says.
+// Mean deviation of 3x3 pixels' means in a tile over the quadratic mean from k_fine; measured after edits of
+// rooms (lucerna bench latency), where errors of filtered light are finer than k_fine assumes.
 constexpr double k_mean_size = 1.08;
 
 double quantile(std::vector<double> values, double at) {
@@ -33,7 +32,7 @@ double quantile(std::vector<double> values, double at) {
   return values[n];
 }
 
-/// Sums over the squares of 2 * reach + 1 tiles around each, cut off at the edges.
+/// Sums over squares of 2 * reach + 1 tiles around each tile, clipped at the edges.
 template <class T, class Add>
 std::vector<T> sums_around(const std::vector<T>& of, int across, int reach, const Add& add) {
   const int down = int(of.size()) / across;
@@ -49,12 +48,12 @@ std::vector<T> sums_around(const std::vector<T>& of, int across, int reach, cons
   return all;
 }
 
-/// Sums over tiles, each by a weight that makes bright and dark ones alike.
+/// Sums over tiles, weighted so that bright and dark tiles count equally.
 struct Sums {
   double square = 0, expected = 0, variance = 0;
 
   void add(const Sums& o) { square += o.square, expected += o.expected, variance += o.variance; }
-  /// square/expected, given that a ratio of 1 is expected, with this spread.
+  /// Estimated square/expected; the prior is a ratio of 1 with this spread.
   double ratio(double spread) const {
     if (expected <= 0) return 1;
     const double own = variance / (expected * expected), prior = spread * spread;
@@ -88,7 +87,7 @@ void ShownJudge::measure(std::span<const PreviewTile> tiles, uint32_t across) {
   }
   if (known == 0) return;
   tiles_.resize(tiles.size());
-  // Measurements of little noise count most.
+  // Measurements with little noise have the largest weight.
   const double weight = known / std::max(sum, 1e-12);
   for (size_t i = 0; i < tiles.size(); ++i) {
     Measured& m = tiles_[i];

@@ -1,11 +1,11 @@
 #pragma once
-// How wrong the picture in the window is, tile by tile, calibrated by samples that it has not used.
+// Error of the picture in the window, tile by tile, calibrated by samples that it has not used.
 //
-// A preview expects an error of each tile (PreviewTile::error), which has about the right pattern but not
-// always the right size. Samples taken after a picture was shown measure its squared error without bias, but
-// with much noise (shaders/film/preview_judge.comp). What is expected is corrected by the ratio of the two
-// over the whole picture, over neighbourhoods of 9x9 and 3x3 tiles and in the tile itself, at each level
-// weighed by the variance of the measurements.
+// A preview estimates an error for each tile (PreviewTile::error), with approximately the right pattern but
+// not always the right size. Samples taken after a picture was shown measure its squared error without bias,
+// but with much noise (shaders/film/preview_judge.comp). The estimate is multiplied by the ratio of the two
+// for the whole picture, for neighbourhoods of 9x9 and 3x3 tiles and for the tile itself, at each level
+// weighted by the variance of the measurements.
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,17 +22,16 @@ struct ShownError {
 
 class ShownJudge {
  public:
-  /// Another picture begins: measurements are dropped; half of what they said of the size of expected errors,
-  /// as a power, is kept.
+  /// Starts another picture: drops measurements, and keeps the square root of the picture's ratio.
   void restart();
-  /// The tiles of what is shown now, in raster order; `across` in a row. `measured`: their square and noise
-  /// are of the picture before. No tiles: no error.
+  /// Error of the shown picture from its tiles, in raster order, `across` in a row. `measured`: their
+  /// `square` and `noise` are valid, for the previous picture. Without tiles, no error.
   ShownError judge(std::span<const shared::PreviewTile> tiles, uint32_t across, bool measured);
-  /// True squared errors over the expected ones, over the picture judged last.
+  /// True squared errors over the expected ones, in the last measured picture.
   double ratio() const { return ratio_; }
 
  private:
-  /// The square of a tile's error as measured so far, times `weight`, and the variance of that sum.
+  /// Sum of a tile's measured squared errors, times `weight`, and the variance of that sum.
   struct Measured {
     double square = 0, weight = 0, variance = 0;
   };

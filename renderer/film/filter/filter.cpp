@@ -22,8 +22,8 @@ Filter::Filter(gpu::Device& device, gpu::ShaderCompiler& compiler)
 
 namespace {
 
-// Pixels from one of the window's to the next, of each regression: wider and wider, and once more at the end,
-// so that no pattern of the wide ones is left.
+// Stride of the window's pixels in each regression: increasing, and a small one at the end, so that no
+// pattern of the wide ones remains.
 constexpr uint32_t k_strides[] = {1, 2, 4, 1};
 
 // Pixels fitted in one work item.
@@ -113,7 +113,7 @@ void Filter::plan_component(uint32_t component, Film& filtered) {
   run(pack_, {{"FilterLights", &lights_}}, pixels);
   run(tame_, {{"filter_lights", &lights_}, {"FilterTamed", &tamed_}}, pixels);
   run(outliers_, {{"filter_lights", &lights_}, {"filter_tamed", &tamed_}}, uint32_t(taken_.bytes() / 16));
-  // What later is compared with are the samples without their outliers.
+  // Later comparisons use the samples without their outliers.
   run(noise_, {{"filter_noisy", &tamed_}, {"FilterMeasured", &lights_}}, pixels);
   run(guide_, {{"filter_lights", &lights_}, {"FilterGuides", &guides_}}, pixels);
   const gpu::Buffer *before = &lights_, *guide = &guides_, *after = &chosen_;

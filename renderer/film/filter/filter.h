@@ -1,5 +1,5 @@
 #pragma once
-// The filter for pictures: a film -> a film of the same picture with less noise. README.md.
+// The picture filter: makes a film of the same picture with less noise. Method: README.md.
 #include <deque>
 #include <functional>
 
@@ -13,17 +13,17 @@ class Filter {
   /// Compiles its kernels; throws Error, located.
   Filter(gpu::Device& device, gpu::ShaderCompiler& compiler);
 
-  /// Filters each component of `film`, as its groups of lights are mixed, into `filtered`, a film of the same
-  /// size and of one group: its halves are the filtered halves, its samples and surfaces those of `film`.
-  /// Pixels with less than two samples stay as they are. `seen`: what surfaces the pixels show, in mirrors
-  /// and through glass too, a texel each as shaders/shared/preview.h says; null: not known. `looked_up`:
-  /// components (bits) that look records up; what these err by, where the film knows it, is not taken for
-  /// light. Runs the stream. Throws Error when memory is short or the film is larger than a storage buffer;
-  /// the stream has nothing recorded then.
+  /// Filters each component of `film`, with its mix of light groups, into `filtered`, a film of the same size
+  /// with one group: halves are the filtered halves; samples and surfaces are those of `film`. Pixels with
+  /// less than two samples are unchanged. `seen`: visible surfaces of the pixels, also in mirrors and through
+  /// glass, one texel each (shaders/shared/preview.h); null: unknown. `looked_up`: components (bits) that
+  /// look up records; their errors, if the film has them, do not count as light. Runs the stream. Throws
+  /// Error, with nothing recorded on the stream, if memory is short or the film is larger than a storage
+  /// buffer.
   void apply(gpu::Stream& stream, const Film& film, Film& filtered, const gpu::Buffer* seen = nullptr,
              uint32_t looked_up = 0);
 
-  /// The same in work items, between which other work may run: begin(), then step() until it returns false.
+  /// Likewise, in work items, between which other work may run: begin(), then step() until it returns false.
   /// The films, `seen` and their contents must stay unchanged until then, or until release().
   void begin(const Film& film, Film& filtered, const gpu::Buffer* seen = nullptr, uint32_t looked_up = 0);
   bool step(gpu::Stream& stream);

@@ -11,7 +11,7 @@ namespace {
 constexpr int k_noise_reach = 2, k_bias_reach = 9, k_tile_reach = 2;
 // Share of the samples' own variance that a comparison with them leaves open for a tile (README.md).
 constexpr double k_unseen = 0.4;
-// Of the median luminance: what differences in the dark are compared with.
+// Minimum luminance for relative differences, over the median luminance.
 constexpr double k_dark = 0.05;
 
 struct Grid {
@@ -19,7 +19,7 @@ struct Grid {
   std::vector<double> values;
 };
 
-/// Means over squares of 2 * reach + 1, cut off at the edges.
+/// Means over squares of 2 * reach + 1, clipped at the edges.
 std::vector<double> box_mean(const Grid& grid, int reach) {
   const int w = int(grid.width), h = int(grid.height);
   std::vector<double> rows(grid.values.size()), out(grid.values.size());
@@ -45,7 +45,7 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Squares of what differences are compared with: of the luminance around, and a share of the picture's.
+/// Squares of the reference for relative differences: the luminance around, and a share of the picture's.
 std::vector<double> scales(const Grid& luminance, int reach) {
   std::vector<double> scale = box_mean(luminance, reach);
   const double dark = k_dark * median(scale);
@@ -76,8 +76,8 @@ Halves halves_of(const Image& image) {
 
 double square(double x) { return x * x; }
 
-/// Of a mean of the filtered halves f and g, beside the samples' a and b, of which `variance` is that of a
-/// half: noise, and noise and bias together, each without bias itself. Below 0 by chance.
+/// Estimates for a mean of the filtered halves f and g, from the samples' halves a and b, each of variance
+/// `variance`: noise, and noise and bias together. Both are unbiased and may be below 0.
 struct Evidence {
   double noise, all;
 };
@@ -86,7 +86,7 @@ Evidence evidence(double f, double g, double a, double b, double variance) {
   return {noise, 0.5 * (square(f - b) + square(g - a)) - variance - noise};
 }
 
-/// The averaged evidence of each place as a variance: noise alone where that is more.
+/// The averaged evidence of each position as a variance: at least the noise.
 std::vector<double> variances(Grid noise, Grid all, const std::vector<double>& scale, int noise_reach,
                               int all_reach) {
   for (size_t i = 0; i < scale.size(); ++i)
@@ -139,7 +139,7 @@ void estimate_tiles(FilterError& error, const Image& image, const Halves& s, con
         const size_t i = size_t{y} * image.width + x;
         squares += square(double{error.pixels[i]} / std::max({f.mean[i], mean.values[t], luminance_floor}));
       }
-    samples.values[t] = v / (n * n) / 2;  // of the mean of both halves
+    samples.values[t] = v / (n * n) / 2;  // mean of both halves
     const Evidence e = evidence(fe / n, fo / n, se / n, so / n, v / (n * n));
     noise.values[t] = e.noise, all.values[t] = e.all;
     error.tiles[t].luminance = mean.values[t];
