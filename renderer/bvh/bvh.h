@@ -1,5 +1,5 @@
 #pragma once
-// The acceleration structure: input, layout for the device, and the interface that every tracer answers.
+// The acceleration structure: input, layout for the device, and the interface of all tracers.
 //
 // Rays and hits are the wavefront's own structs (shaders/shared/ray.h), so that a host tracer can work in
 // place on the mapped queue.
@@ -24,17 +24,17 @@ struct Triangles {
 
 /// Kind of query. The numbers are the LUCERNA_QUERY of shaders/trace.comp.
 enum class Query {
-  closest = 0,     ///< nearest hit over all triangles; at equal distance the lower primitive id
-  any_opaque = 1,  ///< is there an opaque triangle within (0, tmax)? hit.prim is k_no_hit when there is none;
-                   ///< otherwise anything else (not every tracer knows which triangle it was)
-  closest_non_opaque = 2,  ///< nearest hit among the non-opaque triangles alone; ties as for closest
+  closest = 0,             ///< nearest hit over all triangles; at equal distance the lower primitive id
+  any_opaque = 1,          ///< any opaque triangle within (0, tmax): hit.prim is k_no_hit if there is none,
+                           ///< otherwise another value (not every tracer determines the triangle)
+  closest_non_opaque = 2,  ///< nearest hit among non-opaque triangles only; ties as for closest
 };
 
-/// Deepest path of a binary tree, in inner nodes.
+/// Maximum depth of a binary tree, in inner nodes.
 inline constexpr uint32_t k_max_depth = 32;
 /// Entries of the device's traversal stack: three for each pair of levels of the binary tree.
 inline constexpr uint32_t k_stack = k_max_depth / 2 * 3;
-/// Most triangles in a leaf.
+/// Maximum triangles in a leaf.
 inline constexpr uint32_t k_max_leaf = 4;
 
 }  // namespace lucerna::bvh

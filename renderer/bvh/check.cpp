@@ -45,7 +45,7 @@ class Checker {
     if (wrong_.empty()) wrong_ = std::move(what);
   }
 
-  /// `held`: entries on the stack when a traversal comes to the node, at most.
+  /// `held`: maximum entries on the stack when a traversal reaches the node.
   void node(uint32_t index, const Box& parent, uint32_t level, uint32_t held) {
     if (index != next_node_++) return fail(fmt::format("node {} is out of depth-first order", index));
     if (index >= data_.node_count) return fail("link beyond the last node");

@@ -146,7 +146,7 @@ class Writer {
   BvhData data_;
   float area_ = 1;
   std::vector<uint32_t> heights_;  // of the binary tree's nodes, 0 for leaves
-  std::vector<uint32_t> prims_;    // of the leaf at hand
+  std::vector<uint32_t> prims_;    // primitives of the current leaf
 };
 
 }  // namespace

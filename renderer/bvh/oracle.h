@@ -1,6 +1,5 @@
 #pragma once
-// The truth that tracers are held to: every ray against every triangle, in double precision. For tests;
-// O(rays x triangles).
+// Reference for tests of tracers: every ray against every triangle, in double precision; O(rays x triangles).
 #include <algorithm>
 
 #include "bvh/bvh.h"

@@ -241,7 +241,7 @@ void Workspace::add_mix_commands() {
                     },
                 .run =
                     [this](const Arguments& a) {
-                      // Rules part at these characters; ? stands for any.
+                      // Rules are separated by these characters; ? matches any.
                       std::string light = a.text("light");
                       for (char& c : light) c = c == ';' || c == '=' ? '?' : c;
                       std::string& rules = edit().settings["relight.groups"];

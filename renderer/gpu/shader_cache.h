@@ -1,5 +1,5 @@
 #pragma once
-// SPIR-V kept on disk between runs (internal to gpu/).
+// SPIR-V cache on disk (internal to gpu/).
 #include <cstdint>
 #include <filesystem>
 #include <optional>

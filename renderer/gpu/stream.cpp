@@ -125,7 +125,7 @@ VkDescriptorSet Stream::Impl::allocate_set(VkDescriptorSetLayout layout) {
       ++sets_made;
       return set;
     }
-    // This pool ran out of one kind of descriptor: go on with the next.
+    // This pool has no more descriptors of one kind: continues with the next.
     sets_made = ++index * k_sets_a_pool;
   }
   if (index >= set_pools.size()) {

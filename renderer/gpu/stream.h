@@ -37,7 +37,7 @@ class Stream {
   /// the kernel is not in the table.
   void dispatch(const Kernel& kernel, const Resources& resources, const void* push, size_t push_bytes,
                 uint32_t groups, const std::string& stage = {});
-  /// The same with workgroup counts read from three uint32 at `offset` of `arguments` when it runs, each at
+  /// Likewise, with workgroup counts read from three uint32 at `offset` of `arguments` when it runs, each at
   /// most k_most_groups (see indirect_groups() in shaders/lib/invocation.glsl).
   void dispatch_indirect(const Kernel& kernel, const Resources& resources, const void* push,
                          size_t push_bytes, const Buffer& arguments, uint64_t offset,
@@ -59,8 +59,8 @@ class Stream {
   /// Submits the recorded work and waits for it; host-visible memory is then coherent for the host. Does
   /// nothing if nothing was recorded.
   void run();
-  /// Drops the work that is recorded and has not run: for work that could not be recorded as a whole, whose
-  /// buffers may go before the next run.
+  /// Drops recorded work that has not run, for work that could not be recorded completely, whose buffers may
+  /// be freed before the next run.
   void discard();
   /// Device milliseconds per stage since the last call, summed over dispatches of the same stage, in order of
   /// first use.

@@ -9,14 +9,14 @@ namespace lucerna::overlay {
 
 class LookThrough {
  public:
-  /// `scene_defines`: of the kernels that know the scene's surfaces. Kernels are compiled when they are first
-  /// called for. Both must outlive it.
+  /// `scene_defines`: those of kernels that use the scene's surfaces. Kernels are compiled on first use.
+  /// Device and compiler must outlive it.
   LookThrough(gpu::Device& device, gpu::ShaderCompiler& compiler, gpu::Defines scene_defines);
 
-  /// Surfaces are others.
+  /// Drops the surfaces, after a change of the scene's.
   void forget() { known_ = false; }
-  /// Traces that view unless done. The wavefront must have `frame`, the picture's. False if the canvas
-  /// cancels it: then there is no data. Throws Error: memory.
+  /// Traces the surfaces of that view, unless done. The wavefront must have `frame`, the picture's. False,
+  /// and without data, if the canvas cancels it. Throws Error: out of memory.
   bool look(const Canvas& canvas, const shared::Frame& frame);
   shared::SightGrid grid() const { return known_ ? sight_.grid() : k_no_sight; }
   /// Binds what lookup_place.glsl reads, with or without data.

@@ -29,8 +29,8 @@ extern const std::array<const char*, k_component_count> k_component_expressions;
 struct Automaton {
   struct State {
     std::array<uint8_t, k_scatter_events> next{};  ///< by event
-    uint8_t accept = k_no_component;  ///< expression that a path meeting light in this state belongs to
-    uint8_t reachable = 0;            ///< bit i: expression i can still be reached, here or further on
+    uint8_t accept = k_no_component;               ///< expression of a path that hits light in this state
+    uint8_t reachable = 0;  ///< bit i: expression i can still be reached, here or later
   };
   std::vector<State> states;
 
@@ -58,15 +58,15 @@ bool matches(const std::string& expression, std::string_view word);
 inline constexpr int k_part_count = 4;
 inline constexpr uint32_t k_caustic_part = 3;  ///< over mirrors and glass alone
 
-/// Where a lookup of such parts (of a record, of photons) takes the place of tracing on from a diffuse lobe.
+/// Lookups of such parts (of a record, of photons) that replace further tracing from a diffuse lobe.
 struct LookupRoutes {
   /// By automaton state at the vertex, for each part: the component it contributes to; k_no_component: left
   /// to the path. Empty: no lookups.
   std::vector<std::array<uint8_t, k_part_count>> component;
   uint32_t parts = 0;   ///< bit p: some state reads part p
   uint32_t traced = 0;  ///< components that paths still compute besides lookups (bit i)
-  /// By state, if not empty: nonzero where light paths connected to the camera replace the light that an eye
-  /// path meets.
+  /// By state, if not empty: nonzero if light paths connected to the camera replace the light that an eye
+  /// path hits.
   std::vector<uint8_t> replaced;
 };
 
@@ -91,9 +91,9 @@ LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_
 /// there is nothing else, whose parts are then gathered too (caustics only if they exist).
 LookupRoutes record_routes(const Automaton& automaton, uint32_t parts, bool recursive, bool caustics);
 
-/// For paths that have passed lookups on purpose, of the picture, or of records with `enabled` their parts:
-/// tertiary light is looked up at every further diffuse vertex, the first that is not passed too, where
-/// records look it up (`own`: their routes); else nothing is.
+/// For gathering paths, which have intentionally passed lookups, of the picture, or of records with `enabled`
+/// their parts: tertiary light is looked up at every further diffuse vertex, up to the first that is not
+/// passed too, if records look it up (`own`: their routes); otherwise nothing.
 LookupRoutes gather_routes(const Automaton& automaton, uint32_t enabled, const LookupRoutes& own);
 
 }  // namespace lucerna::paths

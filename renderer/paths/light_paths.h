@@ -15,8 +15,7 @@ struct LightAutomaton {
     std::array<uint8_t, k_scatter_events> next{};  ///< by event
     /// Component, by the state of Automaton in which the eye path arrives.
     std::vector<uint8_t> component;
-    /// The same for an eye path of one diffuse event: the part (k_part_count) of the light that arrives
-    /// there.
+    /// Likewise, for an eye path of one diffuse event: the part (k_part_count) of the light arriving there.
     uint8_t part = k_no_component;
   };
   std::vector<State> states;
@@ -24,11 +23,11 @@ struct LightAutomaton {
   uint8_t after(uint8_t state, Event event) const { return states[state].next[static_cast<int>(event)]; }
 };
 
-/// Throws Error where there are more than 31 states.
+/// Throws Error if there are more than 31 states.
 LightAutomaton reverse(const Automaton& automaton);
 
-/// As it is uploaded, in the form of pack(): bits 0-7 next on D, 8-15 on G, 16-23 on S, 24-26 the part, if
-/// its light is stored, else k_component_count; bit 27: something can still be stored, here or further on;
+/// The uploaded automaton, in the form of pack(): bits 0-7 next on D, 8-15 on G, 16-23 on S, 24-26 the part,
+/// if its light is stored, else k_component_count; bit 27: something can still be stored, here or further on;
 /// bits 29-30: `account`, the component that rays are accounted to. `parts` bit p: light of part p is stored.
 std::vector<uint32_t> pack(const LightAutomaton& automaton, uint32_t parts, uint32_t account);
 

@@ -10,7 +10,7 @@ namespace lucerna::plan {
 
 /// The table, in display order.
 const std::vector<OptionInfo>& options();
-/// Null when there is no such key.
+/// Null if there is no such key.
 const OptionInfo* find_option(const std::string& key);
 
 /// Values of all options; starts with the defaults.

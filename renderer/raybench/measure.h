@@ -8,7 +8,7 @@
 
 namespace lucerna::raybench {
 
-/// Something that traces a set; returns the seconds that it took.
+/// Traces a set; returns the time in seconds.
 struct Tracer {
   std::string name;
   std::function<double(const RaySet&, std::span<shared::Hit>)> trace;

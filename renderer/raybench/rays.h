@@ -21,7 +21,7 @@ struct RaySet {
 
 /// `primary`: from the camera, jittered, 8x8 tiles in Morton order; `diffuse`: from their hits,
 /// cosine-distributed; `diffuse 2`: from those rays' hits; `shadow`: from the primary hits to lights chosen
-/// as the renderer does (to points in the scene's box where it has none), ending just short of them. About
+/// like the renderer (to points in the scene's box without lights), ending just before them. About
 /// `count` primary rays; the others as many as there are hits. `trace` answers closest queries. Same seed,
 /// same rays.
 std::vector<RaySet> make_rays(const FlatFile& scene, uint32_t count, uint32_t seed, const TraceBatch& trace);

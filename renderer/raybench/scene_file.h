@@ -1,7 +1,6 @@
 #pragma once
-// A flattened scene with its tree and camera as one file: what the stand-alone ray bench reads, so that a
-// machine with nothing but a Vulkan driver can trace a scene without a glTF loader, image IO or a BVH
-// builder.
+// A flattened scene with its tree and camera as one file for the stand-alone ray bench, so that a machine
+// with only a Vulkan driver can trace a scene without a glTF loader, image IO or a BVH builder.
 #include <filesystem>
 #include <string>
 
@@ -18,7 +17,7 @@ struct FlatFile {
   scene::Camera camera;
 };
 
-/// Written under a temporary name, then renamed. Throws Error when that fails.
+/// Written under a temporary name, then renamed. Throws Error if that fails.
 void write(const std::filesystem::path& file, const FlatFile& flat);
 /// Throws Error: missing, cut short, of another version or another machine's byte order. Files come from
 /// write(); their content is trusted beyond that.

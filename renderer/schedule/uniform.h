@@ -32,15 +32,15 @@ class UniformSchedule {
     start_pass();
   }
   bool done() const { return sample_ >= samples_ || blocks_ == 0; }
-  /// Samples that every pixel has; more than samples() where fewer were wanted later.
+  /// Minimum number of samples of a pixel; above samples() if that was reduced later.
   uint32_t complete() const { return sample_; }
-  /// More may be wanted (or fewer) at any time. A pass that has begun is completed as it was begun.
+  /// Changes the wanted number at any time. A pass in progress is completed unchanged.
   void set_samples(uint32_t samples) {
     samples_ = samples;
     if (block_ == 0) start_pass();
   }
   uint32_t samples() const { return samples_; }
-  /// Passes that are complete.
+  /// Number of complete passes.
   uint32_t passes() const { return passes_; }
 
   /// Samples a pixel of every block, in raster order.
@@ -72,7 +72,7 @@ class UniformSchedule {
  private:
   static constexpr uint32_t k_least_pass = 16;
   void start_pass() {
-    uint32_t level = samples_;  // that the pass must not go beyond
+    uint32_t level = samples_;  // maximum samples of the pass
     uint32_t behind = blocks_;
     if (!have_.empty()) {
       sample_ = *std::min_element(have_.begin(), have_.end());
@@ -82,10 +82,10 @@ class UniformSchedule {
       if (behind == blocks_) have_.clear();
     }
     if (done()) return;
-    // The first passes are single, so that something is seen at once; then as many samples as fill the
+    // The first passes have one sample, so that a picture appears soon; then as many samples as fill the
     // device, or twice as many as before: adding to the film costs the same for one sample as for several.
     const uint32_t fitting = std::max(k_least_pass, slots_ / std::max(1u, 64 * behind));
-    // They end at every power of two, whatever fits.
+    // Passes end at every power of two, whatever fits.
     const uint32_t next_power = sample_ > 0 ? 2 * std::bit_floor(sample_) : 1;
     pass_ = one_sample_ ? 1 : std::min({fitting, next_power - sample_, level - sample_});
   }

@@ -14,7 +14,7 @@ constexpr uint32_t k_first_samples = 8;
 // in tracing time.
 constexpr uint64_t k_more_samples = 2;
 constexpr double k_more_seconds = 3;
-// The filtered picture's error is estimated again when there are so many times the samples.
+// Growth of the number of samples after which the filtered picture's error is estimated again.
 constexpr double k_more_to_judge = 1.2;
 
 }  // namespace

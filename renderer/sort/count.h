@@ -11,10 +11,10 @@ namespace lucerna::sort {
 /// queue is.
 ///
 /// Kernels find their share of the work from the count itself, so that nothing has to be dispatched
-/// indirectly: invocations are enough for `most` elements, few as they are (see Runs), and those without work
-/// return at once.
+/// indirectly: there are enough invocations for `most` elements (few, see Runs), and those without work
+/// return immediately.
 struct Count {
-  uint32_t most = 0;                    ///< elements, or the most that there may be
+  uint32_t most = 0;                    ///< number of elements, or its maximum
   const gpu::Buffer* buffer = nullptr;  ///< holds the number; more than `most` counts as `most`
   uint64_t offset = 0;                  ///< bytes, a multiple of 4
 };

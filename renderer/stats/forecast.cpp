@@ -154,7 +154,7 @@ std::optional<Band> seconds_to(const Ledger& ledger, double target) {
   if (entries.empty() || !entries.back().has_error || !(target > 0)) return std::nullopt;
   target = paths_target(ledger, target);
   if (!(target > 0)) return std::nullopt;
-  // Reached for good: after the last line that is over the target.
+  // Reached permanently: after the last line above the target.
   size_t reached = entries.size();
   while (reached > 0 && entries[reached - 1].has_error && entries[reached - 1].error[0] <= target) --reached;
   if (reached < entries.size()) {

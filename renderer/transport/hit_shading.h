@@ -1,7 +1,7 @@
 #pragma once
-// Shades the hits of a wavefront class by class (transport/hit_classes.h), once so many have been shaded that
-// compiling the kernels takes less time than they save. Before that, and for few paths, one kernel shades
-// all. The pictures are identical; the choice depends on counts alone.
+// Shades the hits of a wavefront by class (transport/hit_classes.h), as soon as the number of hits is so
+// large that compiling the kernels takes less time than they save. Before that, and for few paths, one kernel
+// shades all. The pictures are identical; the choice depends only on counts.
 #include <future>
 
 #include "gpu/stream.h"

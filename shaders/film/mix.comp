@@ -1,6 +1,6 @@
-// Groups of lights as they are mixed -> picture, of all components: for the moment in which a mix is changed. What the film
-// keeps for it (LUCERNA_GROUP_SUMS: its sums in short) and the tone curve (LUCERNA_TONE_CURVE) are compiled in: lavapipe
-// computes every side of a branch, and a loop that is to run not at all once.
+// Picture of all components from the mix of light groups, for immediate display of a changed mix. The film's format
+// (LUCERNA_GROUP_SUMS: compact sums) and the tone curve (LUCERNA_TONE_CURVE) are compiled in, because lavapipe executes both
+// sides of a branch, and a loop of zero iterations once.
 #include "lib/variants.glsl"
 #include "film/mix.glsl"
 #include "lib/invocation.glsl"

@@ -11,7 +11,7 @@ layout(push_constant, scalar) uniform Push { OverlayPush push; };
 layout(scalar) buffer Picture { uint picture[]; };
 
 const float k_half_line = 0.55, k_dot = 1.5;               // pixels
-const float k_least_ring = 1.5, k_full_ring = 10.0;        // pixels from the middle to the rim as it is seen
+const float k_least_ring = 1.5, k_full_ring = 10.0;        // apparent width [pixels] of the first and the full visibility
 const float k_faintest = 0.15, k_ink = 0.9, k_fill = 0.06; // shares
 
 void main() {

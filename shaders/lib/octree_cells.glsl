@@ -5,7 +5,7 @@
 // which is what octree_cell() scales (exactly, by a power of two) and floors. With u = 2^-24, |q(x) - (x - origin)| <=
 // u * edge, likewise for the centre, and |x - c| <= r (1 + 4u). So q(x) lies within safe_radius(r) + 2u * edge of q(c), on
 // every axis and in the distance. The differences below err by another u * edge each, the root by 4u of its value. A
-// margin of 32u * edge covers all. For centres beyond an open root their distance from its origin stands for the edge.
+// margin of 32u * edge covers all. For centres beyond an open root their distance from its origin replaces the edge.
 //
 // The outermost cells of an open root have no outer faces: there, the position within a row's square or a cell is unknown,
 // except that it is within the sphere's box.

@@ -1,20 +1,20 @@
-// The error of a pixel as it is seen: the one definition, read by C++ and GLSL.
+// The error of a pixel as seen: its only definition, read by C++ and GLSL.
 //
-// Light is seen relative to the light around it; what the display shows as black or as white has no visible
-// noise. All quantities are luminances (Rec.709) of the film, under the exposure and the tone curve in force:
+// Light is perceived relative to the light around it; display black and display white have no visible noise.
+// All quantities are luminances (Rec.709) of the film, with the present exposure and tone curve:
 // - Y: the pixel's mean. A, B: means of its two halves, independent of each other. L = min(A, B).
 // - shown(y) = min(y, white), with white = tone_white(curve) / exposure.
-// - D = shown(Y) - shown(L): by how much the pixel as shown differs from its darker half. Below white it is
+// - D = shown(Y) - shown(L): difference of the shown pixel from its darker half. Below white it is
 //   |A - B| / 2, whose square is an unbiased estimate of the variance of Y.
-// - local: mean of shown(Y) over the 5x5 pixels around, of those that are in the picture and have two
-// samples.
+// - local: mean of shown(Y) over those of the 5x5 pixels around that are in the picture and have two
+//   samples.
 // - scale = max(local, shown(Y) / k_seen_most, floor), with floor = k_luminance_floor / exposure.
 // - e = D / scale, 0 .. k_seen_most, without unit: the error as seen. 0.1 is a tenth of the light around.
 //
 // The bound keeps a single firefly from outweighing its picture. Components use the same scale.
 // With d_c = (A_c - B_c) / 2 of component c, the sum of d_c over the components is (A - B) / 2, and
 // e_c = |d_c| / scale times the part of the sum's deviation that is seen, D / (|A - B| / 2). A component that
-// is off has e_c = 0. The squares of independent components' errors add up to e^2 in the mean.
+// is off has e_c = 0. The expected squares of independent components' errors add up to e^2.
 //
 // The error of a picture is the root of the mean of e^2 over its pixels, and a component's share of it is its
 // sum of e_c^2 over that of all components. The error that stops a tile is a mean of min(e, 1)

@@ -1,6 +1,6 @@
 #pragma once
-// Embree as it comes: its own triangles, one ray at a time. The yardstick of `lucerna bench rays`; nothing
-// renders with it.
+// Embree with its own triangles, one ray at a time. The yardstick of `lucerna bench rays`; not used for
+// rendering.
 #include <memory>
 #include <span>
 
@@ -8,8 +8,8 @@
 
 namespace lucerna::bvh {
 
-/// Robust flag on, medium build quality, no filters. Unlike our tracers it takes any of the hits at equal
-/// distance, counts t = 0, and lets some rays aimed exactly at vertices through.
+/// Robust flag on, medium build quality, no filters. Unlike the other tracers it returns any of the hits at
+/// equal distance, includes t = 0, and misses for some rays aimed exactly at vertices.
 class EmbreeReference {
  public:
   /// `threads` trace, the caller included; 0: one a core. Throws Error: out of memory.
@@ -17,7 +17,7 @@ class EmbreeReference {
   ~EmbreeReference();
 
   /// Query::closest, or any_opaque with every triangle taken as opaque (hit.prim is 0 or k_no_hit).
-  /// closest_non_opaque is not answered: throws Error.
+  /// closest_non_opaque is not supported: throws Error.
   void trace(Query query, std::span<const shared::Ray> rays, std::span<shared::Hit> hits) const;
 
  private:

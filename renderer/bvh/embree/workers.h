@@ -1,5 +1,5 @@
 #pragma once
-// A few threads that share out one loop at a time.
+// A few threads that execute one loop at a time together.
 #include <condition_variable>
 #include <cstdint>
 #include <functional>
@@ -9,8 +9,8 @@
 
 namespace lucerna::bvh {
 
-/// Threads that stay between calls (starting one costs more than tracing a small queue). They are started by
-/// the thread that makes the object and so inherit its priority.
+/// Threads persist between calls (starting one costs more than tracing a small queue). They are started by
+/// the thread that creates the object and so inherit its priority.
 class Workers {
  public:
   /// `threads` in all, the caller of run() included; 0: one a core.

@@ -20,8 +20,8 @@ namespace lucerna::scene {
 /// Warnings by kind, with counts: each kind is one line of the scene.
 class Warnings {
  public:
-  /// Adds `count` cases of `kind`, a sentence in which "{}" stands for the count; `example` locates the first
-  /// case.
+  /// Adds `count` cases of `kind`, a sentence in which "{}" is replaced by the count; `example` locates the
+  /// first case.
   void add(const std::string& kind, const std::string& example = {}, uint64_t count = 1);
   /// One line per kind, in order of first occurrence.
   std::vector<std::string> lines() const;

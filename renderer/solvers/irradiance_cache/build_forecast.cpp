@@ -54,7 +54,7 @@ std::optional<BuildForecast> forecast_of(const CacheStatus& s, double stop_share
   }
   if (s.passes.back().relit) return {};  // all are relit; missing records are not known yet
   // Extending building restarts the pass count; the work before it is a measure of the rest. Relit passes
-  // stand for the ones that placed their records.
+  // represent the passes that placed their records.
   size_t first = s.passes.size() - 1;
   while (first > 0 && (s.passes[first].number > 0 || s.passes[first].relit)) --first;
   double before = 0;

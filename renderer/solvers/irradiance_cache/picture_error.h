@@ -34,7 +34,7 @@ namespace lucerna::irradiance_cache {
 
 class PictureError {
  public:
-  /// Maximum number of traced pixels; in larger pictures one stands for several.
+  /// Maximum number of traced pixels; in larger pictures one represents several.
   static constexpr uint32_t k_most_pixels = 240'000;
 
   /// `defines`: Cache::defines().

@@ -11,7 +11,7 @@ using namespace shared;
 namespace {
 
 constexpr float k_decades = 1e-3f;       // lower end of the scale, relative to its upper end
-constexpr double k_smooth_photons = 16;  // photons in the mean that is drawn at a pixel, about
+constexpr double k_smooth_photons = 16;  // approximate number of photons in the mean drawn at a pixel
 constexpr uint32_t k_pixels_at_once = 1u << 15;
 constexpr long k_most_taps = 8;  // pixels to either side
 constexpr vec3 k_disc_ink{1.0f, 0.86f, 0.45f};
