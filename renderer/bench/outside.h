@@ -12,7 +12,7 @@
 
 namespace lucerna::bench {
 
-/// Where the other program writes to.
+/// Output folder of the other program.
 struct OutsideFiles {
   std::filesystem::path picture, stats;
   std::filesystem::path shown;  ///< PNG; "": none is wanted

@@ -1,5 +1,5 @@
 #pragma once
-// Plots of one scene on the page, and what tables share with them.
+// Plots of one scene on the page, and functions common to plots and tables.
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -8,14 +8,13 @@
 
 namespace lucerna::bench {
 
-/// "" where there is no such text.
+/// "" if there is no such text.
 std::string text_of(const nlohmann::ordered_json& json, const char* key);
-/// Of {median, low, high}.
+/// The median of {median, low, high}.
 double median_of(const nlohmann::ordered_json& spread);
-/// The curve that the setting is a point of; "" where it is of none.
+/// The curve of which the setting is a point; "": none.
 std::string curve_of(const nlohmann::ordered_json& report, const std::string& setting);
-/// The place of a setting in the matrix, where the settings of one curve have one place: it decides the
-/// colour.
+/// Index of a setting in the matrix for its colour; the settings of one curve have one index.
 size_t index_of(const nlohmann::ordered_json& report, const std::string& setting);
 
 /// True error against records: the curves of a scene that have two points or more, each the largest budget of

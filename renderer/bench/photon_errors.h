@@ -1,6 +1,6 @@
 #pragma once
-// How fast an error falls: slopes on log axes with their confidence, and noise and bias of pictures that were
-// rendered several times with other seeds. Pure arithmetic.
+// Convergence of errors: slopes on logarithmic axes with confidence intervals, and noise and bias of pictures
+// from renders with different seeds. Pure arithmetic.
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -11,12 +11,12 @@
 
 namespace lucerna::bench {
 
-/// The power of x that y falls or grows with, by least squares on the logarithms. Nothing where fewer than
-/// two points have both above 0, or all have the same x.
+/// Exponent of y as a power of x, by least squares of the logarithms. None if fewer than two points have both
+/// above 0, or all have the same x.
 std::optional<double> log_slope(std::span<const double> x, std::span<const double> y);
 
-/// Half the width of a 95 % interval in standard errors, for a standard error that is itself known from
-/// `degrees` + 1 values: Student's t (Cornish-Fisher expansion; M. Abramowitz and I. Stegun 1964, 26.7.5), to
+/// Half width of a 95 % interval in standard errors, for a standard error estimated from `degrees` + 1
+/// values: Student's t (Cornish-Fisher expansion; M. Abramowitz and I. Stegun 1964, 26.7.5), to
 /// 3 % from two degrees on. Infinite below one.
 double student_t95(size_t degrees);
 
@@ -32,17 +32,17 @@ struct SeedPictures {
   std::vector<float> truth;
 };
 
-/// By round, as root mean squares over the pixels in units of their mean luminance. 0: lost in noise.
+/// Errors by round, as root mean squares over the pixels in units of their mean luminance. 0: lost in noise.
 struct ErrorCurves {
-  std::vector<double> noise;  ///< of one render: by how much renders differ
+  std::vector<double> noise;  ///< of one render: deviation between renders
   std::vector<double> bias;   ///< of the mean of infinitely many renders
   std::vector<double> error;  ///< of one render against the truth
 };
 
-/// Of two renders or more. All parts are unbiased before the root is taken: the noise is the variance between
-/// renders, and the squared bias the mean over all pairs of two renders of the product of their differences
-/// from their own truths, in which neither their noise nor the truths' is left. `mask`: the pixels that
-/// count, at least one, where not 0. `without`: the render to leave out.
+/// Error curves of two renders or more. All parts are unbiased before the root is taken: the noise is the
+/// variance between renders, the squared bias the mean over all pairs of renders of the product of their
+/// differences from their own truths, which is free of both noises. `mask`: not 0 for the pixels that count,
+/// at least one. `without`: omitted render.
 ErrorCurves error_curves(std::span<const SeedPictures> renders, std::span<const uint8_t> mask,
                          std::optional<size_t> without = {});
 
@@ -53,11 +53,11 @@ std::array<std::optional<Slope>, 3> error_slopes(std::span<const double> x,
                                                  std::span<const SeedPictures> renders,
                                                  std::span<const uint8_t> mask);
 
-/// What noise and bias of rounds are expected to be.
+/// Expected noise and bias of rounds.
 using photons::RadiusLaw;
 
-/// The median of values with the interval that holds the true median in at least 95 % (order statistics, by
-/// the sign test; all of them where there are too few for that).
+/// The median of values with a 95 % interval of the true median (order statistics, by the sign test; all
+/// values if there are too few).
 Slope median95(std::vector<double> values);
 
 }  // namespace lucerna::bench

@@ -1,7 +1,7 @@
 #pragma once
-// What photons cost and how their errors fall (`lucerna bench --photons`): slopes of noise and bias over
-// rounds and radii, rates and memory, the cost of a round against its light paths and against lamps, and of
-// asking for photons where there is nothing that bundles light.
+// Cost and convergence of photons (`lucerna bench --photons`): slopes of noise and bias over rounds and
+// radii, rates and memory, the cost of a round over its light paths and over lamps, and the cost of enabled
+// photons in scenes without casters.
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>

@@ -167,7 +167,7 @@ struct ImageError {
   }
   double relative_records() const { return luminance[0] > 0 ? records_rms / luminance[0] : 0; }
   double relative_interpolation() const { return luminance[0] > 0 ? interpolation_rms / luminance[0] : 0; }
-  /// Of the three.
+  /// Combined relative error of all three parts.
   double relative_sum() const { return error_sum(relative(0), relative_records(), relative_interpolation()); }
 };
 ImageError image_error(std::span<const shared::BlockError> blocks);

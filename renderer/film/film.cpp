@@ -10,9 +10,9 @@ namespace lucerna::film {
 
 namespace {
 
-// Of a pixel and component: two halves.
+// Bytes of a pixel and component: two halves.
 constexpr uint64_t k_sum_bytes = 2 * sizeof(shared::FilmHalf);
-// Of a pixel besides its sums: albedo and normal, counts, vertices and the picture.
+// Other bytes of a pixel: albedo and normal, counts, vertices and the picture.
 constexpr uint64_t k_pixel_bytes = 2 * 16 + 3 * 4;
 // Beside the film: the coarse picture, and paths in flight at their fewest.
 constexpr uint64_t k_coarse_pixels = shared::k_coarse_step * shared::k_coarse_step, k_paths_bytes = 48 << 20;

@@ -46,7 +46,7 @@ struct View {
   uint32_t tiles = 0;
 };
 
-/// How light groups are stored separately.
+/// Storage of separate light groups.
 enum class GroupStorage {
   /// Each group has sums by component like the picture's: any mix equals rendering it from scratch.
   by_component,

@@ -6,8 +6,8 @@ namespace lucerna::film {
 /// Multiple of the target at which the ramp ends.
 inline constexpr float k_tiles_far = 8;
 
-/// Where a tile of that error lies on the ramp of tiles: 0 far from the target .. 1 at it or below, even in
-/// the error's logarithm. -1 for errors that are not known (negative or NaN) and targets that are not
+/// Position of a tile with that error on the ramp of tiles: 0 far above the target .. 1 at or below it,
+/// linear in the error's logarithm. -1 for unknown errors (negative or NaN) and targets that are not
 /// positive.
 float tile_position(double error, double target);
 

@@ -26,7 +26,7 @@ struct TileStatus {
   float sum() const { return error < 0 ? error : error_sum(error, records, interpolation); }
   uint32_t samples = 0;
   uint32_t pixels = 0;
-  /// The same with a quarter to half of the samples, in adaptive sampling; 0: unknown.
+  /// Likewise, at a quarter to half of the samples, in adaptive sampling; 0: unknown.
   float earlier_error = 0;
   uint32_t earlier_samples = 0;
   uint32_t state = shared::k_tile_waiting;  ///< shared::k_tile_*

@@ -52,7 +52,7 @@ class Display {
   bool remembers() const { return preview_.has_history(); }
   /// Changes whenever the result of develop() does, apart from film samples and display settings.
   uint64_t version() const { return version_; }
-  /// Of the latest developed picture.
+  /// Shares of the latest developed picture.
   film::PreviewShares shares() const { return shares_; }
   /// Call when the film has been filtered and that is shown.
   void show_filtered(gpu::Stream& stream, const film::Film& film, const film::FilterError& error,

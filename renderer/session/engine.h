@@ -30,7 +30,7 @@ solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
                       const solvers::SolverInfo& solver, const plan::Settings& settings,
                       const upload::Effects& effects);
 
-/// What a solver is made for besides its task and its own settings.
+/// Conditions for which a solver is made, besides its task and its own settings.
 struct MadeFor {
   gpu::Defines scene_defines;
   uint32_t slots = 0;              ///< of the wavefront

@@ -19,7 +19,7 @@ class LightsView {
   void draw(const overlay::Canvas& canvas, const transport::LightLearning* learning,
             const upload::FlatScene& flat, const shared::Frame& frame, const scene::Scene& scene,
             const plan::Settings& settings, std::optional<vec2> looked_at);
-  /// Of the latest draw().
+  /// Result of the latest draw().
   const std::optional<solvers::Report>& report() const { return report_; }
   void forget() { report_.reset(); }
 

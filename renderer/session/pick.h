@@ -30,7 +30,7 @@ PickRay pick_ray(const scene::Camera& camera, float x, float y, float aspect);
 std::optional<Picked> pick(const scene::Scene& scene, const scene::Camera& camera, float x, float y,
                            float aspect);
 
-/// The same for many rays, with a tree over the scene's meshes. Shares ownership of the scene.
+/// Likewise, for many rays, with a tree over the scene's meshes. Shares ownership of the scene.
 class Probe {
  public:
   /// Takes about 0.3 s per million triangles. Throws Error: memory.

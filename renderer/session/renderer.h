@@ -66,7 +66,7 @@ class Renderer {
   /// `changes`: settings that override the scene's.
   void load(const std::filesystem::path& file, const Progress& progress = {},
             const std::vector<SettingChange>& changes = {});
-  /// The same for a scene in memory. Resets the settings (except tracer, path.batch and path.classes), then
+  /// Likewise, for a scene in memory. Resets the settings (except tracer, path.batch and path.classes), then
   /// applies the scene's, then `changes`.
   void set_scene(std::shared_ptr<const scene::Scene> scene, const Progress& progress = {},
                  const std::vector<SettingChange>& changes = {});
@@ -122,7 +122,7 @@ class Renderer {
   const schedule::AdaptiveSchedule* adaptive() const { return sampling_.adaptive(); }
   /// Estimated error of the present picture, from all its pixels. Takes a pass over the film.
   film::ImageError image_error();
-  /// The same for every tile of sampling.tile, in raster order, with heavy tails marked; as of the last
+  /// Likewise, for every tile of sampling.tile, in raster order, with heavy tails marked; as of the last
   /// image_error().
   std::vector<film::TileError> tile_errors() const;
   uint32_t tile_side() const;  ///< sampling.tile [pixels]
@@ -162,7 +162,7 @@ class Renderer {
   /// overlay.tiles is on. `cancel` is called while solvers draw overlays; true: the picture is already out of
   /// date.
   std::vector<uint8_t> picture(bool with_coarse, const std::function<bool()>& cancel = {});
-  /// The same as the window shows it during rendering (Display), with the setting preview.filter; without a
+  /// Likewise, as shown in the window during rendering (Display), with the setting preview.filter; without a
   /// preview, picture(with_coarse).
   std::vector<uint8_t> shown_picture(bool with_coarse, const std::function<bool()>& cancel = {});
   /// True if shown_picture() would return the same as before, provided settings and scene are unchanged: no
@@ -170,16 +170,16 @@ class Renderer {
   bool shows_the_same() const;
   /// True if shown_picture() can show the former picture before there is new light.
   bool remembers() const;
-  /// Pixels of the window per pixel of the picture, along a side: where overlays are on, shown_picture() and
+  /// Sets the pixels of the window per pixel of the picture, along a side: with overlays, shown_picture() and
   /// picture() are larger by shown_scale(), at most this.
   void set_window_scale(uint32_t scale) { window_scale_ = std::max(1u, scale); }
   uint32_t shown_scale() { return sheet().scale(); }
-  /// Overlays follow the picture's samples until the surfaces of the window's pixels have been traced. Where
-  /// RendererOptions::interactive, that waits for trace_overlay(), so that a moving camera does not; the next
-  /// picture then shows it.
+  /// True if the surfaces of the window's pixels are not traced yet; overlays then use the picture's samples.
+  /// With RendererOptions::interactive only trace_overlay() traces them, so that a moving camera does not
+  /// wait; the next picture shows them.
   bool overlay_waits();
   void trace_overlay(const std::function<bool()>& cancel);
-  /// Of the latest shown_picture().
+  /// Shares of the latest shown_picture().
   film::PreviewShares preview_shares() const;
   film::View view() const;
   film::Image image() const { return film_->read(); }  ///< without a pending mix
@@ -275,7 +275,7 @@ class Renderer {
   /// For a scene in a picture of that size.
   Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
                        std::shared_ptr<const scene::Scene> scene, uint32_t width, uint32_t height) const;
-  /// How lights must be separated.
+  /// Required separation of lights.
   upload::LightSeparation wanted_separation(const plan::Plan& plan, const plan::Settings& settings,
                                             const Relight& relight) const;
   /// Applies it, and logs new messages.

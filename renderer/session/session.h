@@ -134,7 +134,7 @@ class Session {
   // the command is skipped with a warning.
   void load(const std::filesystem::path& file);
   void set(const std::string& key, const std::string& value, SceneId scene = k_any_scene);
-  /// Of several consecutive ones still in the queue only the last is used; they share one number.
+  /// If several consecutive ones are in the queue, only the last is used; they share one number.
   void set_camera(const scene::Camera& camera, SceneId scene = k_any_scene);
   void set_size(uint32_t width, uint32_t height);
   /// Renderer::set_window_scale.

@@ -17,7 +17,7 @@ void add_aim_rows(std::vector<PanelItem>& items, const AimedAt& at, double unaim
                   std::span<const overlay::AimedPair> pairs);
 /// Legend of the colours of LightPathsPainter::draw_aim().
 Legend aim_legend();
-/// Of overlay::LightPathsPainter::draw.
+/// Legend of the picture of LightPathsPainter::draw().
 Legend light_paths_legend();
 
 }  // namespace lucerna::solvers

@@ -73,7 +73,7 @@ double trimmed_mean(std::vector<double>& values, double share) {
   return mean(values, kept);
 }
 
-/// How many pixels of a layer of `image` have a value that `bad` finds.
+/// Number of pixels of a layer of `image` with a value that satisfies `bad`.
 template <class Bad>
 uint64_t count_pixels(const FilmImage& image, const std::string& layer, const Bad& bad) {
   const std::vector<size_t> planes = image.layer(layer);

@@ -73,7 +73,7 @@ void write_with_oiio(const fs::path& file, const std::string& format, const OIIO
       output->open(file.string(), spec) && output->write_image(type, pixels) && output->close();
   if (target.streams() && written)
     target.write({reinterpret_cast<const char*>(in_memory.buffer().data()), in_memory.buffer().size()});
-  // What kept bytes from the disk says more than what the format's writer makes of it.
+  // An error of the disk has more information than that of the format's writer.
   if (written || target.failed()) target.commit();
   if (!written) throw_error(file.string(), "cannot be written: {}", one_line(output->geterror()));
 }

@@ -42,7 +42,7 @@ double mean(std::span<const double> values) {
   return values.empty() ? 0 : std::accumulate(values.begin(), values.end(), 0.0) / double(values.size());
 }
 
-/// Of an even number of values the mean of the two in the middle.
+/// Median; for an even number of values the mean of the two in the middle.
 double median(std::vector<double> values) {
   if (values.empty()) return 0;
   const size_t n = values.size();
@@ -105,11 +105,11 @@ double trimmed_mean(std::span<const double> error, std::span<const double> order
   return kept > 0 ? sum / double(kept) : 0;
 }
 
-/// What the references' own noise leaves to the mean of products().
+/// Standard error of the mean of products() from the references' own noise.
 double products_noise(const ReferencePair& references, std::span<const dvec3> scale) {
-  // With noises a and b of one variance s: (a - b)^2 / 2 has the mean s and, were they normal, the mean
-  // square 3 s^2, where (a b)^2, of which the error has one a pixel, has s^2. Colours of a pixel are taken
-  // for one.
+  // With noises a and b of variance s, (a - b)^2 / 2 has the mean s and, if they are normal, the mean square
+  // 3 s^2, whereas (a b)^2, one of which is in the error of each pixel, has s^2. The colours of a pixel count
+  // as one value.
   double squares = 0;
   for (size_t p = 0; p < scale.size(); ++p) {
     const dvec3 d = dvec3(references.first[p]) - dvec3(references.second[p]);

@@ -80,7 +80,7 @@ Json describe_lights(const Scene& scene) {
   return list;
 }
 
-/// By the scene's own rules; of rules that are no good nothing is said here.
+/// Groups by the scene's own rules; invalid rules are not reported here.
 LightGroups groups_of(const Scene& scene) {
   for (const auto& [key, value] : scene.settings)
     if (key == "relight.groups") try {

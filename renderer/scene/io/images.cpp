@@ -92,9 +92,9 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& hint, c
   config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy);
   std::unique_ptr<OIIO::ImageInput> input;
   try {
-    // Of one format alone: to open by a name is to have every reader try the file of that name. Some open
-    // one even when they are given memory; the formats of those are refused, and the name is one that no file
-    // can have. The reader of nothing makes images from names.
+    // Opens by one format only, because by a name every reader would try the file of that name. Some open a
+    // file even with memory given; their formats are refused, and the name is one that no file can have. The
+    // reader "null" makes images from names.
     const std::string format = format_name(bytes, hint);
     const bool word =
         std::all_of(format.begin(), format.end(), [](unsigned char c) { return std::isalnum(c) != 0; });

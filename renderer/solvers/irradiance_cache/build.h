@@ -148,7 +148,7 @@ struct Cache::Impl {
   void drop_roomy(const Work& work);
 
   // Radii:
-  /// As Radii::Wanted::crowd: decided once for each record, before it is evaluated.
+  /// Radii::Wanted::crowd: decided once for each record, before it is evaluated.
   float crowd() const;
   /// For the queued records of this pass.
   Radii::Wanted wanted_radii() const;

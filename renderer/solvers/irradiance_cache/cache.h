@@ -105,7 +105,7 @@ struct CacheStatus {
 
 /// Picture and scene, as far as building depends on them.
 struct CacheView {
-  /// Of the picture's paths; of the records' paths, whose components are the parts.
+  /// Frames of the picture's paths, and of the records' paths, whose components are the parts.
   shared::Frame paths_frame, records_frame;
   uint32_t paths_enabled = 0, records_enabled = 0;  ///< components that each may compute, as bits
   uint32_t width = 0, height = 0;
@@ -114,12 +114,12 @@ struct CacheView {
   bool dark = false;  ///< the scene has no light: no records are placed, existing ones wait to be relit
 };
 
-/// Where paths look up records.
+/// Lookups of records by paths.
 struct CacheRoutes {
   paths::LookupRoutes picture,
-      picture_gather;  ///< of the picture's paths; of those that gather near crowded records
-  /// Of the records' rays, and the parts they gather (paths::record_routes; without lookups they are path
-  /// traced); of those that gather (paths::gather_routes).
+      picture_gather;  ///< for the picture's paths; for those that gather near crowded records
+  /// For the records' rays, with the parts they gather (paths::record_routes; without lookups they are path
+  /// traced); for those that gather (paths::gather_routes).
   paths::LookupRoutes records, records_gather;
   /// Lookups of another solver provide the tertiary light of the records' rays.
   bool elsewhere = false;

@@ -20,7 +20,7 @@ float slab_thickness(float off_plane, float normal_tolerance) {
   return off_plane + 0.5f * std::sqrt(2 * normal_tolerance);
 }
 
-/// As CacheFrame::routes.
+/// In the format of CacheFrame::routes.
 RouteTable packed(const paths::LookupRoutes& routes, const paths::LookupRoutes& gather) {
   RouteTable table;
   table.fill(k_no_routes);

@@ -13,7 +13,7 @@ inline constexpr float k_normal_tolerance = 0.06f;
 /// Largest distance of points from a record's plane, in its radius: less than the depth of a lamp's panel in
 /// a ceiling.
 inline constexpr float k_off_plane = 0.03f;
-/// The same for records of the minimum radius: for a radius of three pixels, half a pixel.
+/// Likewise, for records of the minimum radius: for a radius of three pixels, half a pixel.
 inline constexpr float k_off_plane_least = 0.16f;
 
 /// Parameters of the minimum radius.

@@ -1,5 +1,5 @@
 #pragma once
-// What the cache has measured in the picture it is built for.
+// Measurements of the cache in the picture for which it is built.
 #include <vector>
 
 #include "solvers/irradiance_cache/discontinuity.h"

@@ -225,7 +225,7 @@ struct Chooser {
   ChoosingKernels kernels;
   ChoosingBuffers buffers;
   gpu::Resources resources;
-  // Of the last choice:
+  // State of the last choice:
   const gpu::Buffer* sorted = nullptr;
   std::vector<uint32_t> first_starts;  // where clusters begin
   std::vector<uint32_t> picks;         // source indices, in Morton order

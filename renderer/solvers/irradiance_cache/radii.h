@@ -35,7 +35,7 @@ class Radii {
   /// `dark`: as dark_luminance(), from pilot results.
   void set_by_light(gpu::Stream& stream, const Bind& bind, const Wanted& wanted, float scene_radius,
                     float dark);
-  /// As Clamping::clamp().
+  /// Like Clamping::clamp().
   void clamp(gpu::Stream& stream, const Bind& bind, uint32_t count, float near, float crowd,
              uint32_t undecided);
   uint64_t bytes() const;  ///< of device memory

@@ -104,7 +104,7 @@ class Records {
   std::vector<float> radii(uint32_t first) const;
   /// Luminance of the irradiance of every record, over all parts.
   std::vector<float> luminances() const;
-  /// The same from pilot rays.
+  /// Likewise, from pilot rays.
   std::vector<float> pilot_luminances() const;
   /// True for crowded records (shared::k_record_crowded).
   std::vector<bool> crowded() const;
