@@ -7,6 +7,7 @@
 
 #include "accuracy_plot.h"
 #include "chart.h"
+#include "shown_text.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -380,19 +381,8 @@ void body(Ui& ui, const Area& area, const Accuracy& a) {
 /// Lines shown before the first samples: the error of the preview, and the progress of preparation.
 std::vector<std::string> early_texts(const session::Snapshot& s, double target) {
   std::vector<std::string> texts;
-  if (s.shown_error) {
-    const film::ShownError error = *s.shown_error;
-    std::string when;
-    // Noise falls with the square root of time.
-    const double excess = std::max(error.median / session::k_usable_error.median,
-                                   error.worst_tenth / session::k_usable_error.worst_tenth);
-    if (session::usable(error))
-      when = ": usable";
-    else if (s.seconds > 0.1)
-      when = fmt::format(", usable in about {}", about_text(s.seconds * (excess * excess - 1)));
-    texts.push_back(fmt::format("Preview: error about {}, in the worst tenth {}{}",
-                                percent_text(error.median), percent_text(error.worst_tenth), when));
-  }
+  if (const std::vector<std::string> shown = shown_texts(s); !shown.empty())
+    texts.push_back("Displayed picture: " + shown.front() + usable_text(s));
   if (!s.preparing.empty())
     texts.push_back(s.preparing_left ? fmt::format("{}; {:.0f} % done, about {} left", s.preparing,
                                                    100 * s.preparing_done, about_text(*s.preparing_left))
@@ -441,7 +431,11 @@ void draw_accuracy(Ui& ui, const Area& area) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   if (a && ui.scene) {
     const float right = area.hi.x - px(16), room = right - left - px(16);
-    for (const std::string& text : target_texts(*a, ui.target(), ui.forecast(), ui.snapshot->seconds)) {
+    std::vector<std::string> texts = target_texts(*a, ui.target(), ui.forecast(), ui.snapshot->seconds);
+    // The displayed picture's error first, if there is room for both.
+    if (const std::vector<std::string> shown = shown_texts(*ui.snapshot); !shown.empty())
+      texts.insert(texts.begin(), fmt::format("Displayed: {}  ·  samples: {}", shown.front(), texts.front()));
+    for (const std::string& text : texts) {
       if (text_width(text, theme().fonts.small) > room) continue;
       draw_text(list, {left, area.lo.y}, {right, area.lo.y + px(k_folded_bottom)}, text, colour::text,
                 Align::right, theme().fonts.small);

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "chart.h"
+#include "shown_text.h"
 #include "solvers/registry.h"
 #include "state.h"
 #include "widgets.h"
@@ -353,16 +354,6 @@ void help_menu(Ui& ui) {
   end_menu();
 }
 
-/// The parts of the picture besides its samples: "42 % from before the edit", "filtered", or, if all of it
-/// is, "filtered, 2.4 % off". Empty if there are none.
-std::string preview_text(const session::Snapshot& s) {
-  if (s.stale > 0.005)
-    return fmt::format("{} from before the edit", padded(fmt::format("{:.0f} %", 100 * s.stale), 5));
-  if (s.filtered >= 1 && s.shown_error)
-    return fmt::format("filtered, {} off", percent_text(s.shown_error->median));
-  return s.filtered > 0.02 ? "filtered" : "";
-}
-
 /// "rendering   142 / 256 samples · 1.82 % · 12.3 s", each number as wide as its maximum; then shorter texts
 /// for less room.
 std::array<std::string, 3> state_texts(const session::Snapshot& s) {
@@ -383,6 +374,10 @@ std::array<std::string, 3> state_texts(const session::Snapshot& s) {
       padded(fmt::format("{:.0f}", adaptive ? s.mean_samples : static_cast<double>(s.samples)), digits);
   const std::string samples = adaptive ? fmt::format("{} samples on average", count)
                                        : fmt::format("{} / {} samples", count, s.max_samples);
+  // The error of the displayed picture stands beside this text; that of the samples is another.
+  if (!shown_texts(s).empty())
+    return {fmt::format("{}   {} · {}", state, samples, padded(seconds_text(s.seconds), 7)),
+            fmt::format("{} · {}", state, count), count};
   const double error = s.accuracy ? s.accuracy->error()[0] : 0;
   const std::string noise = padded(error > 0 ? percent_text(error) : "–", 6);
   return {fmt::format("{}   {} · {} · {}", state, samples, noise, padded(seconds_text(s.seconds), 7)),
@@ -441,26 +436,35 @@ void draw_menu_bar(Ui& ui, const Area& area) {
     draw_text(list, {state_left, area.lo.y}, {right, area.hi.y}, elided(states[which], right - state_left),
               colour::text, Align::right);
     const float preview_end = state_left - px(16),
-                preview_begin = preview_end - text_width("100 % from before the edit");
-    if (const std::string preview = preview_text(*s); !preview.empty() && preview_begin > menus_end) {
-      draw_text(list, {preview_begin, area.lo.y}, {preview_end, area.hi.y}, preview, colour::accent,
-                Align::right);
-      ImGui::SetCursorScreenPos({preview_begin, area.lo.y});
-      ImGui::InvisibleButton("##preview", {preview_end - preview_begin, area.hi.y - area.lo.y - px(2)});
-      const std::string off =
-          s->shown_error ? fmt::format(" Its error is about {}.", percent_text(s->shown_error->median)) : "";
+                preview_begin = preview_end - text_width("88.8 % off, 100 % from before the edit");
+    const std::vector<std::string> previews = shown_texts(*s);
+    const auto preview = std::find_if(previews.begin(), previews.end(), [&](const std::string& text) {
+      return preview_end - text_width(text) > menus_end;
+    });
+    if (preview != previews.end()) {
+      const float begin = preview_end - text_width(*preview);
+      draw_text(list, {begin, area.lo.y}, {preview_end, area.hi.y}, *preview, colour::accent, Align::right);
+      ImGui::SetCursorScreenPos({begin, area.lo.y});
+      ImGui::InvisibleButton("##preview", {preview_end - begin, area.hi.y - area.lo.y - px(2)});
       tooltip(
-          "The displayed picture is not samples only: light from before the last edit stays until the new "
-          "light is better, and the noise of few samples is filtered." +
-          off +
-          " EXR files store the samples; a PNG can be saved either way. U shows the unfiltered samples.");
+          (s->shown_error
+               ? fmt::format("Estimated error of the displayed picture, of the median tile and of the worst "
+                             "tenth of the tiles: {} and {}{}. ",
+                             percent_text(s->shown_error->median), percent_text(s->shown_error->worst_tenth),
+                             usable_text(*s))
+               : "") +
+          "Light from before the last edit stays until the new light is better, and the noise of few samples "
+          "is "
+          "filtered. EXR files store the samples; a PNG can be saved either way. U shows the unfiltered "
+          "samples.");
     }
     ImGui::SetCursorScreenPos({state_left, area.lo.y});
     ImGui::InvisibleButton("##state", {std::max(1.0f, right - state_left), area.hi.y - area.lo.y - px(2)});
     tooltip((which > 0 ? states[0] + ". " : "") +
-            "Samples per pixel, noise as seen (estimated; the Accuracy panel also shows that of the tiles), "
+            "Samples per pixel, their noise as seen while they are shown unfiltered (the Accuracy panel "
+            "plots it), "
             "and the time since this picture was started, without pauses.");
-    // Room for preview_text(), so nothing moves when it disappears.
+    // Room for shown_texts(), so nothing moves when it disappears.
     right = preview_begin - px(24);
   }
   if (s && !s->device.empty()) {

@@ -1,0 +1,35 @@
+// links: ui
+// What the window says of the displayed picture's error.
+#include <catch2/catch.hpp>
+
+#include "ui/shown_text.h"
+
+using namespace lucerna;
+using Texts = std::vector<std::string>;
+
+TEST_CASE("the displayed picture's error is said in words, and what is from before the edit") {
+  session::Snapshot s;
+  s.seconds = 2;
+  CHECK(ui::shown_texts(s).empty());  // samples as they are
+  CHECK(ui::usable_text(s) == "");
+  s.stale = 0.42;
+  CHECK(ui::shown_texts(s) == Texts{"42 % from before the edit"});
+  s.shown_error = film::ShownError{0.3, 0.6};
+  s.filtered = 0.5;
+  CHECK(ui::shown_texts(s).front() == "30 % off, 42 % from before the edit");
+  CHECK(ui::usable_text(s) == ", usable in about 6 s");  // noise falls by half in four times the time
+  s.stale = 0;
+  CHECK(ui::shown_texts(s).front() == "30 % off, worst tenth 60 %");
+  CHECK(ui::shown_texts(s).back() == "30 % off");
+}
+
+TEST_CASE("a picture is usable if the median tile and the worst tenth are") {
+  session::Snapshot s;
+  s.seconds = 1;
+  s.shown_error = film::ShownError{0.1, 0.29};
+  CHECK(ui::usable_text(s) == ": usable");
+  s.shown_error = film::ShownError{0.1, 0.5};
+  CHECK(ui::usable_text(s) != ": usable");
+  s.shown_error = film::ShownError{0.2, 0.25};
+  CHECK(ui::usable_text(s) != ": usable");
+}

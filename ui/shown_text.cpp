@@ -1,0 +1,33 @@
+#include "shown_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "chart.h"
+
+namespace lucerna::ui {
+
+std::vector<std::string> shown_texts(const session::Snapshot& s) {
+  constexpr double k_least_stale = 0.005, k_least_filtered = 0.02;
+  const std::string off = s.shown_error ? percent_text(s.shown_error->median) + " off" : "";
+  if (s.stale > k_least_stale) {
+    const std::string before = fmt::format("{:.0f} % from before the edit", 100 * s.stale);
+    return off.empty() ? std::vector{before} : std::vector{off + ", " + before, before};
+  }
+  if (off.empty())
+    return s.filtered > k_least_filtered ? std::vector<std::string>{"filtered"} : std::vector<std::string>{};
+  return {fmt::format("{}, worst tenth {}", off, percent_text(s.shown_error->worst_tenth)), off};
+}
+
+std::string usable_text(const session::Snapshot& s) {
+  if (!s.shown_error) return "";
+  if (session::usable(*s.shown_error)) return ": usable";
+  const double excess = std::max(s.shown_error->median / session::k_usable_error.median,
+                                 s.shown_error->worst_tenth / session::k_usable_error.worst_tenth);
+  constexpr double k_least_seconds = 0.1;
+  if (s.seconds <= k_least_seconds) return "";
+  return fmt::format(", usable in about {}", about_text(s.seconds * (excess * excess - 1)));
+}
+
+}  // namespace lucerna::ui

@@ -1,0 +1,17 @@
+#pragma once
+// How good the displayed picture is, in words: one text for the menu bar and the Accuracy panel.
+#include <string>
+#include <vector>
+
+#include "session/session.h"
+
+namespace lucerna::ui {
+
+/// "7.2 % off, worst tenth 18 %": the median tile's error and the error that a tenth of the tiles exceed.
+/// With light from before the last edit "12 % off, 42 % from before the edit". Shorter texts follow for less
+/// room. Empty: the picture is its samples, whose noise the Accuracy panel plots.
+std::vector<std::string> shown_texts(const session::Snapshot& snapshot);
+/// ": usable", or ", usable in about 3 s" as errors fall with the square root of time; "" without an error.
+std::string usable_text(const session::Snapshot& snapshot);
+
+}  // namespace lucerna::ui
