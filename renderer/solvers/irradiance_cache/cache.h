@@ -58,8 +58,7 @@ struct CacheOptions {
   /// tenth of the mean are compared with that. Decided from neighbouring records together (noise.h).
   float noise = 0;
   /// Fraction of its radius within which a record removes others that are not yet evaluated, 0..1. Smaller:
-  /// more records; 0:
-  /// none is removed.
+  /// more records; 0: none is removed.
   float thinning = 0;
   /// True: where geometry is nearer than twice the minimum radius, paths gather and end in records one vertex
   /// later.
