@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "chart.h"
+#include "plan/views.h"
 #include "shown_text.h"
 #include "solvers/registry.h"
 #include "state.h"
@@ -260,10 +261,9 @@ void view_menu(Ui& ui) {
   if (const OptionInfo* tiles = plan::find_option("overlay.tiles");
       entry("Tiles", "T", tiles->help.c_str(), ui.setting_on(tiles->key)))
     ui.toggle(tiles->key);
-  for (const char* key : {"overlay.lights", "overlay.light_arrival"})
-    if (const OptionInfo* option = plan::find_option(key);
-        entry(option->label.c_str(), nullptr, option->help.c_str(), ui.setting_on(key)))
-      ui.toggle(key);
+  for (const solvers::ViewInfo& view : plan::views())
+    if (entry(view.label.c_str(), nullptr, plan::find_option(view.option)->help.c_str(), ui.view_on(view)))
+      ui.turn_view(view);
   if (entry("Unfiltered samples", "U",
             "Shows samples only: no filter for noise, and no light from before an edit.",
             ui.setting("preview.filter") == "off"))

@@ -9,6 +9,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/timer.h"
+#include "plan/views.h"
 #include "solvers/registry.h"
 
 namespace lucerna::ui {
@@ -161,7 +162,8 @@ void Ui::turn_view(const solvers::ViewInfo& view) {
 }
 
 bool Ui::inspects_pointer() const {
-  if (setting_on("overlay.lights")) return true;
+  for (const solvers::ViewInfo& view : plan::views())
+    if (view.inspects_pointer && view_on(view)) return true;
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const solvers::ViewInfo& view : solver->views)
       if (view.inspects_pointer && view_on(view) && uses(*solver)) return true;

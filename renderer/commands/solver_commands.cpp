@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "commands/workspace.h"
+#include "plan/views.h"
 #include "session/session.h"
 #include "solvers/registry.h"
 
@@ -44,7 +45,9 @@ void Workspace::needs_solver(const SolverInfo& solver) const {
 
 void Workspace::needs_lookup() const {
   needs_scene();
-  if (setting("overlay.lights") == "true") return;  // there are lights to be shown everywhere
+  // Views of no solver have something to show everywhere.
+  for (const solvers::ViewInfo& view : plan::views())
+    if (view.inspects_pointer && setting(view.option) == "true") return;
   const SolverInfo* missing = nullptr;
   for (const SolverInfo* solver : solvers::registered()) {
     if (!solver->looked_up) continue;

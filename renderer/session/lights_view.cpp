@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/figures.h"
+#include "plan/views.h"
 #include "shaders/shared/ramp.h"
 
 namespace lucerna::session {
@@ -77,7 +78,8 @@ std::string cluster_text(const upload::ClusterPlace& place, const upload::FlatSc
 }
 
 bool LightsView::shown(const plan::Settings& settings) {
-  return settings.boolean("overlay.lights") || settings.boolean("overlay.light_arrival");
+  return std::any_of(plan::views().begin(), plan::views().end(),
+                     [&](const solvers::ViewInfo& view) { return settings.boolean(view.option); });
 }
 
 void LightsView::draw(const overlay::Canvas& canvas, const transport::LightLearning* learning,

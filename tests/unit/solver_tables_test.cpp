@@ -6,6 +6,7 @@
 #include <set>
 
 #include "plan/settings.h"
+#include "plan/views.h"
 #include "solvers/registry.h"
 
 using namespace lucerna;
@@ -116,5 +117,17 @@ TEST_CASE("views, commands and files of every solver are valid for window and sc
     }
     for (const auto* list : {&solver->against_noise, &solver->against_bias})
       for (const std::string& key : *list) own(key);
+  }
+}
+
+TEST_CASE("views that belong to no solver are settings that turn them on, without a restart") {
+  for (const solvers::ViewInfo& view : plan::views()) {
+    INFO(view.option);
+    const OptionInfo* option = plan::find_option(view.option);
+    REQUIRE(option);
+    CHECK(solvers::owner_of(view.option) == nullptr);
+    CHECK(option->type == OptionType::boolean);
+    CHECK_FALSE(option->restarts);
+    CHECK(option->label == view.label);
   }
 }

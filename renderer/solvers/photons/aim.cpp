@@ -239,14 +239,14 @@ bool PhotonSolver::note_first_hits(transport::Wavefront& wavefront, const Pictur
       lights_.aim(device_, picture.flat, reached_boxes_, 0.5);
     return true;
   }
-  if (!many) {
-    const auto aim_at = [&](const std::vector<Box>& places) {
-      boxes_.insert(boxes_.end(), places.begin(), places.end());
-    };
-    if (first_hits_.size() >= k_least_hits) aim_at(transport::first_hit_boxes(std::move(first_hits_)));
-    // If only aimed paths found entrances, there are others.
-    if (!by_chance) aim_at(reached_boxes_);
-  }
+  const auto aim_at = [&](const std::vector<Box>& places) {
+    boxes_.insert(boxes_.end(), places.begin(), places.end());
+  };
+  if (!many && first_hits_.size() >= k_least_hits) aim_at(transport::first_hit_boxes(std::move(first_hits_)));
+  // If only aimed paths found entrances, there are others. Surfaces beyond the scene's core get almost no paths
+  // by chance, whatever was found within it: few samples are no evidence that little light comes from them.
+  const bool beyond_core = picture.flat.core_radius < picture.flat.scene_radius;
+  if (beyond_core || (!many && !by_chance)) aim_at(reached_boxes_);
   first_hits_.clear();
   begin_sharing(picture);
   return true;
