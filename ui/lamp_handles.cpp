@@ -30,13 +30,18 @@ LampHandle aim_of(Ui& ui, uint32_t index, const scene::Light& light) {
   return aim;
 }
 
-/// Marks of what is selected stay where they belong; the others make room. Surfaces of one material that lie
-/// on one another have one mark.
+/// Marks of what is selected stay where they belong; the others make room, or are left out. Surfaces of one
+/// material that lie on one another have one mark.
 std::vector<LampHandle> without_overlap(const Ui& ui, const Area& shown, std::vector<LampHandle> list) {
   const auto is_selected = [&](const LampHandle& h) {
     return ui.selection ==
            Selection{h.part == LampHandle::Part::surface ? Kind::material : Kind::light, h.light};
   };
+  // The nearest to the eye come first.
+  const vec3 eye = commands::eye_of(ui.snapshot->camera);
+  std::stable_sort(list.begin(), list.end(), [&](const LampHandle& a, const LampHandle& b) {
+    return glm::distance(a.point, eye) < glm::distance(b.point, eye);
+  });
   std::stable_partition(list.begin(), list.end(), is_selected);
   std::vector<Mark> marks;
   for (const LampHandle& h : list)

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 namespace lucerna::ui {
 
@@ -10,38 +9,48 @@ namespace {
 
 float held(float value, float least, float most) { return std::clamp(value, least, std::max(least, most)); }
 
-/// Narrows and folds the panels of a small window that the user has not arranged.
+bool small(float width, float height) { return width < k_roomy_width || height < k_roomy_height; }
+
+/// Panels that a small window folds, the bottom strip first, so that the picture has its share: of the
+/// window's size alone, so that folding or opening one panel moves no other.
+Layout folded_for_picture(float width, float height) {
+  Layout layout;
+  const auto enough = [&] {
+    const float sides =
+        (layout.left_open ? k_least_side : k_folded) + (layout.right_open ? k_least_side : k_folded);
+    const float strip = layout.bottom_open ? layout.bottom : k_folded_bottom;
+    return (width - sides) * (height - k_bar_height - k_toolbar_height - strip) >=
+           k_least_picture_share * width * height;
+  };
+  for (bool* open : {&layout.bottom_open, &layout.right_open, &layout.left_open})
+    if (!enough()) *open = false;
+  return layout;
+}
+
+/// Folds and narrows the panels of a small window that the user has not arranged.
 void make_room_for_picture(Layout& layout, float width, float height) {
-  if (width >= k_roomy_width && height >= k_roomy_height) return;
+  if (!small(width, height)) return;
   const auto arranged = [&](Panel panel, bool by_user) { return by_user || layout.opened_last == panel; };
   const bool keep_left = arranged(Panel::left, layout.left_arranged);
   const bool keep_right = arranged(Panel::right, layout.right_arranged);
-  const bool keep_bottom = arranged(Panel::bottom, layout.bottom_arranged);
-  const auto picture_height = [&] {
-    return height - k_bar_height - k_toolbar_height - (layout.bottom_open ? layout.bottom : k_folded_bottom);
+  const Layout folded = folded_for_picture(width, height);
+  if (!keep_left) layout.left_open = layout.left_open && folded.left_open;
+  if (!keep_right) layout.right_open = layout.right_open && folded.right_open;
+  if (!arranged(Panel::bottom, layout.bottom_arranged))
+    layout.bottom_open = layout.bottom_open && folded.bottom_open;
+  // Sides take what is left, at least k_least_side.
+  const float strip = layout.bottom_open ? layout.bottom : k_folded_bottom;
+  const float picture_height = height - k_bar_height - k_toolbar_height - strip;
+  float excess = (layout.left_open ? layout.left : k_folded) + (layout.right_open ? layout.right : k_folded) +
+                 k_least_picture_share * width * height / std::max(picture_height, 1.0f) - width;
+  const auto narrow = [&](bool open, bool kept, float& size, float share) {
+    if (!open || kept || size <= k_least_side || excess <= 0) return;
+    const float less = std::min(share * excess, size - k_least_side);
+    size -= less, excess -= less;
   };
-  const auto narrowest = [](bool open, bool kept, float size) {
-    return !open ? k_folded : kept ? size : std::min(size, k_least_side);
-  };
-  const auto least_sides = [&] {
-    return narrowest(layout.left_open, keep_left, layout.left) +
-           narrowest(layout.right_open, keep_right, layout.right);
-  };
-  const float wanted = k_least_picture_share * width * height;
-  const auto enough = [&] { return (width - least_sides()) * picture_height() >= wanted; };
-  if (!keep_bottom && !enough()) layout.bottom_open = false;
-  if (!keep_right && !enough()) layout.right_open = false;
-  if (!keep_left && !enough()) layout.left_open = false;
-  // Sides are as wide as they can be.
-  const float least = least_sides(), most = (layout.left_open ? layout.left : k_folded) +
-                                            (layout.right_open ? layout.right : k_folded);
-  const float room = width - wanted / std::max(picture_height(), 1.0f);
-  if (most <= least || room >= most) return;
-  const float share = std::clamp((room - least) / (most - least), 0.0f, 1.0f);
-  for (const auto& [open, kept, size] :
-       {std::tuple<bool, bool, float&>(layout.left_open, keep_left, layout.left),
-        {layout.right_open, keep_right, layout.right}})
-    if (open && !kept && size > k_least_side) size = k_least_side + share * (size - k_least_side);
+  narrow(layout.right_open, keep_right, layout.right, layout.left_open && !keep_left ? 0.5f : 1);
+  narrow(layout.left_open, keep_left, layout.left, 1);
+  narrow(layout.right_open, keep_right, layout.right, 1);
 }
 
 /// Folds what a window of that size, in design pixels, has no room for, and holds the rest to what leaves a

@@ -246,8 +246,8 @@ std::vector<solvers::Legend> window_legends(const session::Legend& layer, bool l
   if (light_marks)
     list.push_back({.title = "Lights",
                     .note =
-                        "Circle: lamp. Square: emitting surface. Cross: aim of the selected spot. A filled "
-                        "centre: on."});
+                        "Circle: lamp. Square: emitting surface. Cross: aim of the selected spot. Filled: "
+                        "on. Where many lie together, the nearest are marked."});
   return list;
 }
 

@@ -7,7 +7,7 @@
 namespace lucerna::ui {
 namespace {
 
-constexpr int k_rings = 6;
+constexpr int k_rings = 2;
 
 /// Marks placed so far, in cells as wide as the distance between two of them.
 class Placed {

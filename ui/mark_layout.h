@@ -20,7 +20,7 @@ struct PlacedMark {
 
 /// Places marks in their order, at least `apart` from each other and with their middles inside `within`. Left
 /// out are marks whose anchors lie outside, those that would cover one of their group, and those that find no
-/// free place within six times `apart`.
+/// free place within twice `apart`: longer lines to their anchors would hide the picture.
 std::vector<PlacedMark> place_marks(std::span<const Mark> marks, float apart, const Area& within);
 
 }  // namespace lucerna::ui

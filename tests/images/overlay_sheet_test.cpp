@@ -8,6 +8,7 @@
 
 #include "film/io/image_file.h"
 #include "session/renderer.h"
+#include "shaders/shared/film.h"
 #include "support/render.h"
 
 using namespace lucerna;
@@ -61,7 +62,7 @@ std::vector<int> records_alone(session::Renderer& r) {
   return differ;
 }
 
-constexpr int k_drawn = 24;  // of 255: a rim, no fill
+constexpr int k_drawn = 60;  // of 255: a rim, no fill
 
 /// Of the squares of `side` pixels in which something is drawn, how many are drawn all over.
 double full_squares(const std::vector<int>& differ, uint32_t across, uint32_t side) {
@@ -87,15 +88,15 @@ double drawn_share(const std::vector<int>& differ) {
 TEST_CASE("before the first sample records are rings, not the squares of the coarse picture") {
   const auto r = prepared(k_size, true);
   const std::vector<int> before = records_alone(*r);
-  CHECK(full_squares(before, k_size, 4) < 0.3);
+  CHECK(full_squares(before, k_size, shared::k_coarse_step) < 0.2);
   // They lie where they lie in the picture that has samples.
   while (r->step()) {
   }
   const std::vector<int> after = records_alone(*r);
   size_t moved = 0, drawn = 0;
   for (size_t p = 0; p < before.size(); ++p) {
-    drawn += after[p] > 2 * k_drawn;
-    moved += after[p] > 2 * k_drawn && before[p] < k_drawn / 4;
+    drawn += after[p] > k_drawn;
+    moved += after[p] > k_drawn && before[p] < k_drawn / 6;
   }
   REQUIRE(drawn > 200);
   CHECK(moved < drawn / 20);

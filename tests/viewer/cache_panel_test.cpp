@@ -121,11 +121,11 @@ TEST_CASE("in the program lines lead from a point to the records that it reads")
       }
     return n;
   };
-  // The picture is 524 x 408 at (280, 68): the point, the far wall, and the card.
-  CHECK(differ(lines, 522, 395, 562, 435) > 40);
-  CHECK(differ(lines, 300, 150, 470, 250) == 0);
-  CHECK(test::near_colour(lines, 500, 80, 800, 420, k_gold) > 100);
-  CHECK(differ(normals, 290, 80, 800, 470) > 500);
+  // The picture is 572 x 604 at (232, 68): the point, the far wall, and the card.
+  CHECK(differ(lines, 498, 561, 538, 601) > 40);
+  CHECK(differ(lines, 250, 150, 440, 300) == 0);
+  CHECK(test::near_colour(lines, 470, 80, 800, 560, k_gold) > 100);
+  CHECK(differ(normals, 240, 80, 800, 660) > 500);
 }
 
 TEST_CASE("inspecting a cache that is not used is an error with advice") {

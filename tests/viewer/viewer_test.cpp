@@ -29,11 +29,11 @@ TEST_CASE("the viewer starts, renders cornell, saves a screenshot and quits") {
   CHECK(window.contrast(10, 40, 270, 400) > 0.02);   // the panel
   // Cornell's left wall is red and its right wall green: the picture is not mirrored.
   double red = 0, green = 0;
-  for (uint32_t y = 200; y < 360; ++y)
-    for (uint32_t x = 0; x < 524; ++x) {
+  for (uint32_t y = 260; y < 480; ++y)
+    for (uint32_t x = 0; x < 796; ++x) {
       const vec3 c = window.at(280 + x, y);
-      if (c.x > 2 * c.y && c.x > 0.05f) red += x < 262 ? 1 : -1;
-      if (c.y > 1.3f * c.x && c.y > 0.05f) green += x >= 262 ? 1 : -1;
+      if (c.x > 2 * c.y && c.x > 0.05f) red += x < 398 ? 1 : -1;
+      if (c.y > 1.3f * c.x && c.y > 0.05f) green += x >= 398 ? 1 : -1;
     }
   CHECK(red > 500);
   CHECK(green > 500);

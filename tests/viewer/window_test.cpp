@@ -130,6 +130,22 @@ TEST_CASE("the picture has half of a small window until the user arranges panels
     opened.right_open = opened.right_arranged = true, opened.opened_last = ui::Panel::right;
     CHECK(ui::arrange(opened, {width, height}, scale).shown.right_open);
   }
+  // Opening or folding one panel moves no other.
+  const ui::Layout fresh = ui::arrange({}, {1100, 700}, 1).shown;
+  CHECK((fresh.left_open && !fresh.right_open && !fresh.bottom_open));
+  for (const auto& [panel, open] :
+       {std::pair{ui::Panel::right, true}, {ui::Panel::bottom, true}, {ui::Panel::left, false}}) {
+    ui::Layout chosen;
+    (panel == ui::Panel::right    ? chosen.right_arranged
+     : panel == ui::Panel::bottom ? chosen.bottom_arranged
+                                  : chosen.left_arranged) = true;
+    if (open) chosen.opened_last = panel;
+    if (!open) chosen.left_open = false;
+    const ui::Layout shown = ui::arrange(chosen, {1100, 700}, 1).shown;
+    CHECK(shown.left_open == (panel != ui::Panel::left));
+    CHECK(shown.right_open == (panel == ui::Panel::right));
+    CHECK(shown.bottom_open == (panel == ui::Panel::bottom));
+  }
   // What was arranged stays, though it leaves less than half.
   ui::Layout all;
   all.left_arranged = all.right_arranged = all.bottom_arranged = true;

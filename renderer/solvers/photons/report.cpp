@@ -214,14 +214,16 @@ Report make_report(const PhotonReport& r) {
     report.legends.push_back({.title = "Photons, by pass",
                               .note = "Dot: a photon of the last pass. The colour changes with each pass."});
   if (r.view == shared::k_photons_by_map) {
-    Legend legend{.title = "Light of", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
+    Legend legend{
+        .title = "Photons, by component", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
     for (const auto& [hue, name] : {std::pair{0u, "secondary"}, {1u, "tertiary"}, {2u, "caustic"}})
       legend.marks.push_back({shared::ramp_hue(hue), name});
     legend.note = "Dot: a photon of the last pass. Colour: the component it contributes to.";
     report.legends.push_back(std::move(legend));
   }
   if (r.view == shared::k_photons_by_bounce) {
-    Legend legend{.title = "Bounces", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
+    Legend legend{
+        .title = "Photons, by bounces", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
     for (uint32_t bounce = 0; bounce < 6; ++bounce)
       legend.marks.push_back({shared::ramp_hue(bounce), fmt::format("{}{}", bounce, bounce == 5 ? "+" : "")});
     legend.note = "Dot: a photon of the last pass. Colour: surfaces on its path before this one.";
