@@ -243,8 +243,9 @@ bool PhotonSolver::note_first_hits(transport::Wavefront& wavefront, const Pictur
     boxes_.insert(boxes_.end(), places.begin(), places.end());
   };
   if (!many && first_hits_.size() >= k_least_hits) aim_at(transport::first_hit_boxes(std::move(first_hits_)));
-  // If only aimed paths found entrances, there are others. Surfaces beyond the scene's core get almost no paths
-  // by chance, whatever was found within it: few samples are no evidence that little light comes from them.
+  // If only aimed paths found entrances, there are others. Surfaces beyond the scene's core get almost no
+  // paths by chance, whatever was found within it: few samples are no evidence that little light comes from
+  // them.
   const bool beyond_core = picture.flat.core_radius < picture.flat.scene_radius;
   if (beyond_core || (!many && !by_chance)) aim_at(reached_boxes_);
   first_hits_.clear();
