@@ -190,7 +190,7 @@ std::vector<std::string> Workspace::script() const {
 
 void Workspace::save_script(const std::string& file) const {
   if (is_plain_file(file) && !read_file(file).starts_with(k_script_head))
-    throw Error(file, "is there already and no saved session: another name is needed");
+    throw Error(file, "exists and is no saved session: choose another name");
   std::string text = k_script_head;
   for (const std::string& line : script()) text += line + '\n';
   write_file(file, text);

@@ -140,7 +140,7 @@ TEST_CASE("invalid arguments are refused with their location") {
   std::ofstream(f / "binary.lucerna") << std::string("wait 0\n\0", 8);
   refused("--script " + f.string(), f.string() + ": cannot be read: it is a folder");
   refused("--script " + (f / "none.lucerna").string(), "none.lucerna: cannot be read: No such file");
-  refused("--script " + (f / "binary.lucerna").string(), "binary.lucerna: is no text");
+  refused("--script " + (f / "binary.lucerna").string(), "binary.lucerna: is not a text file");
   for (const char* option : {"--script", "render x.gltf --stats", "render x.gltf --ledger",
                              "render x.gltf --reference", "render x.gltf --cache-save"})
     refused(option + std::string(" ''"), "expected a file name");

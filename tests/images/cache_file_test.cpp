@@ -205,8 +205,8 @@ TEST_CASE("a file that does not fit is refused, and picture and records stay") {
 
   // The file lacks a component.
   Bed caustic(Settings{{"components.tertiary", "cache"}});
-  CHECK_THAT(caustic.refusal(file), Contains("its records hold secondary, tertiary light; the components "
-                                             "that are looked up need caustic light too"));
+  CHECK_THAT(caustic.refusal(file), Contains("its records hold secondary, tertiary light; the looked-up "
+                                             "components also need caustic light"));
   // The file has more records than the limit.
   const uint32_t count = first.records().size();
   Bed narrow;

@@ -172,5 +172,5 @@ TEST_CASE("records beyond the capacity are refused, not written") {
   const std::vector<uint32_t> one{0};
   CHECK_THROWS_WITH(bed.evaluator.evaluate(bed.wavefront, bed.automaton, records, one,
                                            {.elevations = 1024, .azimuths = 1024}),
-                    Catch::Contains("room for"));
+                    Catch::Contains("the range is 1 to"));
 }

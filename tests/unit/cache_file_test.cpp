@@ -214,8 +214,8 @@ TEST_CASE("a cache fits what it was built from, and reports what differs") {
   // Components that are not looked up need no match.
   CHECK(fits([](MadeWith& m) { m.parts = 0b0100; }).empty());
   CHECK(fits([](MadeWith& m) { m.parts = 0b1111; }) ==
-        "a.cache: its records hold secondary, tertiary light; the components that are looked up need "
-        "environment, caustic light too");
+        "a.cache: its records hold secondary, tertiary light; the looked-up components also need "
+        "environment, caustic light");
   // The way tertiary light was gathered matters only if it is looked up.
   CHECK(c.made_with.recursive);
   CHECK(fits([](MadeWith& m) { m.recursive = false; }) ==

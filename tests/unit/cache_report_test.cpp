@@ -118,7 +118,7 @@ TEST_CASE("the panel shows numbers, steps and passes, each step with its text") 
   CHECK(table.rows[0].bar == 1);
   CHECK(table.rows[0].cells.size() == table.columns.size());
   CHECK_THAT(table.rows[1].help, Contains("Pass 2: 1 of 1\xE2\x80\x88"
-                                          "000 paths asked"));
+                                          "000 paths found no record"));
   const auto& parts = item<solvers::Parts>(passes).parts;
   REQUIRE(parts.size() == k_build_steps.size());
   double sum = 0;

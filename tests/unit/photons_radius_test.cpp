@@ -35,12 +35,12 @@ TEST_CASE("the report of photons states why there are none") {
         if (text->text.find(words) != std::string::npos) return true;
     return false;
   };
-  CHECK(says(photons::make_report(r), "Nothing in the scene shines"));
+  CHECK(says(photons::make_report(r), "The scene has no light"));
   r.lights_power = 1, r.sends = false;
   CHECK(says(photons::make_report(r), "there are no caustics"));
   r.sends = true, r.limited = true;
   CHECK_FALSE(says(photons::make_report(r), "no caustics"));
-  CHECK(says(photons::make_report(r), "held to a quarter"));
+  CHECK(says(photons::make_report(r), "limited to a quarter"));
   r.rounds = 5, r.last.round = 4;
   CHECK(photons::make_report(r).state == "round 5");
   CHECK(photons::make_report(r).figure("rounds") == 5);

@@ -16,11 +16,11 @@ TEST_CASE("the displayed picture's error is said in words, and what is from befo
   CHECK(ui::shown_texts(s) == Texts{"42 % from before the edit"});
   s.shown_error = film::ShownError{0.3, 0.6};
   s.filtered = 0.5;
-  CHECK(ui::shown_texts(s).front() == "30 % off, 42 % from before the edit");
-  CHECK(ui::usable_text(s) == ", usable in about 6 s");  // noise falls by half in four times the time
+  CHECK(ui::shown_texts(s).front() == "30.0 % off, 42 % from before the edit");
+  CHECK(ui::usable_text(s) == ", usable in about 6.0 s");  // noise falls by half in four times the time
   s.stale = 0;
-  CHECK(ui::shown_texts(s).front() == "30 % off, worst tenth 60 %");
-  CHECK(ui::shown_texts(s).back() == "30 % off");
+  CHECK(ui::shown_texts(s).front() == "30.0 % off, worst tenth 60.0 %");
+  CHECK(ui::shown_texts(s).back() == "30.0 % off");
 }
 
 TEST_CASE("a picture is usable if the median tile and the worst tenth are") {

@@ -100,7 +100,7 @@ TEST_CASE("a solver unknown to the window has its panel, keys, legend, card and 
   CHECK_THAT(script, Catch::Contains("set overlay.slides whole\nset overlay.slides off\nlantern.save"));
   CHECK_THAT(outcome.output, Catch::Contains("lantern: command next") && Catch::Contains("saved slow.tray"));
   CHECK_THAT(outcome.output, Catch::Contains("preparation of the magic lantern") &&
-                                 Catch::Contains("Writes the slides of the lantern"));
+                                 Catch::Contains("Saves the slides of the lantern"));
   const test::Picture empty(file("empty.png")), all(file("all.png")), off(file("off.png"));
   // The last of three titles is that of the displayed panel.
   CHECK(test::near_colour(all, 1345, 32, 1435, 36, k_accent) > 100);
