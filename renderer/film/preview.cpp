@@ -141,16 +141,16 @@ void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
 }
 
 void Preview::pack(gpu::Stream& stream, const Film& film, const Pixels& to, const View& view,
-                   const gpu::Buffer* guide, const gpu::Buffer& sums) {
+                   const gpu::Buffer* guide, const gpu::Buffer& sums, float noise) {
   film.bind(resources_);
   resources_.set("guide_surfaces", guide ? *guide : history_.pixels.surfaces);
   resources_.set("Packed", to.light);
   resources_.set("PackedSurfaces", to.surfaces);
   resources_.set("PackedSums", sums);
-  stream.dispatch(
-      pack_, resources_,
-      PreviewPackPush{film.width(), film.height(), view.exposure, guide != nullptr, shown_components(view)},
-      groups(uint64_t{film.width()} * film.height()));
+  stream.dispatch(pack_, resources_,
+                  PreviewPackPush{film.width(), film.height(), view.exposure, guide != nullptr,
+                                  shown_components(view), noise},
+                  groups(uint64_t{film.width()} * film.height()));
 }
 
 void Preview::move(gpu::Stream& stream, PreviewReprojectPush push) {
@@ -214,9 +214,10 @@ void Preview::recall(gpu::Stream& stream, const Film& film, const View& view, co
        {width_, height_, 0, shown_components(view), view.curve, history_.scale_for(view)});
 }
 
-void Preview::take(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera) {
+void Preview::take(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera,
+                   float noise) {
   make_room(film.width(), film.height(), nullptr);
-  pack(stream, film, now_, view, nullptr, sums_[0]);
+  pack(stream, film, now_, view, nullptr, sums_[0], noise);
   stream.run();
   camera_ = camera, exposure_ = view.exposure;
   shown_ = true;

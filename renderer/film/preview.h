@@ -67,7 +67,9 @@ class Preview {
   void recall(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera);
   /// Takes the film's picture, shown unfiltered with that exposure, as the last shown picture for keep().
   /// Requires a sample in every pixel. Throws and runs the stream like develop().
-  void take(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera);
+  /// `noise`: factor on the standard errors of its halves.
+  void take(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera,
+            float noise = 1);
   /// Takes a filtered picture that is shown in place of a preview: `luminances` and their standard `errors`,
   /// one a pixel. Returns its expected error. Throws and runs the stream like develop().
   ShownError show_filtered(gpu::Stream& stream, const Film& film, std::span<const float> luminances,
@@ -96,7 +98,7 @@ class Preview {
   void make_pixels(Pixels& to);
   void make_room(uint32_t width, uint32_t height, const Film* draft);
   void pack(gpu::Stream& stream, const Film& film, const Pixels& to, const View& view,
-            const gpu::Buffer* guide, const gpu::Buffer& sums);
+            const gpu::Buffer* guide, const gpu::Buffer& sums, float noise = 1);
   /// Records; the tiles can be read after the stream has run. Returns whether the previous picture is
   /// measured too.
   bool judge(gpu::Stream& stream, const Film& by, const View& view);

@@ -24,7 +24,7 @@ constexpr double k_least_ratio = 0.02;
 constexpr double k_fine = 2;
 // Mean deviation of 3x3 pixels' means in a tile over the quadratic mean from k_fine; measured after edits of
 // rooms (lucerna bench latency), where errors of filtered light are finer than k_fine assumes.
-constexpr double k_mean_size = 1.08;
+constexpr double k_mean_size = 1.24;
 
 double quantile(std::vector<double> values, double at) {
   const size_t n = std::min(values.size() - 1, size_t(double(values.size()) * at));

@@ -28,11 +28,11 @@ void Display::restart(const scene::Changes& changes, const vec3& scale, bool sam
   ++version_;
 }
 
-bool Display::take(gpu::Stream& stream, const film::Film& film) {
+bool Display::take(gpu::Stream& stream, const film::Film& film, double noise) {
   bool taken = false;
   ++version_;
   if (plain_ && film::Preview::fits(device_.info().limits, film.width(), film.height())) try {
-      preview_.take(stream, film, plain_->shown, plain_->camera);
+      preview_.take(stream, film, plain_->shown, plain_->camera, float(noise));
       taken = true;
     } catch (const Error&) {
       preview_.forget();  // no memory: the next picture starts without history

@@ -22,8 +22,8 @@ class Display {
   /// light. `same_light`: only the computation or the view has changed.
   void restart(const scene::Changes& changes, const vec3& scale, bool same_light);
   /// Call before that, while the film still holds samples of every pixel: keeps it as the shown picture, if
-  /// plain() says so. True if taken.
-  bool take(gpu::Stream& stream, const film::Film& film);
+  /// plain() says so. `noise`: factor on the standard errors of its halves. True if taken.
+  bool take(gpu::Stream& stream, const film::Film& film, double noise = 1);
   /// Cached lighting changed: restarts preview accumulation. The old preview stays until the new one is
   /// better.
   void light_changed();

@@ -216,7 +216,9 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
       wavefront.mix(*film_);
     }
     const bool filtered = shown_filtered_ && shown_.filtered && !by_group;
-    const bool taken = display_->take(wavefront.stream(), filtered ? *shown_filtered_->film : *film_);
+    // The root: of single pixels' bias about half is left in means over 3x3, as bench latency measures.
+    const bool taken = display_->take(wavefront.stream(), filtered ? *shown_filtered_->film : *film_,
+                                      filtered ? std::sqrt(shown_filtered_->error.over_noise) : 1);
     known = known || (by_group && taken);
   }
   forget_filtered();

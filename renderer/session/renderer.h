@@ -371,7 +371,8 @@ class Renderer {
   std::unique_ptr<PictureFilter> window_filter_;  ///< made at the first use
   std::optional<Filtered> shown_filtered_;        ///< its latest result for this picture
   bool filter_fails_ = false, filter_news_ = false;
-  uint64_t judged_paths_ = 0;  ///< at the latest error estimate of shown_filtered_
+  uint64_t filtered_paths_ = 0;  ///< of the latest result, shown or not; 0: none
+  uint64_t judged_paths_ = 0;    ///< at the latest error estimate of shown_filtered_
   double filter_s_ = 0,
          filter_piece_s_ = 0;                ///< filtering time: of the latest result, and of the current one
   double filtered_at_s_ = 0;                 ///< render_s_ then

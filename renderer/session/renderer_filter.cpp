@@ -16,6 +16,8 @@ constexpr uint64_t k_more_samples = 2;
 constexpr double k_more_seconds = 3;
 // Growth of the number of samples after which the filtered picture's error is estimated again.
 constexpr double k_more_to_judge = 1.2;
+// Share of light from before an edit from which on a preview may be kept in place of a filtered picture.
+constexpr double k_some_stale = 0.05;
 
 }  // namespace
 
@@ -59,12 +61,12 @@ bool Renderer::filter_due() const {
     return false;
   if (window_filter_ && window_filter_->working()) return true;
   const uint64_t paths = stats().paths;
-  if (samples() < 2 || (shown_filtered_ && shown_filtered_->paths == paths)) return false;
+  if (samples() < 2 || filtered_paths_ == paths) return false;
   if (done()) return true;
   if (preparing() || engine_->learns(samples())) return false;
-  return shown_filtered_ ? paths >= k_more_samples * shown_filtered_->paths &&
-                               render_s_ - filtered_at_s_ >= k_more_seconds * filter_s_
-                         : samples() >= k_first_samples;
+  return filtered_paths_ > 0 ? paths >= k_more_samples * filtered_paths_ &&
+                                   render_s_ - filtered_at_s_ >= k_more_seconds * filter_s_
+                             : samples() >= k_first_samples;
 }
 
 void Renderer::filter_piece(const std::function<bool()>& cancel) {
@@ -83,12 +85,17 @@ void Renderer::filter_piece(const std::function<bool()>& cancel) {
   }
   filter_piece_s_ += timer.seconds();
   if (window_filter_->working()) return;
-  shown_filtered_ = window_filter_->take();
-  engine_->wavefront().uncounted([&] {
-    display_->show_filtered(engine_->wavefront().stream(), *film_, shown_filtered_->error, view());
-  });
-  judged_paths_ = shown_filtered_->paths;
+  Filtered next = window_filter_->take();
   filter_s_ = filter_piece_s_, filtered_at_s_ = render_s_;
+  filtered_paths_ = judged_paths_ = next.paths;
+  // Light from before an edit may be better than what few samples can show.
+  const film::PreviewShares preview = shown_filtered_ ? film::PreviewShares{} : display_->shares();
+  engine_->wavefront().uncounted(
+      [&] { display_->show_filtered(engine_->wavefront().stream(), *film_, next.error, view()); });
+  const bool worse = preview.stale > k_some_stale && preview.error &&
+                     display_->filtered_error()->median > preview.error->median;
+  if (worse && !done()) return;
+  shown_filtered_ = std::move(next);
   filter_news_ = true;
 }
 
@@ -103,6 +110,7 @@ void Renderer::judge_filtered() {
 void Renderer::forget_filtered() {
   filtered_.reset();
   shown_filtered_.reset();
+  filtered_paths_ = 0;
   if (window_filter_) window_filter_->stop();
 }
 

@@ -21,7 +21,7 @@ void main() {
     FilmPixel p = film_load(c, pixel, ratio);
     vec3 a = p.even.sum + p.even.compensation, b = p.odd.sum + p.odd.compensation;
     float noise = count < 2u ? -1.0 : 0.5 * abs(luminance(a) / even - luminance(b) / odd);
-    light.of[c] = push.exposure * vec4((a + b) / n, noise);
+    light.of[c] = push.exposure * vec4((a + b) / n, push.noise * noise);
     if (count < 2u) light.of[c].w = -1.0;
     if ((push.show >> c & 1u) != 0u) shown += push.exposure * luminance(a + b);
   }

@@ -33,6 +33,7 @@ struct PreviewPackPush {
   float exposure;
   uint guided;  ///< not 0: surfaces of pixels without samples are known from the guide
   uint show;    ///< bit i: component i is shown
+  float noise;  ///< factor on the standard errors that the halves of the samples give
 };
 
 struct PreviewHalvePush {

@@ -85,6 +85,32 @@ TEST_CASE("the window shows a filtered picture from some samples on and when it 
   CHECK_FALSE(r.filter_due());
 }
 
+TEST_CASE("light from before an edit is not replaced by a filtered picture with a larger error") {
+  Window truth("1024", false);
+  test::set(truth.r, {{"seed", "9"}});
+  test::finish(truth.r);
+  const std::vector<uint8_t> converged = truth.r.picture(false);
+
+  Window window("256");
+  session::Renderer& r = window.r;
+  test::finish(r);
+  const double before = mean_square(r.shown_picture(false), converged);
+  r.set_camera(r.camera());  // the same view and light, from the beginning
+  r.shown_picture(false);
+  while (r.samples() < 12) {
+    REQUIRE(r.step());
+    r.shown_picture(false);
+  }
+  INFO("mean square " << before << " before");
+  CHECK(r.preview_shares().filtered < 1);
+  CHECK(r.preview_shares().stale > 0.3);
+  CHECK(mean_square(r.shown_picture(false), converged) < 2 * before);
+  // At the end it is the filtered picture in any case.
+  test::finish(r);
+  CHECK(r.preview_shares().filtered == 1);
+  CHECK(r.preview_shares().stale == 0);
+}
+
 TEST_CASE("in batch mode only requested filtering runs") {
   Window batch("16", false);
   test::finish(batch.r);

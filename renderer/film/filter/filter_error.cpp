@@ -112,6 +112,10 @@ void estimate_pixels(FilterError& error, const Image& image, const Halves& s, co
   const std::vector<double> scale = scales({image.width, image.height, f.mean}, k_noise_reach);
   const std::vector<double> v = variances(noise, all, scale, k_noise_reach, k_bias_reach);
   error.luminances.assign(f.mean.begin(), f.mean.end());
+  double variance = 0, noise_variance = 0;
+  for (size_t i = 0; i < n; ++i)
+    if (scale[i] > 0) variance += v[i] / scale[i], noise_variance += noise.values[i] / scale[i];
+  if (noise_variance > 0) error.over_noise = std::max(1.0, std::sqrt(variance / noise_variance));
   error.pixels.resize(n);
   for (size_t i = 0; i < n; ++i) error.pixels[i] = float(image.samples[i] < 2 ? f.mean[i] : std::sqrt(v[i]));
 }

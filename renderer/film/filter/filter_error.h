@@ -24,7 +24,10 @@ struct FilterError {
   std::vector<float> luminances;    ///< luminance of each filtered pixel
   std::vector<FilteredTile> tiles;  ///< in raster order
   double luminance = 0;             ///< mean of the picture
-  double rms = 0;                   ///< quadratic mean of the pixels' errors
+  /// Standard errors over those that the halves of the filtered film differ by: what bias adds to noise; 1 or
+  /// more. Quadratic mean over the pixels, relative to their luminance.
+  double over_noise = 1;
+  double rms = 0;  ///< quadratic mean of the pixels' errors
   double relative() const { return luminance > 0 ? rms / luminance : 0; }
   double tile_median = 0, tile_worst_tenth = 0;  ///< statistics of FilteredTile::relative
 };
