@@ -1,4 +1,6 @@
 // Filtered pictures: a finished one on request, and the window's between its samples.
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "base/log.h"
@@ -18,6 +20,16 @@ constexpr double k_more_seconds = 3;
 constexpr double k_more_to_judge = 1.2;
 // Share of light from before an edit from which on a preview may be kept in place of a filtered picture.
 constexpr double k_some_stale = 0.05;
+
+/// Errors of what tiles look up. All samples share them, so samples cannot measure them.
+film::ShownError lookup_errors(const std::vector<film::TileError>& tiles) {
+  std::vector<double> errors;
+  for (const film::TileError& t : tiles)
+    errors.push_back(std::hypot(double(t.relative_records), double(t.relative_interpolation)));
+  if (errors.empty()) return {};
+  std::sort(errors.begin(), errors.end());
+  return {errors[errors.size() / 2], errors[errors.size() * 9 / 10]};
+}
 
 }  // namespace
 
@@ -116,9 +128,15 @@ void Renderer::forget_filtered() {
 
 film::PreviewShares Renderer::preview_shares() const {
   if (!display_) return {};
+  film::PreviewShares shares = display_->shares();
   if (engine_ && film_ && shown_filtered(view()))
-    return {.stale = 0, .filtered = 1, .error = display_->filtered_error()};
-  return display_->shares();
+    shares = {.stale = 0, .filtered = 1, .error = display_->filtered_error()};
+  if (shares.error && lookup_errors_known()) {
+    const film::ShownError lookups = lookup_errors(film::tile_errors(*film_, tile_side()));
+    shares.error->median = std::hypot(shares.error->median, lookups.median);
+    shares.error->worst_tenth = std::hypot(shares.error->worst_tenth, lookups.worst_tenth);
+  }
+  return shares;
 }
 
 }  // namespace lucerna::session
