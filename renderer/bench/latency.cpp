@@ -117,7 +117,7 @@ class Latency {
   void run_scene(const fs::path& file, const std::string& solver) {
     session::Session s({.device = o_.device, .validation = false, .shaders = {}, .scenes = o_.scenes});
     s.set_size(o_.width, o_.height);
-    changes_.clear(), back_.clear(), done_edits_.clear();
+    changes_.clear(), back_.reset(), done_edits_.clear();
     const Timer clock;
     s.load(file);
     choose(s, solver);
@@ -142,11 +142,11 @@ class Latency {
       const scene::Camera camera = s.snapshot()->camera;
       std::optional<Change> change;
       std::string done = done_edits_ + std::string("-") + k_edit_names[size_t(edit)];
-      const bool back = edit == Edit::undo && !back_.empty();
+      const bool back = edit == Edit::undo && back_.has_value();
       if (edit == Edit::undo) {
         // Changes of camera or solver in between remain.
-        if (back) change = back_.back().change, done = back_.back().edits;
-        back_.clear();
+        if (back) change = back_->change, done = back_->edits;
+        back_.reset();
       } else {
         change = change_of(edit, *s.scene(), camera, o_.seed);
       }
@@ -160,9 +160,9 @@ class Latency {
         choose(s, solver);
       } else {
         if (edit == Edit::camera)
-          back_.clear();
+          back_.reset();
         else if (!back)
-          back_ = {{reverse_of(*change, *s.scene(), camera), done_edits_}};
+          back_ = {reverse_of(*change, *s.scene(), camera), done_edits_};
         change->apply(s);
         changes_.push_back(*change);
         done_edits_ = done;
@@ -262,7 +262,7 @@ class Latency {
     Change change;
     std::string edits;
   };
-  std::vector<Back> back_;  // at most one
+  std::optional<Back> back_;
   std::map<std::string, Reference> references_;
   std::vector<LatencyResult> results_;
 };

@@ -259,7 +259,9 @@ ShownError Preview::show_filtered(gpu::Stream& stream, const Film& film, std::sp
     shown[i] = glm::packHalf2x16(vec2(std::min(light, k_most_light), std::min(error, 1.0f)));
   }
   pixels_shown_[1].write(std::span<const uint32_t>(shown));
-  pack(stream, film, now_, view, nullptr, sums_[1]);
+  // Only the sums are needed: what was shown stays the history of the next edit until take().
+  make_pixels(moved_), moved_camera_.reset();
+  pack(stream, film, moved_, view, nullptr, sums_[1]);
   judge_tiles(stream, film, 0, pixels_shown_[1]);
   stream.run();
   stream.take_times();
@@ -270,7 +272,8 @@ ShownError Preview::show_filtered(gpu::Stream& stream, const Film& film, std::sp
 
 std::optional<ShownError> Preview::judge_filtered(gpu::Stream& stream, const Film& film) {
   if (!filtered_shown_ || film.width() != width_ || film.height() != height_) return std::nullopt;
-  pack(stream, film, now_, filtered_shown_->view, nullptr, sums_[0]);
+  make_pixels(moved_), moved_camera_.reset();
+  pack(stream, film, moved_, filtered_shown_->view, nullptr, sums_[0]);
   judge_tiles(stream, film, 1, pixels_shown_[1]);
   stream.run();
   stream.take_times();

@@ -585,9 +585,9 @@ bool Renderer::draw_draft(const std::function<bool()>& cancel) {
   if (std::exchange(draft_preparing_, prepares) && !prepares) display_->light_changed();
   const bool filled = samples() > 0;
   const bool sight = !filled && previewed(view()) && display_->sight_wanted(*engine_, picture_view());
-  const DraftPlan::Next what = display_->plan().next(
-      prepares, filled, sight,
-      display_->shares().error ? std::optional(display_->shares().error->median) : std::nullopt);
+  const std::optional<film::ShownError> off = display_->shares().error;
+  const DraftPlan::Next what =
+      display_->plan().next(prepares, filled, sight, off ? std::optional(off->median) : std::nullopt);
   if (what == DraftPlan::Next::nothing) return false;
   clock_.go();
   const Timer timer;

@@ -36,13 +36,18 @@ double mean_square(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b)
   return sum / double(a.size());
 }
 
-}  // namespace
-
-TEST_CASE("the window shows a filtered picture from some samples on and when it is finished") {
+/// Of many samples, independent of those of the window.
+std::vector<uint8_t> converged_picture() {
   Window truth("1024", false);
   test::set(truth.r, {{"seed", "9"}});
   test::finish(truth.r);
-  const std::vector<uint8_t> converged = truth.r.picture(false);
+  return truth.r.picture(false);
+}
+
+}  // namespace
+
+TEST_CASE("the window shows a filtered picture from some samples on and when it is finished") {
+  const std::vector<uint8_t> converged = converged_picture();
 
   Window window("16");
   session::Renderer& r = window.r;
@@ -86,10 +91,7 @@ TEST_CASE("the window shows a filtered picture from some samples on and when it 
 }
 
 TEST_CASE("light from before an edit is not replaced by a filtered picture with a larger error") {
-  Window truth("1024", false);
-  test::set(truth.r, {{"seed", "9"}});
-  test::finish(truth.r);
-  const std::vector<uint8_t> converged = truth.r.picture(false);
+  const std::vector<uint8_t> converged = converged_picture();
 
   Window window("256");
   session::Renderer& r = window.r;

@@ -144,6 +144,26 @@ TEST_CASE("the error that a preview reports is corrected by samples that the pre
   CHECK(later.worst_tenth < 2.2 * off_first);
 }
 
+TEST_CASE("measuring a filtered picture leaves the shown preview as the history of the next edit") {
+  Stage stage(96, 64);
+  std::mt19937 random(3);
+  std::exponential_distribution<float> noise(1);
+  stage.sample(stage.film, 2,
+               [&](uint32_t, uint32_t) { return Sample{.light = vec3(0.3f * noise(random))}; });
+  stage.show();
+  const std::vector<float> shown = stage.shown();
+  const std::vector<float> luminances(shown.size(), 0.3f), errors(shown.size(), 0.01f);
+  stage.preview.show_filtered(stage.stream, stage.film, luminances, errors, stage.view);
+  REQUIRE(stage.preview.judge_filtered(stage.stream, stage.film));
+  stage.preview.keep(vec3(1), false, true);
+  stage.film.clear(stage.stream);
+  stage.preview.recall(stage.stream, stage.film, stage.view, stage.camera);
+  const std::vector<float> recalled = stage.shown();
+  float most = 0;
+  for (size_t i = 0; i < shown.size(); ++i) most = std::max(most, std::abs(recalled[i] - shown[i]));
+  CHECK(most < 0.01f);
+}
+
 TEST_CASE("closer up, the previous picture gets the detail of the visible surfaces, and no other light") {
   // A grey wall that shows stripes of single pixels from half the distance; and a dark bar in front of it,
   // before a bright part of the wall.
