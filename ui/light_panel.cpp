@@ -5,6 +5,7 @@
 
 #include "chart.h"
 #include "panel_block.h"
+#include "plan/plan.h"
 #include "solvers/registry.h"
 #include "state.h"
 #include "widgets.h"
@@ -21,13 +22,16 @@ const char* meaning(int component) {
   return texts[component];
 }
 
-/// The meaning of a value of components.X: a solver's name, two joined by a plus, or off.
-std::string solver_help(const std::string& value) {
+/// The meaning of a value of a component's setting: a solver's name, two joined by a plus, or off.
+std::string solver_help(int component, const std::string& value) {
   if (value == "off")
     return "Off: the component is missing; its paths are traced only where other components need them.";
   const size_t plus = value.find('+');
   const solvers::SolverInfo* solver = solvers::find(value.substr(0, plus));
-  const std::string first = solver ? solver->help : "";
+  std::string first = solver ? solver->help : "";
+  if (component == 0 && solver && !solver->primary_part.empty())
+    first += fmt::format(" Of primary light it computes {}{}; paths compute the rest.", solver->primary_part,
+                         solver->primary_with_secondary ? ", together with secondary light" : "");
   if (plus == std::string::npos) return first;
   const solvers::SolverInfo* other = solvers::find(value.substr(plus + 1));
   return first + (other ? " " + other->help : std::string());
@@ -83,7 +87,7 @@ void component_row(Ui& ui, int c, float width) {
     int chosen = static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.setting(key)) -
                                   option->choices.begin());
     std::vector<std::string> helps;
-    for (const std::string& solver : option->choices) helps.push_back(solver_help(solver));
+    for (const std::string& solver : option->choices) helps.push_back(solver_help(c, solver));
     const std::string help =
         option->help + (static_cast<size_t>(chosen) < helps.size() ? " " + helps[size_t(chosen)] : "");
     if (choice("##solver", "", option->choices, chosen, solver_width, helps))
@@ -124,7 +128,17 @@ void component_row(Ui& ui, int c, float width) {
 }
 
 void components(Ui& ui, float width) {
-  for (int c = 0; c < session::k_components; ++c) component_row(ui, c, width);
+  const std::string &primary = ui.setting("components.primary"),
+                    &secondary = ui.setting("components.secondary"),
+                    &tertiary = ui.setting("components.tertiary");
+  for (int c = 0; c < session::k_components; ++c) {
+    component_row(ui, c, width);
+    if (c == 0 && plan::primary_by_paths(primary, secondary, tertiary)) {
+      paragraph(
+          fmt::format("Computed by paths: '{}' serves primary light only with secondary light.", primary));
+      gap(8);
+    }
+  }
   // The sum: stacked times of all components.
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImDrawList* list = ImGui::GetWindowDrawList();

@@ -24,13 +24,6 @@ constexpr float k_narrow = 236;  // width of a panel's content below which words
 
 bool narrow() { return ImGui::CalcItemWidth() < px(k_narrow); }
 
-/// Wrapped text.
-void paragraph(const std::string& text, ImU32 colour = colour::text_dim) {
-  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + ImGui::CalcItemWidth());
-  label(text, colour);
-  ImGui::PopTextWrapPos();
-}
-
 /// A help sentence with its key.
 std::string with_key(const std::string& help, char shortcut) {
   return shortcut ? fmt::format("{} {}.", help, shortcut) : help;
@@ -269,10 +262,10 @@ void block(Ui& ui, const std::string& title, const std::string& note, const Draw
   panel_block(ui, title.c_str(), true, note, 10, draw);
 }
 
-/// The components that a solver can compute, as words.
+/// The components that a solver can compute completely, as words.
 std::vector<std::string> served(const SolverInfo& solver) {
   std::vector<std::string> names;
-  for (size_t c = 0; c < solver.serves.size(); ++c)
+  for (size_t c = solver.primary_part.empty() ? 0 : 1; c < solver.serves.size(); ++c)
     if (solver.serves[c]) names.push_back(session::k_component_names[c]);
   return names;
 }

@@ -108,6 +108,12 @@ void tooltip(const std::string& text) {
   ImGui::PopStyleVar(2);
 }
 
+void paragraph(const std::string& text, ImU32 colour) {
+  ImGui::PushTextWrapPos(ImGui::GetCursorPosX() + ImGui::CalcItemWidth());
+  label(text, colour);
+  ImGui::PopTextWrapPos();
+}
+
 void gap(float design) { ImGui::SetCursorPosY(ImGui::GetCursorPosY() + px(design)); }
 
 void hairline() {

@@ -26,6 +26,9 @@ void draw_text(ImDrawList* list, const ImVec2& lo, const ImVec2& hi, const std::
                Align align = Align::left, ImFont* font = nullptr);
 float text_width(const std::string& text, ImFont* font = nullptr);
 
+/// Text wrapped at the width of items.
+void paragraph(const std::string& text, ImU32 colour = colour::text_dim);
+
 /// Shows `text` after the last item, disabled or not, was hovered for a moment.
 void tooltip(const std::string& text);
 

@@ -36,8 +36,8 @@ const solvers::Report* Workspace::waiting() const {
 void Workspace::needs_solver(const SolverInfo& solver) const {
   needs_scene();
   if (uses(solver)) return;
-  const size_t served = static_cast<size_t>(std::find(solver.serves.begin(), solver.serves.end(), true) -
-                                            solver.serves.begin());
+  const auto first = solver.serves.begin() + (solver.primary_part.empty() ? 0 : 1);
+  const auto served = size_t(std::find(first, solver.serves.end(), true) - solver.serves.begin());
   throw Error(
       "", fmt::format("no component takes its light from the {}; set components.{} {}", solver.name,
                       session::k_component_names[std::min(served, solver.serves.size() - 1)], solver.name));

@@ -418,13 +418,13 @@ namespace {
 /// lookup_routes(); `onward`: also behind lookups, for paths that have passed one.
 LookupRoutes routes_of(const Automaton& automaton, uint32_t enabled, uint32_t cached, bool direct,
                        bool onward) {
-  constexpr uint32_t k_secondary = 1u << 1, k_tertiary = 1u << 2;
+  constexpr uint32_t k_primary = 1u << 0, k_secondary = 1u << 1, k_tertiary = 1u << 2;
   cached &= enabled;
   // Words of the secondary component continue as words of the tertiary one, and nothing is traced behind a
   // lookup.
   if (cached & k_secondary) cached |= enabled & k_tertiary;
   LookupRoutes routes;
-  routes.traced = enabled & ~cached;
+  routes.traced = enabled & (~cached | k_primary);
   routes.component.assign(automaton.states.size(),
                           {k_no_component, k_no_component, k_no_component, k_no_component});
   std::set<uint8_t> open{0}, seen{0};  // states that a path can be in before it has been looked up
@@ -441,7 +441,8 @@ LookupRoutes routes_of(const Automaton& automaton, uint32_t enabled, uint32_t ca
     };
     const bool traced_on = (within(component_of[1], enabled) && !within(component_of[1], cached)) ||
                            (within(component_of[2], enabled) && !within(component_of[2], cached));
-    const bool any = within(component_of[1], cached) || within(component_of[2], cached);
+    const bool any = within(component_of[1], cached) || within(component_of[2], cached) ||
+                     (direct && component_of[0] == 0 && (cached & k_primary) != 0);
     const bool looks = any && !traced_on;
     for (uint32_t p = 1; looks && p < k_part_count; ++p)
       if (within(component_of[p], cached))

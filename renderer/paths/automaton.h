@@ -65,8 +65,8 @@ struct LookupRoutes {
   std::vector<std::array<uint8_t, k_part_count>> component;
   uint32_t parts = 0;   ///< bit p: some state reads part p
   uint32_t traced = 0;  ///< components that paths still compute besides lookups (bit i)
-  /// By state, if not empty: nonzero if light paths connected to the camera replace the light that an eye
-  /// path hits.
+  /// By state, if not empty: nonzero if light paths (photons, or connected to the camera) replace the light
+  /// that an eye path hits.
   std::vector<uint8_t> replaced;
 };
 
@@ -82,7 +82,8 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const L
 /// cached components have a further diffuse event: at the first with secondary and tertiary cached, at the
 /// second with tertiary alone. Tertiary light behind a cached secondary component comes from the same lookup,
 /// whatever its solver. `direct`: stored light includes direct environment light; every lookup then
-/// contributes it too, if its component is enabled.
+/// contributes it too, if its component is enabled. Paths always trace primary light: of it only direct
+/// environment light is looked up.
 LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_t cached,
                            bool direct = false);
 

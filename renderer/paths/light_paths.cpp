@@ -57,6 +57,11 @@ std::vector<uint32_t> pack(const LightAutomaton& automaton, uint32_t parts, uint
   return packed;
 }
 
+namespace {
+constexpr uint8_t k_primary_component = 0;
+constexpr uint32_t k_primary = 1u << k_primary_component;
+}  // namespace
+
 LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_t own,
                            uint32_t directly_visible_by_other) {
   own &= enabled;
@@ -64,7 +69,9 @@ LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_
     return component != k_no_component && (set >> component & 1u) != 0;
   };
   LookupRoutes routes;
-  routes.traced = enabled & ~own;
+  // Emitters that are seen directly or in mirrors remain to eye paths.
+  routes.traced = enabled & (~own | k_primary);
+  if ((own & k_primary) != 0) routes.replaced.assign(automaton.states.size(), 0);
   routes.component.assign(automaton.states.size(),
                           {k_no_component, k_no_component, k_no_component, k_no_component});
   // States of eye paths, each with the components that have been looked up on the way there.
@@ -82,12 +89,13 @@ LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_
     // lookup's light.
     const bool passed_on = component[1] != component[2] && within(component[1], enabled & ~own);
     uint32_t looked_up = before;
-    for (uint32_t p = 1; p < k_part_count; ++p) {
+    for (uint32_t p = 0; p < k_part_count; ++p) {
       if (!within(component[p], own & ~before) || (p == 2 && passed_on)) continue;
       if (state == 0 && p == k_caustic_part && within(component[p], directly_visible_by_other)) continue;
       routes.component[state][p] = component[p];
       routes.parts |= 1u << p;
       looked_up |= 1u << component[p];
+      if (component[p] == k_primary_component) routes.replaced[d] = 1;
     }
     for (const Event e : {Event::diffuse, Event::glossy, Event::specular}) {
       const uint8_t next = automaton.after(state, e);

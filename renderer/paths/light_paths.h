@@ -31,10 +31,11 @@ LightAutomaton reverse(const Automaton& automaton);
 /// bits 29-30: `account`, the component that rays are accounted to. `parts` bit p: light of part p is stored.
 std::vector<uint32_t> pack(const LightAutomaton& automaton, uint32_t parts, uint32_t account);
 
-/// Lookups of the `own` components among photons, by part. Caustics and secondary light at the first diffuse
-/// vertex, and tertiary light with them; but if another solver computes secondary light and its paths
+/// Lookups of the `own` components among photons, by part. Caustics, primary and secondary light at the first
+/// diffuse vertex, and tertiary light with them; but if another solver computes secondary light and its paths
 /// continue, tertiary light is looked up at the next diffuse vertex (final gathering). A path continues
-/// behind a lookup for the traced components. `traced`: enabled but not own. `directly_visible_by_other`: own
+/// behind a lookup for the traced components. `traced`: enabled but not own, and primary: paths compute the
+/// light of emitters without a diffuse event (`replaced`). `directly_visible_by_other`: own
 /// components whose directly visible light is computed by light tracing (camera_routes()).
 LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_t own,
                            uint32_t directly_visible_by_other = 0);

@@ -45,7 +45,16 @@ Plan make_plan(const Settings& settings) {
     plan.solver[size_t(c)] = solvers::find(name.substr(0, plus));
     if (plus != std::string::npos) plan.rest[size_t(c)] = solvers::find(name.substr(plus + 1));
   }
+  if (primary_by_paths(settings.text("components.primary"), settings.text("components.secondary"),
+                       settings.text("components.tertiary")))
+    plan.solver[0] = solvers::find("path");
   return plan;
+}
+
+bool primary_by_paths(std::string_view primary, std::string_view secondary, std::string_view tertiary) {
+  const solvers::SolverInfo* solver = solvers::find(primary);
+  if (!solver || !solver->primary_with_secondary || secondary == primary) return false;
+  return secondary != "off" || (tertiary != "off" && tertiary != primary);
 }
 
 namespace {

@@ -3,6 +3,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "paths/automaton.h"
@@ -34,6 +35,11 @@ struct Plan {
 /// has one solver, two that share its words, or none, so no path is counted twice, and missing light was
 /// chosen.
 Plan make_plan(const Settings& settings);
+
+/// True if paths compute primary light although another solver is chosen: one that reads its part together
+/// with secondary light (SolverInfo::primary_with_secondary), while paths continue for other light. Values of
+/// `components.*`.
+bool primary_by_paths(std::string_view primary, std::string_view secondary, std::string_view tertiary);
 
 /// Light in the scene that the plan's solvers cannot find, one line each, with advice: caustic and tertiary
 /// light of point, spot and directional lights by way of polished surfaces (mirrors, glass, varnish), which

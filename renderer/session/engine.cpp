@@ -399,11 +399,7 @@ shared::Frame Engine::frame_of(const Routes& routes, const PictureView& picture,
   return frame;
 }
 
-bool Engine::looked_up_besides(size_t component) const {
-  // Direct light is part 0.
-  return std::any_of(routes_.here.lookups.component.begin(), routes_.here.lookups.component.end(),
-                     [&](const auto& by_part) { return by_part[0] == component; });
-}
+bool Engine::looks_up_direct_light() const { return (routes_.here.lookups.parts & 1u) != 0; }
 
 float wanted_sun_threshold(const paths::Automaton& automaton, const plan::Plan& plan,
                            const plan::Settings& settings) {

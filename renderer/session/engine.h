@@ -119,8 +119,8 @@ class Engine {
                               .height = view.height,
                               .frame = frame(view, view.width, view.height)});
   }
-  /// True if another solver than the component's also looks up its light.
-  bool looked_up_besides(size_t component) const;
+  /// True if lookups provide direct light.
+  bool looks_up_direct_light() const;
   double compile_seconds() const { return compile_seconds_; }
   /// #defines of the wavefront's kernels, for other kernels that work on its paths.
   const gpu::Defines& defines() const { return made_for_.scene_defines; }

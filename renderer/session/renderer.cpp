@@ -314,8 +314,9 @@ bool Renderer::lookup_errors_known() const {
 }
 
 std::optional<double> Renderer::bias(size_t component) const {
-  // Another solver looks up part of the component: direct sky light.
-  if (!engine_ || engine_->looked_up_besides(component)) return std::nullopt;
+  if (!engine_) return std::nullopt;
+  // Paths compute all primary light if the scene has nothing of the part that another solver looks up.
+  if (component == 0 && engine_->plan().solver[0] && !engine_->looks_up_direct_light()) return 0.0;
   return engine_->plan().bias(component);
 }
 

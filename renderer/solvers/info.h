@@ -90,6 +90,10 @@ struct SolverInfo {
   std::string title;                        ///< used in sentences: "the photon map"
   std::string help;                         ///< one sentence
   std::array<bool, k_components> serves{};  ///< components it can compute
+  /// What it computes of primary light, if not all of it; paths compute the rest.
+  std::string primary_part;
+  /// True if it reads that part in its lookups of secondary light only (plan::primary_by_paths()).
+  bool primary_with_secondary = false;
   /// True if the mean image is correct at every sample count: the error is noise only.
   bool unbiased = false;
   /// True if its light is looked up at a diffuse vertex (paths::lookup_routes) instead of traced further.

@@ -29,7 +29,8 @@ void main() {
   light = e.light;
   own = stratum == 0u ? e.unaimed : 1.0;
 #endif
-  float contribution = part > 0u ? own * luminance(b.rgb) * importance : 0.0;
+  bool contributes = part > 0u || (photons.component[0] & 15u) < k_component_count;
+  float contribution = contributes ? own * luminance(b.rgb) * importance : 0.0;
   bool stored = photons.stores_radiance != 0u && part == k_photon_caustic_part;
   vec3 front = facet_unpack(floatBitsToUint(b.w) & k_photon_facet);
   bool lit_front = dot(photon_direction(floatBitsToUint(a.w)), front) > 0.0;

@@ -24,7 +24,7 @@ void main() {
   p.half_width = 0.6;
   p.color = light;
   if (push.by == k_photons_by_bounce) p.color = ramp_hue(min(events, k_last_hue));
-  if (push.by == k_photons_by_map) p.color = ramp_hue((floatBitsToUint(b.w) >> k_photon_part_shift & 3u) - 1u);
+  if (push.by == k_photons_by_map) p.color = ramp_hue(floatBitsToUint(b.w) >> k_photon_part_shift & 3u);
   if (push.by == k_photons_by_light) p.color = ramp_hue(floatBitsToUint(b.w) >> k_photon_group_shift);
   if (push.by == k_photons_by_round) p.color = ramp_hue(push.round);
   p.alpha = 0.9;

@@ -7,6 +7,9 @@
 // variance: that of the estimate itself.
 #ifndef LUCERNA_PHOTONS_VERTEX_HOOK
 #define LUCERNA_PHOTONS_VERTEX_HOOK
+#ifndef LUCERNA_PHOTON_DIRECT
+#define LUCERNA_PHOTON_DIRECT 0  // 1: photons provide direct light, too
+#endif
 #include "transport/vertex_hook.glsl"
 #include "photons/photon.glsl"
 #include "photons/lookup.glsl"
@@ -75,7 +78,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   uint step = (candidates + photons.most_candidates - 1u) / max(photons.most_candidates, 1u);
   step = max(step, 1u);
   uint skip = step > 1u ? hash_combine(hash_combine(v.path.pixel, v.path.sample_index), v.depth) % step : 0u;
-  vec3 found_1 = vec3(0.0), found_2 = vec3(0.0), found_3 = vec3(0.0);  // by part
+  vec3 found_0 = vec3(0.0), found_1 = vec3(0.0), found_2 = vec3(0.0), found_3 = vec3(0.0);  // by part
 #if LUCERNA_GROUP_SUMS
   vec3 by_group[k_group_count];  // of all read light, by light group
   [[unroll]] for (uint g = 0u; g < k_group_count; ++g) by_group[g] = vec3(0.0);
@@ -108,8 +111,11 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
         // The facet is rotated into this plane, so flux is divided by the cosine at the photon's own facet.
         wi = reflected ? turn_along(wi, side, v.side) : turn_along(wi, front, v.surface.normal_g);
         vec3 flux = diffuse_of_flux(v.bsdf, v.to_world, v.surface.normal_g, wi, reflected) * b.rgb, light = flux * photon_kernel(d2, r);
-        bool contributes = part > 0u && (components >> 4u * part & 15u) < k_component_count;
+        bool contributes = (LUCERNA_PHOTON_DIRECT != 0 || part > 0u) && (components >> 4u * part & 15u) < k_component_count;
         found_flat += contributes ? flux * photon_flat_kernel(r) : vec3(0.0);
+#if LUCERNA_PHOTON_DIRECT
+        found_0 += part == 0u ? light : vec3(0.0);
+#endif
         found_1 += part == 1u ? light : vec3(0.0);
         found_2 += part == 2u ? light : vec3(0.0);
         found_3 += part == 3u ? light : vec3(0.0);
@@ -129,11 +135,12 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   if (deep && photons.importance_mask == 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0 && max3(found_1 + found_2 + found_3) <= 0.0)
     o.bias += k_found_nothing;
   // Only if there is an error to correct.
-  if (max3(found_1 + found_2 + found_3) > 0.0) areas = photon_areas(x, v.surface.normal_g, radius);
+  if (max3(found_0 + found_1 + found_2 + found_3) > 0.0) areas = photon_areas(x, v.surface.normal_g, radius);
   o.bias += 2.0 * luminance(weight * found_flat) / areas.y;
   weight /= areas.x;
   for (uint component = 0u; component < k_component_count; ++component) {
-    vec3 light = ((components >> 4 & 15u) == component ? found_1 : vec3(0.0)) +
+    vec3 light = ((components & 15u) == component ? found_0 : vec3(0.0)) +
+                 ((components >> 4 & 15u) == component ? found_1 : vec3(0.0)) +
                  ((components >> 8 & 15u) == component ? found_2 : vec3(0.0)) +
                  ((components >> 12 & 15u) == component ? found_3 : vec3(0.0));
     o.radiance[lane_of(0u, component)] += weight * light;

@@ -2,7 +2,7 @@
 """How long Lucerna and Blender's Cycles take to the same error of the whole picture, one after the other.
 
   tests/cycles/race.py scenes/cornell/cornell.gltf --error 0.002 --set components.secondary=cache --set components.tertiary=cache
-  tests/cycles/race.py scenes/window/window.gltf --error 0.01 --size 256x256 --reference-samples 16384 --set cache.environment=true
+  tests/cycles/race.py scenes/window/window.gltf --error 0.01 --size 256x256 --reference-samples 16384 --set components.primary=cache
 
 Error: relative_mse() of figures.py, with epsilon 0.01 and without the worst 0.1 % of the pixels, against two independent
 long pictures. Each renderer is held against its own ones (Lucerna's by path tracing, without --set). By how much they

@@ -74,7 +74,7 @@ const std::vector<Action>& actions() {
        }},
       {"the sky held by records",
        [](session::Renderer& r) {
-         test::set(r, {{"cache.environment", "true"}});
+         test::set(r, {{"components.primary", "cache"}});
        }},
       {"another size", [](session::Renderer& r) { r.set_size(40, 24); }},
       {"the shaders again", [](session::Renderer& r) { r.reload_shaders(); }},

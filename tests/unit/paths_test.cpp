@@ -302,17 +302,23 @@ TEST_CASE(
   CHECK(gathered.component[after("DD")] == nothing);
   CHECK(paths::photon_routes(a, 0b1101, 0b0100).component[0] == std::array<uint8_t, 4>{none, none, 2, none});
   CHECK(paths::photon_routes(a, 15, 0).parts == 0);
+  // Direct light at the first diffuse vertex; paths compute emitters that are seen without a diffuse event.
+  const auto direct = paths::photon_routes(a, 15, 0b0001);
+  CHECK(direct.traced == 15);
+  CHECK(direct.component[after("GS")] == std::array<uint8_t, 4>{0, none, none, none});
+  CHECK(direct.replaced[after("D")] == 1);
+  for (const char* word : {"", "S", "GS", "DS", "DD"}) CHECK(direct.replaced[after(word)] == 0);
   // Every word is computed exactly once: by the path that traces it, or by its first lookup.
   const paths::LightAutomaton light = paths::reverse(a);
   const char* letters = "DGS";
-  for (uint32_t own = 0; own < 16; own += 2) {
+  for (uint32_t own = 0; own < 16; ++own) {
     const auto routes = paths::photon_routes(a, 15, own);
     for (int number = 0; number < 729; ++number) {
       std::string events;
       for (int k = 0, rest = number; k < 6; ++k, rest /= 3) events += letters[rest % 3];
       events.resize(size_t(number % 7));
       const uint8_t component = a.classify("E" + events + "L");
-      int times = (routes.traced >> component & 1u) != 0;
+      int times = 0;
       uint8_t eye = 0;
       for (size_t k = 0; k < events.size(); ++k) {
         const auto event = paths::Event(std::string(letters).find(events[k]));
@@ -328,6 +334,8 @@ TEST_CASE(
         }
         eye = a.after(eye, event);
       }
+      const bool replaced = !routes.replaced.empty() && routes.replaced[eye] != 0;
+      times += (routes.traced >> component & 1u) != 0 && !replaced;
       INFO("E" << events << "L, own " << own);
       CHECK(times == 1);
     }

@@ -37,7 +37,8 @@ TEST_CASE("every component has one solver of the registry, or none") {
   // A component that is off has a bias of zero; a solver without an estimate has none.
   CHECK(p.bias(0) == 0.0);
   CHECK_FALSE(p.bias(1).has_value());
-  solvers::SolverInfo reuses{.name = "reuses", .serves = {true, true, true, true}, .looked_up = true};
+  solvers::SolverInfo reuses{
+      .name = "reuses", .serves = {true, true, true, true}, .primary_part = "", .looked_up = true};
   plan::Plan biased;
   biased.solver[2] = &reuses;
   CHECK_FALSE(biased.bias(2).has_value());
@@ -50,6 +51,23 @@ TEST_CASE("every component has one solver of the registry, or none") {
     CHECK(option->choices.size() == served + 1 + (c == 3));  // light+photons
     CHECK(option->choices.back() == "off");
   }
+}
+
+TEST_CASE(
+    "a solver of primary light that needs lookups of secondary light is replaced by paths without them") {
+  plan::Settings settings;
+  const auto primary = [&] { return plan::make_plan(settings).solver[0]->name; };
+  settings.set("components.primary", "cache");
+  CHECK(primary() == "path");
+  settings.set("components.secondary", "cache");
+  CHECK(primary() == "cache");
+  settings.set("components.secondary", "off");
+  CHECK(primary() == "path");  // tertiary light is path traced
+  settings.set("components.tertiary", "cache");
+  CHECK(primary() == "cache");
+  settings.set("components.primary", "photons");
+  settings.set("components.secondary", "path");
+  CHECK(primary() == "photons");
 }
 
 TEST_CASE("light that the chosen solvers cannot find causes a warning, and nothing else does") {

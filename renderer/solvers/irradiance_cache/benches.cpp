@@ -101,7 +101,7 @@ std::vector<std::string> bench_settings() {
       setting("cache", "as plain, secondary and tertiary light from an irradiance cache", cached()),
       setting("cache-split", "as cache, radii by distances", cached(R"(, "cache.metric": "split-sphere")")),
       setting("cache-sky", "as cache, with direct sky light on diffuse surfaces",
-              cached(R"(, "cache.environment": true)")),
+              cached(R"(, "components.primary": "cache")")),
   };
 }
 

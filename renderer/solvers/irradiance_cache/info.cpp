@@ -28,7 +28,7 @@ std::vector<ChangeRow> change_rows() {
       {"cache.rays", k_invalidates_light, "first level of the rays"},
       {"cache.max_rays", k_invalidates_light, "last level of the rays"},
       {"cache.noise", k_invalidates_light, "which records get further levels"},
-      {"cache.environment", k_invalidates_light, "sky light in records, and its threshold"},
+      {"cache.environment_threshold", k_invalidates_light, "sky light in records"},
       {"cache.passes", k_invalidates_coverage, "when building ends"},
       {"cache.stop", k_invalidates_coverage, "when building ends"},
       {"cache.max_records", k_invalidates_coverage, "capacity; invalidates all if there are more records"},
@@ -48,7 +48,9 @@ const solvers::SolverInfo& info() {
       .help =
           "Irradiance cache: computes light at few points and interpolates between them. Fast and smooth on "
           "large surfaces; its error does not fall with more samples.",
-      .serves = {false, true, true, false},
+      .serves = {true, true, true, false},
+      .primary_part = "the sky's direct light on diffuse surfaces, except the sun",
+      .primary_with_secondary = true,
       .looked_up = true,
       .consumes_lookups = true,
       .by_groups = true,

@@ -58,13 +58,9 @@ std::vector<OptionInfo> light_rows() {
                   "that more of the picture reads get more rays, others fewer. The bound falls as samples "
                   "accumulate, where more rays are more efficient than more samples.",
                   "More rays above"),
-      boolean_option(
-          "cache.environment", "false",
-          "Irradiance cache: records also store direct light of the sky, so that surfaces lit by it need no "
-          "noisy shadow rays to it. Takes effect if secondary light is cached and primary light is on."),
       real_option("cache.environment_threshold", "16", 2, 1000000, "x mean",
-                  "Irradiance cache: texels of the environment brighter than this times its mean radiance "
-                  "count as the sun, which is always sampled directly."),
+                  "Irradiance cache, with components.primary=cache: texels of the environment brighter than "
+                  "this times its mean radiance count as the sun, which is always sampled directly."),
       integer_option("cache.max_records", 300000, 16, 400000, "records",
                      "Irradiance cache: maximum number of records, which sets its memory; building ends when "
                      "it is reached.",

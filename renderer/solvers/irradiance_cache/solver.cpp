@@ -35,6 +35,8 @@ CacheOptions read_options(const Task& task) {
                      .irradiance_noise = 2 * float(s.real("cache.noise"))}};
 }
 
+constexpr uint32_t k_primary = 1u << 0;  // component
+
 paths::LookupRoutes picture_routes(const Task& task) {
   return paths::lookup_routes(task.automaton, task.enabled, task.own, task.effects.separate_sky);
 }
@@ -82,7 +84,7 @@ solvers::Routing routing(const Task& task) {
 
 /// Texels brighter than this times the sky's mean are the sun, if records store sky light.
 float sun_threshold(const Task& task) {
-  if (!task.settings.boolean("cache.environment")) return 0;
+  if ((task.own & k_primary) == 0) return 0;
   const uint32_t parts = paths::lookup_routes(task.automaton, task.enabled, task.own, true).parts;
   return (parts >> shared::k_part_direct & 1u) != 0 ? float(task.settings.real("cache.environment_threshold"))
                                                     : 0;

@@ -33,11 +33,13 @@ std::vector<OptionInfo> option_rows() {
                      "Photons: stores all photons near lookups of a short pilot; elsewhere Russian roulette "
                      "with probability 1/4.",
                      "Store by importance"),
-      boolean_option("photons.efficiency", "true",
-                     "Photons: compute caustics only in regions where they are more efficient (less variance "
-                     "× time) than path tracing in a pilot. Secondary and tertiary light are delegated to "
-                     "path tracing in the whole picture if its variance × time is less than half.",
-                     "Only where more efficient"),
+      boolean_option(
+          "photons.efficiency", "true",
+          "Photons: compute caustics only in regions where they are more efficient (less variance "
+          "× time) than path tracing in a pilot. Secondary and tertiary light are delegated to "
+          "path tracing in the whole picture if its variance × time is less than half. Primary light is "
+          "not delegated.",
+          "Only where more efficient"),
       boolean_option("photons.borders", "true",
                      "Photons: divides by the actual surface area around a place instead of a full disc, so "
                      "that borders and creases are not too dark.",
@@ -181,7 +183,8 @@ const SolverInfo& info() {
           "Photons: light paths store photons on surfaces, in a new round for every sample of the picture; "
           "those within a shrinking radius are averaged. Finds light behind glass and mirrors; its blur "
           "shrinks with the samples.",
-      .serves = {false, true, true, true},
+      .serves = {true, true, true, true},
+      .primary_part = "direct light on diffuse surfaces",
       .looked_up = true,
       .finds_points = true,
       .provides_lookups = true,

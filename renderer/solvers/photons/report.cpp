@@ -117,7 +117,8 @@ Report make_report(const PhotonReport& r) {
         ValueRow{"Surface cells", count_text(r.pieces),
                  "Cells of the last map with irradiance. In cells with too few photons paths continue."});
   for (const auto& [part, name, help] :
-       {std::tuple{1u, "Secondary", "Photons of light behind one diffuse surface."},
+       {std::tuple{0u, "Primary", "Photons of direct light."},
+        {1u, "Secondary", "Photons of light behind one diffuse surface."},
         {2u, "Tertiary", "Photons of light behind several diffuse surfaces."},
         {3u, "Caustic", "Photons of light behind specular surfaces only."}})
     if (r.last.by_part[part] > 0) map.items.push_back(ValueRow{name, count_text(r.last.by_part[part]), help});
@@ -216,7 +217,8 @@ Report make_report(const PhotonReport& r) {
   if (r.view == shared::k_photons_by_map) {
     Legend legend{
         .title = "Photons, by component", .ramp = std::nullopt, .ticks = {}, .range = {}, .marks = {}};
-    for (const auto& [hue, name] : {std::pair{0u, "secondary"}, {1u, "tertiary"}, {2u, "caustic"}})
+    for (const auto& [hue, name] :
+         {std::pair{0u, "primary"}, {1u, "secondary"}, {2u, "tertiary"}, {3u, "caustic"}})
       legend.marks.push_back({shared::ramp_hue(hue), name});
     legend.note = "Dot: a photon of the last pass. Colour: the component it contributes to.";
     report.legends.push_back(std::move(legend));
@@ -246,6 +248,7 @@ Report make_report(const PhotonReport& r) {
                     {"light paths", double(r.paths)},
                     {"photons", double(r.photons)},
                     {"last photons", double(r.last.photons)},
+                    {"last primary", double(r.last.by_part[0])},
                     {"last secondary", double(r.last.by_part[1])},
                     {"last tertiary", double(r.last.by_part[2])},
                     {"last caustic", double(r.last.by_part[3])},

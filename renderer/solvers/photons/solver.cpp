@@ -180,6 +180,7 @@ PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, c
 gpu::Defines PhotonSolver::defines() const {
   gpu::Defines defines;
   if (sends_) defines["LUCERNA_LOOKUP_BIAS"] = "1";
+  if ((parts_ & 1u) != 0) defines["LUCERNA_PHOTON_DIRECT"] = "1";
   if (irradiance_) defines["LUCERNA_PHOTON_IRRADIANCE"] = "1";
   if (delegable_ != 0) defines["LUCERNA_DELEGATED_REGIONS"] = "1";
   return defines;

@@ -19,6 +19,8 @@ const solvers::SolverType& type();
 
 /// Components (bits) behind a diffuse surface: secondary and tertiary.
 inline constexpr uint32_t k_deep = 1u << 1 | 1u << 2;
+/// ... and primary: those that paths trace in drafts before there are photons.
+inline constexpr uint32_t k_drafted = 1u << 0 | k_deep;
 
 class PhotonSolver final : public solvers::Solver {
  public:

@@ -48,7 +48,7 @@ uint32_t PhotonSolver::missing(const Picture& picture) const {
   // Paths without records continue for it on their own.
   if (feeds_) return 0;
   const bool known = irradiance_ ? irradiance_->readable() : shown_map().complete();
-  return known ? 0 : picture.task.own & k_deep & ~delegated_;
+  return known ? 0 : picture.task.own & k_drafted & ~delegated_;
 }
 
 bool PhotonSolver::try_ways(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {

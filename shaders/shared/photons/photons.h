@@ -113,7 +113,7 @@ struct PhotonContribution {
   uint stratum;      ///< stratum of its path's emission
   uint light;        ///< entry of emission_alias of its path
   uint id;           ///< k_photon_id_events
-  float contribution;       ///< to the picture, up to a common factor; 0: direct light
+  float contribution;       ///< to the picture, up to a common factor; 0: direct light of other solvers
   vec3 position;     ///< [m]
   float importance;  ///< importance of the lookups around it, an area, up to a common factor
   // For caustics, if radiance is stored:
