@@ -104,7 +104,7 @@ TEST_CASE("in the program lines lead from a point to the records that it reads")
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   const auto outcome = test::program(
       "scenes/cornell/cornell.gltf",
-      "window.size 1100 700\nwait_scene\nview.divisor 4\nwindow.side cache\n"
+      "window.size 1100 700\nwait_scene\nview.divisor 4\nwindow.side cache\npreview.filter off\n"
       "inspect.none\ncache.rays 64\ncache.min_radius 1\ncache.max_rays 64\ncomponents.secondary cache\n"
       "components.tertiary cache\nsamples 2\nwait_samples 2\nwait 0.5\nscreenshot " +
           file("plain.png") + "\ninspect.at 0.5 0.85\nscreenshot " + file("lines.png") +
