@@ -172,7 +172,7 @@ class Outputs {
   void save_ready(session::Renderer& r) {
     std::erase_if(work_, [&](const auto& entry) {
       const auto& [name, file] = entry;
-      const bool ready = r.solver(name)->ready();
+      const bool ready = solvers::ready(*r.solver(name));
       if (ready) attempt([&] { r.solver_save(name, file); });
       return ready;
     });
@@ -257,7 +257,7 @@ void check_time(const session::Renderer& r, const RenderArguments& a) {
                         *a.seconds, 100 * share);
   std::vector<std::string> at_work;
   for (const solvers::SolverInfo* solver : solvers::registered())
-    if (const solvers::Solver* found = r.solver(solver->name); found && !found->ready())
+    if (const solvers::Solver* found = r.solver(solver->name); found && !solvers::ready(*found))
       at_work.push_back(solver->title);
   throw_error("--time",
               "'{:g}': no pixel has a sample after this many seconds{}; no file was written. Allow more "

@@ -98,7 +98,12 @@ bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view
   wavefront.set_frame(frame, engine.plan().enabled());
   schedule::UniformSchedule schedule(film.blocks(), 1, wavefront.slots());
   bool complete = true;
-  for (const auto& solver : engine.solvers()) solver->look_up_preview(wavefront, true);
+  const auto look_up_preview = [&](bool on) {
+    for (const auto& solver : engine.solvers())
+      if (auto* lookups = solvers::offered<solvers::PreviewLookups>(*solver))
+        lookups->look_up_preview(wavefront, on);
+  };
+  look_up_preview(true);
   wavefront.uncounted([&] {
     while (complete && !schedule.done()) {
       schedule::WorkItem item = schedule.next();
@@ -106,7 +111,7 @@ bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view
       complete = wavefront.run(item, film, cancel);
     }
   });
-  for (const auto& solver : engine.solvers()) solver->look_up_preview(wavefront, false);
+  look_up_preview(false);
   wavefront.set_frame(engine.frame(view, view.width, view.height), engine.plan().enabled());
   return complete;
 }

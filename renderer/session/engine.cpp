@@ -121,8 +121,10 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
     const Predecessor* same = working_on(*info, task, predecessors);
     solvers_.push_back(same ? same->solver : type.make(device, compiler, slots, task));
     const solvers::Solver& solver = *solvers_.back();
-    for (const auto& [name, value] : solver.defines()) defines[name] = value;
-    if (!solver.hook().empty()) hooks.push_back({info->name, solver.hook()});
+    const auto* kernels = solvers::offered<solvers::Kernels>(solver);
+    if (!kernels) continue;
+    for (const auto& [name, value] : kernels->defines()) defines[name] = value;
+    if (!kernels->hook().empty()) hooks.push_back({info->name, kernels->hook()});
   }
   for (const auto& [name, value] : transport::hook_defines(hooks)) defines[name] = value;
   learned_defines_ = wanted_learned_defines(settings, world.flat);
@@ -135,7 +137,8 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
   std::function<void(gpu::Resources&)> bind;
   if (!solvers_.empty())
     bind = [this](gpu::Resources& r) {
-      for (const auto& solver : solvers_) solver->bind(r);
+      for (const auto& solver : solvers_)
+        if (const auto* kernels = solvers::offered<solvers::Kernels>(*solver)) kernels->bind(r);
     };
   const std::string& classes = settings.text("path.classes");
   const auto rules = classes == "off"      ? transport::HitClassRules::never()
@@ -193,7 +196,7 @@ void Engine::take_up(std::span<const Predecessor> predecessors) {
     }
     for (const Predecessor& p : predecessors) {
       if (&p.solver->info() != &own->info() || solvers::invalidated_by(own->info(), p.since).places) continue;
-      own->adopt(*wavefront_, *p.solver);
+      if (auto* adoption = solvers::offered<solvers::Adoption>(*own)) adoption->adopt(*wavefront_, *p.solver);
       note(*own, p);
       break;
     }
@@ -238,36 +241,46 @@ solvers::Solver* Engine::find(std::string_view name) const {
 solvers::Solver* Engine::unready() const {
   // Last to first: data of later ones may be read while earlier ones prepare (photons by records).
   for (auto solver = solvers_.rbegin(); solver != solvers_.rend(); ++solver)
-    if (!(*solver)->ready()) return solver->get();
+    if (!solvers::ready(**solver)) return solver->get();
   return nullptr;
 }
 
 bool Engine::in_rounds() const {
-  return std::any_of(solvers_.begin(), solvers_.end(),
-                     [](const auto& solver) { return solver->in_rounds(); });
+  return std::any_of(solvers_.begin(), solvers_.end(), [](const auto& solver) {
+    const auto* rounds = solvers::offered<solvers::Rounds>(*solver);
+    return rounds && rounds->in_rounds();
+  });
 }
 
 solvers::Solver* Engine::unready_for(uint32_t sample) const {
   for (const auto& solver : solvers_)
-    if (solver->in_rounds() && !solver->round_ready(sample)) return solver.get();
+    if (const auto* rounds = solvers::offered<solvers::Rounds>(*solver);
+        rounds && rounds->in_rounds() && !rounds->round_ready(sample))
+      return solver.get();
   return nullptr;
 }
 
 solvers::Solver* Engine::owing_errors(const film::Film& film) const {
   for (const auto& solver : solvers_)
-    if (solver->owes_errors(film)) return solver.get();
+    if (const auto* errors = solvers::offered<solvers::LookupErrors>(*solver);
+        errors && errors->owes_errors(film))
+      return solver.get();
   return nullptr;
 }
 
 solvers::Solver* Engine::refining() const {
   for (const auto& solver : solvers_)
-    if (solver->refines()) return solver.get();
+    if (const auto* refinement = solvers::offered<solvers::Refinement>(*solver);
+        refinement && refinement->refines())
+      return solver.get();
   return nullptr;
 }
 
 solvers::Solver* Engine::refinable() const {
   for (const auto& solver : solvers_)
-    if (solver->paths_refined() > 0) return solver.get();
+    if (const auto* refinement = solvers::offered<solvers::Refinement>(*solver);
+        refinement && refinement->paths_refined() > 0)
+      return solver.get();
   return nullptr;
 }
 
@@ -311,15 +324,17 @@ shared::Frame Engine::pilot_frame(const PictureView& picture, uint32_t width, ui
 
 bool Engine::waits() const {
   const solvers::Solver* next = unready();
-  return next && next->waits();
+  return next && solvers::offered<solvers::Preparation>(*next)->waits();
 }
 
 bool Engine::prepare(solvers::Solver& solver, const PictureView& picture,
                      const std::function<bool()>& cancel) {
-  const uint32_t before = solver.delegated_components();
-  const bool went = with(
-      solver, picture, [&](const solvers::Picture& own) { return solver.prepare(*wavefront_, own, cancel); });
-  if (solver.delegated_components() != before) {
+  auto& preparation = *solvers::offered<solvers::Preparation>(solver);
+  const uint32_t before = preparation.delegated_components();
+  const bool went = with(solver, picture, [&](const solvers::Picture& own) {
+    return preparation.prepare(*wavefront_, own, cancel);
+  });
+  if (preparation.delegated_components() != before) {
     route(picture.settings, picture.world.flat.effects);
     wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
   }
@@ -328,7 +343,7 @@ bool Engine::prepare(solvers::Solver& solver, const PictureView& picture,
 
 void Engine::route(const plan::Settings& settings, const upload::Effects& effects) {
   plan::Plan here = plan_;
-  for (const auto& solver : solvers_) to_paths(here, solver->delegated_components());
+  for (const auto& solver : solvers_) to_paths(here, solvers::delegated_components(*solver));
   routes_ = routes_of(here, settings, effects);
 }
 
@@ -373,9 +388,11 @@ shared::Frame Engine::draft_frame(const PictureView& picture, uint32_t width, ui
   plan::Plan here = plan_;
   uint32_t all_missing = 0;
   for (const auto& solver : solvers_) {
+    const auto* preparation = solvers::offered<solvers::Preparation>(*solver);
+    if (!preparation) continue;
     const uint32_t missing =
-        with(*solver, picture, [&](const solvers::Picture& own) { return solver->missing(own); });
-    to_paths(here, solver->delegated_components() | missing);
+        with(*solver, picture, [&](const solvers::Picture& own) { return preparation->missing(own); });
+    to_paths(here, preparation->delegated_components() | missing);
     all_missing |= missing;
   }
   if (all_missing == 0) return frame(picture, width, height);

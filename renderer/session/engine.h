@@ -11,7 +11,7 @@
 #include "film/estimator.h"
 #include "plan/plan.h"
 #include "session/world.h"
-#include "solvers/solver.h"
+#include "solvers/capabilities.h"
 
 namespace lucerna::session {
 
@@ -85,12 +85,12 @@ class Engine {
   bool in_rounds() const;
   /// The first solver whose round for that sample is not ready; null: all are.
   solvers::Solver* unready_for(uint32_t sample) const;
-  /// The first solver with pending lookup errors (Solver::owes_errors); null: all estimates are complete.
+  /// The first solver with pending lookup errors (LookupErrors); null: all estimates are complete.
   solvers::Solver* owing_errors(const film::Film& film) const;
-  /// The solver that is refining, or can refine, its data (Solver::refine); null: none.
+  /// The solver that is refining, or can refine, its data (Refinement); null: none.
   solvers::Solver* refining() const;
   solvers::Solver* refinable() const;
-  /// One work item of preparation of a solver that is not ready (Solver::prepare). False if cancelled.
+  /// One work item of preparation of a solver that is not ready (Preparation). False if cancelled.
   bool prepare(solvers::Solver& solver, const PictureView& picture, const std::function<bool()>& cancel);
   bool waits() const;
   /// True if another generation of learned lights must be recorded before the picture, with that many samples
@@ -105,7 +105,7 @@ class Engine {
 
   /// Frame of the picture's paths, in another size.
   shared::Frame frame(const PictureView& picture, uint32_t width, uint32_t height) const;
-  /// ... of a preview sample's: light that solvers have not prepared yet (Solver::missing) is traced.
+  /// ... of a preview sample's: light that solvers have not prepared yet (Preparation::missing) is traced.
   shared::Frame draft_frame(const PictureView& picture, uint32_t width, uint32_t height) const;
   /// Calls f(picture) with the solver's task.
   template <class F>
@@ -146,7 +146,7 @@ class Engine {
   /// Frame of paths that record light samples, for all components alike: learning does not depend on how
   /// components are computed.
   shared::Frame pilot_frame(const PictureView& picture, uint32_t width, uint32_t height) const;
-  /// For the present plan without components delegated everywhere (Solver::delegated_components).
+  /// For the present plan without components delegated everywhere (Preparation::delegated_components).
   void route(const plan::Settings& settings, const upload::Effects& effects);
 
   const paths::Automaton& automaton_;

@@ -329,8 +329,9 @@ std::vector<film::TileError> Renderer::tile_errors() const {
 
 void Renderer::notify_settings_changed() {
   for (const auto& solver : engine_->solvers()) {
-    solver->on_settings_changed(settings_, options_.interactive);
-    solver->look_at(looked_at_);
+    if (auto* observer = solvers::offered<solvers::SettingsObserver>(*solver))
+      observer->on_settings_changed(settings_, options_.interactive);
+    if (auto* views = solvers::offered<solvers::Views>(*solver)) views->look_at(looked_at_);
   }
 }
 
@@ -504,7 +505,8 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
     const bool restarted = errors_restart_ != restarts_ || errors_of_ != solver;
     errors_restart_ = restarts_, errors_of_ = solver;
     return engine_->with(*solver, view, [&](const solvers::Picture& picture) {
-      return solver->estimate_errors(wavefront, *film_, picture, restarted, cancel);
+      return solvers::offered<solvers::LookupErrors>(*solver)->estimate_errors(wavefront, *film_, picture,
+                                                                               restarted, cancel);
     });
   }
   if (const std::optional<bool> went = refine(cancel)) return *went;
@@ -550,7 +552,8 @@ std::optional<bool> Renderer::prepare_round(const schedule::WorkItem& item,
   solvers::Solver* next = engine_->unready_for(sample);
   if (!next) return std::nullopt;
   return engine_->with(*next, picture_view(), [&](const solvers::Picture& picture) {
-    return next->prepare_round(engine_->wavefront(), picture, sample, cancel);
+    return solvers::offered<solvers::Rounds>(*next)->prepare_round(engine_->wavefront(), picture, sample,
+                                                                   cancel);
   });
 }
 
@@ -558,7 +561,9 @@ void Renderer::note_path_pace(double seconds) {
   const uint32_t before = display_->plan().coarse_samples();
   coarse_s_ = before == 0 ? seconds : coarse_s_ + seconds;
   const auto holds_light = [](const auto& solver) {
-    for (const auto& [name, value] : solver->figures())
+    const auto* statistics = solvers::offered<solvers::Statistics>(*solver);
+    if (!statistics) return false;
+    for (const auto& [name, value] : statistics->figures())
       if (value > 0) return true;
     return false;
   };

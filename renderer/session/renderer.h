@@ -219,7 +219,7 @@ class Renderer {
   bool preparing() const { return engine_ && engine_->unready(); }
   /// ... and waits for a command.
   bool waits() const { return engine_ && engine_->waits(); }
-  /// Ends preparation as soon as possible (solvers::Solver::finish_early).
+  /// Ends preparation as soon as possible (solvers::Preparation::finish_early).
   void finish_early();
   /// Runs one of SolverInfo::commands; does nothing if the solver is not active.
   void solver_command(const std::string& name, const std::string& command);
@@ -227,14 +227,16 @@ class Renderer {
   /// solver is not active, not ready, or the file cannot be written (then the old file stays).
   void solver_save(const std::string& name, const std::filesystem::path& file);
   /// Replaces a solver's data by a file, and restarts the image; missing data of this view is added first.
-  /// Throws Error like Solver::load; then everything stays unchanged.
+  /// Throws Error like solvers::Persistence::load; then everything stays unchanged.
   void solver_load(const std::string& name, const std::filesystem::path& file);
   /// Reports of the solvers, for the picture that the latest picture() has shown.
   std::vector<std::shared_ptr<const solvers::Report>> reports();
-  /// Sum of a figure over the solvers (Solver::figures); 0 if none has it.
+  /// Sum of a figure over the solvers (solvers::Statistics::figures); 0 if none has it.
   double figure(const std::string& name) const;
   /// True if all kernels of preparation have run once.
-  bool prepares_warm() const { return preparing() && engine_->unready()->warm(); }
+  bool prepares_warm() const {
+    return preparing() && solvers::offered<solvers::Preparation>(*engine_->unready())->warm();
+  }
   /// Statistics of the solvers by name, for --stats.
   nlohmann::ordered_json solver_statistics();
   /// Looks up the solvers' light at every sampled pixel and discards it, for timing.

@@ -108,9 +108,11 @@ std::vector<uint8_t> Renderer::finished_picture(const film::View& v, const std::
   gpu::Stream& stream = engine_->wavefront().stream();
   sheet().enlarge(stream, *film_);
   engine_->developer().draw_tiles(stream, *film_, v, sheet().picture(*film_), sheet().scale());
-  visit_solvers([](solvers::Solver& solver, const overlay::Canvas& canvas,
-                   const solvers::Picture& picture) { solver.draw(canvas, picture); },
-                cancel);
+  visit_solvers(
+      [](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
+        if (auto* views = solvers::offered<solvers::Views>(solver)) views->draw(canvas, picture);
+      },
+      cancel);
   draw_lights(cancel);
   if (sheet().scale() == 1) return film_->read_picture();
   std::vector<uint8_t> pixels(uint64_t{width_} * height_ * sheet().scale() * sheet().scale() * 4);

@@ -18,12 +18,13 @@ std::optional<bool> Renderer::refine(const std::function<bool()>& cancel) {
     const uint32_t samples = sampling_.most_samples();
     if (samples < k_least || !std::has_single_bit(samples) || samples == weighed_at_) return std::nullopt;
     weighed_at_ = samples;
-    if (!refining_pays(solver->paths_refined())) return std::nullopt;
+    if (!refining_pays(solvers::offered<solvers::Refinement>(*solver)->paths_refined())) return std::nullopt;
   }
+  auto& refinement = *solvers::offered<solvers::Refinement>(*solver);
   const bool went = engine_->with(*solver, picture_view(), [&](const solvers::Picture& picture) {
-    return solver->refine(engine_->wavefront(), picture, cancel);
+    return refinement.refine(engine_->wavefront(), picture, cancel);
   });
-  if (!solver->refines()) {
+  if (!refinement.refines()) {
     film_->forget_record_errors();
     errors_of_ = nullptr;
   }
@@ -49,13 +50,16 @@ void Renderer::visit_solvers(const Visit& f, const std::function<bool()>& cancel
 }
 
 void Renderer::solver_command(const std::string& name, const std::string& command) {
-  if (solvers::Solver* found = solver(name)) found->command(command);
+  solvers::Solver* found = solver(name);
+  if (auto* commands = found ? solvers::offered<solvers::Commands>(*found) : nullptr)
+    commands->command(command);
 }
 
 void Renderer::inspect(std::optional<vec2> at) {
   looked_at_ = at;
   if (!engine_) return;
-  for (const auto& solver : engine_->solvers()) solver->look_at(at);
+  for (const auto& solver : engine_->solvers())
+    if (auto* views = solvers::offered<solvers::Views>(*solver)) views->look_at(at);
 }
 
 std::vector<std::shared_ptr<const solvers::Report>> Renderer::reports() {
@@ -72,7 +76,8 @@ double Renderer::figure(const std::string& name) const {
   double sum = 0;
   if (engine_)
     for (const auto& solver : engine_->solvers())
-      for (const auto& [key, value] : solver->figures()) sum += key == name ? value : 0;
+      if (const auto* statistics = solvers::offered<solvers::Statistics>(*solver))
+        for (const auto& [key, value] : statistics->figures()) sum += key == name ? value : 0;
   return sum;
 }
 
@@ -86,7 +91,9 @@ nlohmann::ordered_json Renderer::solver_statistics() {
                      {"gain", learning->gain()},
                      {"bytes", learning->bytes()}};
   visit_solvers([&](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
-    if (nlohmann::ordered_json own = solver.statistics(canvas, picture); !own.is_null())
+    auto* statistics = solvers::offered<solvers::Statistics>(solver);
+    if (!statistics) return;
+    if (nlohmann::ordered_json own = statistics->statistics(canvas, picture); !own.is_null())
       all[solver.info().name] = std::move(own);
   });
   return all;
@@ -94,7 +101,7 @@ nlohmann::ordered_json Renderer::solver_statistics() {
 
 void Renderer::look_up_picture() {
   visit_solvers([](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
-    solver.look_up_picture(canvas, picture);
+    if (auto* views = solvers::offered<solvers::Views>(solver)) views->look_up_picture(canvas, picture);
   });
 }
 
@@ -111,7 +118,8 @@ solvers::Provenance Renderer::provenance() const {
 solvers::Solver& Renderer::solver_for_file(const std::string& name, const std::filesystem::path& file,
                                            const char* nothing, const char* no_scene) {
   if (!engine_) throw Error(file.string(), no_scene);
-  if (solvers::Solver* found = solver(name)) return *found;
+  if (solvers::Solver* found = solver(name); found && solvers::offered<solvers::Persistence>(*found))
+    return *found;
   std::string components;
   if (const solvers::SolverInfo* info = solvers::find(name))
     for (size_t c = 0; c < info->serves.size(); ++c)
@@ -124,15 +132,17 @@ solvers::Solver& Renderer::solver_for_file(const std::string& name, const std::f
 void Renderer::solver_save(const std::string& name, const std::filesystem::path& file) {
   const solvers::Solver& found = solver_for_file(name, file, "there is nothing to save",
                                                  "there is nothing to save yet; load a scene first");
-  engine_->with(found, picture_view(),
-                [&](const solvers::Picture& picture) { found.save(file.string(), picture, provenance()); });
+  engine_->with(found, picture_view(), [&](const solvers::Picture& picture) {
+    solvers::offered<solvers::Persistence>(found)->save(file.string(), picture, provenance());
+  });
 }
 
 void Renderer::solver_load(const std::string& name, const std::filesystem::path& file) {
   solvers::Solver& found = solver_for_file(name, file, "nothing would look it up",
                                            "this file is of a scene; load the scene first");
   engine_->with(found, picture_view(), [&](const solvers::Picture& picture) {
-    found.load(file.string(), engine_->wavefront(), picture, provenance());
+    solvers::offered<solvers::Persistence>(found)->load(file.string(), engine_->wavefront(), picture,
+                                                        provenance());
   });
   restart(scene::Changes{});
 }
@@ -140,7 +150,9 @@ void Renderer::solver_load(const std::string& name, const std::filesystem::path&
 void Renderer::finish_early() {
   if (!engine_) return;
   for (const auto& solver : engine_->solvers())
-    if (!solver->ready()) solver->finish_early();
+    if (auto* preparation = solvers::offered<solvers::Preparation>(*solver);
+        preparation && !preparation->ready())
+      preparation->finish_early();
 }
 
 }  // namespace lucerna::session

@@ -66,7 +66,7 @@ struct Session::Impl {
   bool due(Renderer& r, const Save& save) const {
     if (!save.solver.empty()) {
       const solvers::Solver* solver = r.solver(save.solver);
-      return !solver || solver->ready();
+      return !solver || solvers::ready(*solver);
     }
     // As shown: the finished picture is filtered first.
     if (save.as_shown && r.done() && works(r)) return false;

@@ -36,7 +36,7 @@ Rendered render(const test::Settings& settings, uint64_t most_storage_buffer) {
   r.visit_solvers(
       [&](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
         if (std::string(solver.info().name) == "photons")
-          made.statistics = solver.statistics(canvas, picture);
+          made.statistics = solvers::offered<solvers::Statistics>(solver)->statistics(canvas, picture);
       });
   return made;
 }

@@ -2,11 +2,11 @@
 // The irradiance cache as a solver: cache.h with options from the settings, views and report.
 #include <memory>
 
+#include "solvers/capabilities.h"
 #include "solvers/irradiance_cache/cache.h"
 #include "solvers/irradiance_cache/inspector.h"
 #include "solvers/irradiance_cache/placement_view.h"
 #include "solvers/irradiance_cache/report.h"
-#include "solvers/solver.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -15,7 +15,18 @@ const solvers::SolverType& type();
 /// Hash of the assignment of lights to groups, for compact groups, where records store shares; 0: no shares.
 uint64_t light_grouping(const upload::FlatScene& flat);
 
-class CacheSolver final : public solvers::Solver {
+class CacheSolver final : public solvers::Solver,
+                          public solvers::Kernels,
+                          public solvers::Adoption,
+                          public solvers::SettingsObserver,
+                          public solvers::Preparation,
+                          public solvers::PreviewLookups,
+                          public solvers::Refinement,
+                          public solvers::LookupErrors,
+                          public solvers::Views,
+                          public solvers::Statistics,
+                          public solvers::Commands,
+                          public solvers::Persistence {
  public:
   /// Throws Error like Cache.
   CacheSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const solvers::Task& task);

@@ -1,15 +1,20 @@
 #pragma once
 // Light tracing as a solver: one round of light paths for every sample, connected to the camera.
 #include "overlay/light_paths.h"
+#include "solvers/capabilities.h"
 #include "solvers/light_tracing/report.h"
 #include "solvers/light_tracing/splats.h"
-#include "solvers/solver.h"
 
 namespace lucerna::light_tracing {
 
 const solvers::SolverType& type();
 
-class LightTracingSolver final : public solvers::Solver {
+class LightTracingSolver final : public solvers::Solver,
+                                 public solvers::Kernels,
+                                 public solvers::Preparation,
+                                 public solvers::Rounds,
+                                 public solvers::Views,
+                                 public solvers::Statistics {
  public:
   /// Throws Error like Splats.
   LightTracingSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const solvers::Task& task);

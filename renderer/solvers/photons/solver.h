@@ -2,6 +2,7 @@
 // Photon mapping as a solver: stochastic progressive photon mapping, one round for every sample.
 #include "overlay/light_paths.h"
 #include "schedule/uniform.h"
+#include "solvers/capabilities.h"
 #include "solvers/photons/efficiency.h"
 #include "solvers/photons/inspector.h"
 #include "solvers/photons/irradiance_map.h"
@@ -10,7 +11,6 @@
 #include "solvers/photons/report.h"
 #include "solvers/photons/surface_index.h"
 #include "solvers/photons/trials.h"
-#include "solvers/solver.h"
 #include "transport/first_hits.h"
 
 namespace lucerna::photons {
@@ -22,7 +22,13 @@ inline constexpr uint32_t k_deep = 1u << 1 | 1u << 2;
 /// ... and primary: those that paths trace in drafts before there are photons.
 inline constexpr uint32_t k_drafted = 1u << 0 | k_deep;
 
-class PhotonSolver final : public solvers::Solver {
+class PhotonSolver final : public solvers::Solver,
+                           public solvers::Kernels,
+                           public solvers::Preparation,
+                           public solvers::PreviewLookups,
+                           public solvers::Rounds,
+                           public solvers::Views,
+                           public solvers::Statistics {
  public:
   /// Throws Error like PhotonMap.
   PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const solvers::Task& task);

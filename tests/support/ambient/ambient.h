@@ -7,7 +7,7 @@
 
 #include "overlay/painter.h"
 #include "shaders/shared/ramp.h"
-#include "solvers/solver.h"
+#include "solvers/capabilities.h"
 
 namespace lucerna::test {
 
@@ -38,7 +38,10 @@ inline solvers::Routing ambient_routing(const solvers::Task& task) {
       .lookups = paths::lookup_routes(task.automaton, task.enabled, task.own), .fallback = 0, .gather = {}};
 }
 
-class AmbientSolver final : public solvers::Solver {
+class AmbientSolver final : public solvers::Solver,
+                            public solvers::Kernels,
+                            public solvers::Views,
+                            public solvers::Statistics {
  public:
   AmbientSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const solvers::Task& task)
       : painter_(device, compiler),
