@@ -12,13 +12,19 @@
 namespace lucerna::ui {
 namespace {
 
-/// A notice at the bottom that disappears by itself.
-void draw_note(Ui& ui, const Area& area) {
+/// A notice at the bottom that disappears by itself; beside or above the legend.
+void draw_note(Ui& ui, const Area& area, const Area& legend) {
   if (ui.note.text.empty()) return;
   // Above the other cards at the bottom.
   const bool beside = (ui.snapshot && !ui.snapshot->activity.empty()) || ui.busy_seconds() > 0;
   const float w = std::min(text_width(ui.note.text) + px(32), area.width() - px(24)), h = px(32);
-  const ImVec2 lo(std::floor(0.5f * (area.lo.x + area.hi.x - w)), area.hi.y - h - px(beside ? 76.0f : 16.0f));
+  ImVec2 lo(std::floor(0.5f * (area.lo.x + area.hi.x - w)), area.hi.y - h - px(beside ? 76.0f : 16.0f));
+  if (const float edge = px(12); legend.hi.x + edge > lo.x && legend.hi.y > lo.y && legend.lo.y < lo.y + h) {
+    if (legend.hi.x + w + 2 * edge <= area.hi.x)
+      lo.x = legend.hi.x + edge;
+    else
+      lo.y = std::max(area.lo.y + edge, legend.lo.y - h - px(8));
+  }
   const ImVec2 hi(lo.x + w, lo.y + h);
   ImDrawList* list = card(lo, hi);
   draw_text(list, lo, hi, elided(ui.note.text, w - px(24)), colour::text, Align::centre);
@@ -71,7 +77,7 @@ void busy_card(Ui& ui, const Area& area) {
   draw_text(list, {lo.x + px(12), lo.y}, {hi.x - px(12), lo.y + px(34)}, time, colour::text_dim,
             Align::right);
   draw_text(list, {lo.x + px(12), lo.y}, {hi.x - px(12), lo.y + px(34)},
-            elided(ui.busy.done           ? "First picture"
+            elided(ui.busy.done           ? "Drawing the picture"
                    : ui.busy.text.empty() ? "Working"
                                           : "Working: " + ui.busy.text,
                    w - px(36) - text_width(time)),
@@ -169,10 +175,10 @@ void draw_empty_state(Ui& ui, const Area& area) {
   }
 }
 
-void draw_cards(Ui& ui, const Area& area) {
+void draw_cards(Ui& ui, const Area& area, const Area& legend) {
   activity_card(ui, area);
   busy_card(ui, area);
-  draw_note(ui, area);
+  draw_note(ui, area, legend);
   error_strip(ui, area);
   welcome_card(ui, area);
 }

@@ -25,9 +25,12 @@ std::string usable_text(const session::Snapshot& s) {
   if (session::usable(*s.shown_error)) return ": usable";
   const double excess = std::max(s.shown_error->median / session::k_usable_error.median,
                                  s.shown_error->worst_tenth / session::k_usable_error.worst_tenth);
+  // During preparation the picture has little of the time.
+  if (!s.preparing.empty()) return ", not usable yet";
   constexpr double k_least_seconds = 0.1;
-  if (s.seconds <= k_least_seconds) return "";
-  return fmt::format(", usable in about {}", about_text(s.seconds * (excess * excess - 1)));
+  const double seconds = s.seconds - s.prepared_seconds;
+  if (seconds <= k_least_seconds) return "";
+  return fmt::format(", usable in about {}", about_text(seconds * (excess * excess - 1)));
 }
 
 }  // namespace lucerna::ui

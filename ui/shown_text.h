@@ -11,7 +11,8 @@ namespace lucerna::ui {
 /// With light from before the last edit "12 % off, 42 % from before the edit". Shorter texts follow for less
 /// room. Empty: the picture is its samples, whose noise the Accuracy panel plots.
 std::vector<std::string> shown_texts(const session::Snapshot& snapshot);
-/// ": usable", or ", usable in about 3 s" as errors fall with the square root of time; "" without an error.
+/// ": usable"; ", usable in about 3 s", as errors fall with the square root of the time after preparation;
+/// ", not usable yet" during preparation; "" without an error.
 std::string usable_text(const session::Snapshot& snapshot);
 
 }  // namespace lucerna::ui

@@ -149,6 +149,8 @@ class Renderer {
   /// Wall time [s] since this image's first step() or draw_draft(), without the times between rest() and the
   /// next of these calls, and after the last.
   double seconds() const { return clock_.seconds(); }
+  /// Part of seconds() until solvers had prepared the data of the first sample.
+  double prepared_seconds() const { return prepared_s_; }
   /// Stops that clock: rendering waits for the user or for a scene.
   void rest() { clock_.stop(); }
   /// Part of seconds() that step() has spent tracing this image (stats::Entry::render_s).

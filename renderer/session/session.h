@@ -86,6 +86,8 @@ struct Snapshot {
   std::optional<stats::SamplePace> path_pace;
   /// Wall time since this image was begun, without pauses: the clock of the ledger's wall_s and of forecasts.
   double seconds = 0;
+  double prepared_seconds =
+      0;  ///< part of `seconds` until the solvers' data for the first sample was complete
   double mrays_per_second = 0;  ///< while rays are traced
   uint64_t rays = 0;
   std::array<ComponentStatus, k_components> components;

@@ -220,6 +220,7 @@ struct Session::Impl {
     next.paused = paused;
     next.finished = r.done();
     next.seconds = r.seconds();
+    next.prepared_seconds = r.prepared_seconds();
     next.reports = r.reports();
     update_preparing();
     next.path_pace = r.path_pace();

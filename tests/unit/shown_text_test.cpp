@@ -33,3 +33,14 @@ TEST_CASE("a picture is usable if the median tile and the worst tenth are") {
   s.shown_error = film::ShownError{0.2, 0.25};
   CHECK(ui::usable_text(s) != ": usable");
 }
+
+TEST_CASE("a forecast counts the time after preparation only, and there is none during it") {
+  session::Snapshot s;
+  s.seconds = 100;
+  s.shown_error = film::ShownError{0.3, 0.4};
+  s.preparing = "cache, pass 1: 0 records";
+  CHECK(ui::usable_text(s) == ", not usable yet");
+  s.preparing.clear();
+  s.prepared_seconds = 98;
+  CHECK(ui::usable_text(s) == ", usable in about 6.0 s");
+}
