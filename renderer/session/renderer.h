@@ -183,6 +183,8 @@ class Renderer {
   void trace_overlay(const std::function<bool()>& cancel);
   /// Shares of the latest shown_picture().
   film::PreviewShares preview_shares() const;
+  /// Display::former_is_preview
+  bool former_is_preview() const { return display_ && display_->former_is_preview(); }
   film::View view() const;
   film::Image image() const { return film_->read(); }  ///< without a pending mix
   /// Brightness of the picture, or at a point (0..1 to the right and down): of the coarse image while there

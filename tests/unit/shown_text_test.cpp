@@ -18,6 +18,8 @@ TEST_CASE("the displayed picture's error is said in words, and what is from befo
   s.filtered = 0.5;
   CHECK(ui::shown_texts(s).front() == "30.0 % off, 42 % from before the edit");
   CHECK(ui::usable_text(s) == ", usable in about 6.0 s");  // noise falls by half in four times the time
+  s.stale_is_preview = true;                               // solvers' data is complete; nothing was edited
+  CHECK(ui::shown_texts(s).front() == "30.0 % off, 42 % from the preview");
   s.stale = 0;
   CHECK(ui::shown_texts(s).front() == "30.0 % off, worst tenth 60.0 %");
   CHECK(ui::shown_texts(s).back() == "30.0 % off");
