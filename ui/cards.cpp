@@ -17,7 +17,9 @@ void draw_note(Ui& ui, const Area& area, const Area& legend) {
   if (ui.note.text.empty()) return;
   // Above the other cards at the bottom.
   const bool beside = (ui.snapshot && !ui.snapshot->activity.empty()) || ui.busy_seconds() > 0;
-  const float w = std::min(text_width(ui.note.text) + px(32), area.width() - px(24)), h = px(32);
+  const float w = std::min(text_width(ui.note.text) + px(32), area.width() - px(24));
+  const std::vector<std::string> lines = wrapped(ui.note.text, w - px(24));
+  const float line = px(20), h = line * static_cast<float>(lines.size()) + px(12);
   ImVec2 lo(std::floor(0.5f * (area.lo.x + area.hi.x - w)), area.hi.y - h - px(beside ? 76.0f : 16.0f));
   if (const float edge = px(12); legend.hi.x + edge > lo.x && legend.hi.y > lo.y && legend.lo.y < lo.y + h) {
     if (legend.hi.x + w + 2 * edge <= area.hi.x)
@@ -27,7 +29,11 @@ void draw_note(Ui& ui, const Area& area, const Area& legend) {
   }
   const ImVec2 hi(lo.x + w, lo.y + h);
   ImDrawList* list = card(lo, hi);
-  draw_text(list, lo, hi, elided(ui.note.text, w - px(24)), colour::text, Align::centre);
+  float y = lo.y + px(6);
+  for (const std::string& text : lines) {
+    draw_text(list, {lo.x, y}, {hi.x, y + line}, text, colour::text, Align::centre);
+    y += line;
+  }
 }
 
 /// The first steps: three sentences in the middle of the picture until they are closed.
