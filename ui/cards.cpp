@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/figures.h"
+#include "shown_text.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -16,7 +17,9 @@ namespace {
 void draw_note(Ui& ui, const Area& area, const Area& legend) {
   if (ui.note.text.empty()) return;
   // Above the other cards at the bottom.
-  const bool beside = (ui.snapshot && !ui.snapshot->activity.empty()) || ui.busy_seconds() > 0;
+  const bool beside =
+      (ui.snapshot && (!ui.snapshot->activity.empty() || !paused_text(*ui.snapshot).empty())) ||
+      ui.busy_seconds() > 0;
   const float w = std::min(text_width(ui.note.text) + px(32), area.width() - px(24));
   const std::vector<std::string> lines = wrapped(ui.note.text, w - px(24));
   const float line = px(20), h = line * static_cast<float>(lines.size()) + px(12);
@@ -94,6 +97,15 @@ void busy_card(Ui& ui, const Area& area) {
   list->AddRectFilled({lo_x, hi.y - px(9)}, {lo_x + room, hi.y - px(6)}, colour::field, px(1));
   list->AddRectFilled({lo_x + at * room, hi.y - px(9)}, {lo_x + (at + part) * room, hi.y - px(6)},
                       colour::accent, px(1));
+}
+
+/// Says at the lower right that rendering is paused, while the picture has no light of the present state.
+void paused_card(Ui& ui, const Area& area) {
+  const std::string text = ui.snapshot ? paused_text(*ui.snapshot) : "";
+  if (text.empty() || ui.busy_seconds() > 0) return;
+  const float w = std::min(text_width(text) + px(24), area.width() - px(24)), h = px(32);
+  const ImVec2 hi(area.hi.x - px(12), area.hi.y - px(12)), lo(hi.x - w, hi.y - h);
+  draw_text(card(lo, hi), lo, hi, elided(text, w - px(24)), colour::text, Align::centre);
 }
 
 /// The current activity, at the lower left, with a Cancel button.
@@ -184,6 +196,7 @@ void draw_empty_state(Ui& ui, const Area& area) {
 void draw_cards(Ui& ui, const Area& area, const Area& legend) {
   activity_card(ui, area);
   busy_card(ui, area);
+  paused_card(ui, area);
   draw_note(ui, area, legend);
   error_strip(ui, area);
   welcome_card(ui, area);

@@ -34,4 +34,9 @@ std::string usable_text(const session::Snapshot& s) {
   return fmt::format(", usable in about {}", about_text(seconds * (excess * excess - 1)));
 }
 
+std::string paused_text(const session::Snapshot& s) {
+  if (!s.paused || s.samples > 0 || !s.activity.empty()) return "";
+  return "Paused before the first sample. Space resumes.";
+}
+
 }  // namespace lucerna::ui

@@ -15,5 +15,8 @@ std::vector<std::string> shown_texts(const session::Snapshot& snapshot);
 /// ": usable"; ", usable in about 3 s", as errors fall with the square root of the time after preparation;
 /// ", not usable yet" during preparation; "" without an error.
 std::string usable_text(const session::Snapshot& snapshot);
+/// Why the picture stays black or as it was before an edit: rendering is paused without a sample. ""
+/// otherwise.
+std::string paused_text(const session::Snapshot& snapshot);
 
 }  // namespace lucerna::ui

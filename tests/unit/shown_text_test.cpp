@@ -46,3 +46,14 @@ TEST_CASE("a forecast counts the time after preparation only, and there is none 
   s.prepared_seconds = 98;
   CHECK(ui::usable_text(s) == ", usable in about 6.0 s");
 }
+
+TEST_CASE("a pause before the first sample is said, because the picture shows nothing new") {
+  session::Snapshot s;
+  CHECK(ui::paused_text(s) == "");
+  s.paused = true;
+  CHECK(ui::paused_text(s) == "Paused before the first sample. Space resumes.");
+  s.samples = 1;
+  CHECK(ui::paused_text(s) == "");
+  s.samples = 0, s.activity = "loading";
+  CHECK(ui::paused_text(s) == "");
+}
