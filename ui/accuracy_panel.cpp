@@ -393,18 +393,17 @@ std::vector<std::string> early_texts(const session::Snapshot& s, double target) 
                                 tick_text(target, Unit::relative),
                                 paths < s.seconds + *s.preparing_left ? ", which is faster" : ""));
   }
-  texts.push_back("No samples yet");
+  texts.push_back(s.samples == 0 ? "No samples yet" : "Too few samples to estimate their noise");
   return texts;
 }
 
 void draw_early(ImDrawList* list, const Area& inside, const session::Snapshot& s, double target) {
   float y = inside.lo.y;
-  const float width = inside.width() - px(24);
-  for (const std::string& text : early_texts(s, target)) {
-    draw_text(list, {inside.lo.x + px(12), y}, {inside.hi.x - px(12), y + px(20)}, elided(text, width),
-              colour::text_dim);
-    y += px(20);
-  }
+  for (const std::string& text : early_texts(s, target))
+    for (const std::string& line : wrapped(text, inside.width() - px(24))) {
+      draw_text(list, {inside.lo.x + px(12), y}, {inside.hi.x - px(12), y + px(20)}, line, colour::text_dim);
+      y += px(20);
+    }
 }
 
 }  // namespace

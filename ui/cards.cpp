@@ -6,22 +6,37 @@
 #include <cmath>
 
 #include "base/figures.h"
+#include "shown_text.h"
 #include "state.h"
 #include "widgets.h"
 
 namespace lucerna::ui {
 namespace {
 
-/// A notice at the bottom that disappears by itself.
-void draw_note(Ui& ui, const Area& area) {
+/// A notice at the bottom that disappears by itself; beside or above the legend.
+void draw_note(Ui& ui, const Area& area, const Area& legend) {
   if (ui.note.text.empty()) return;
   // Above the other cards at the bottom.
-  const bool beside = (ui.snapshot && !ui.snapshot->activity.empty()) || ui.busy_seconds() > 0;
-  const float w = std::min(text_width(ui.note.text) + px(32), area.width() - px(24)), h = px(32);
-  const ImVec2 lo(std::floor(0.5f * (area.lo.x + area.hi.x - w)), area.hi.y - h - px(beside ? 76.0f : 16.0f));
+  const bool beside =
+      (ui.snapshot && (!ui.snapshot->activity.empty() || !paused_text(*ui.snapshot).empty())) ||
+      ui.busy_seconds() > 0;
+  const float w = std::min(text_width(ui.note.text) + px(32), area.width() - px(24));
+  const std::vector<std::string> lines = wrapped(ui.note.text, w - px(24));
+  const float line = px(20), h = line * static_cast<float>(lines.size()) + px(12);
+  ImVec2 lo(std::floor(0.5f * (area.lo.x + area.hi.x - w)), area.hi.y - h - px(beside ? 76.0f : 16.0f));
+  if (const float edge = px(12); legend.hi.x + edge > lo.x && legend.hi.y > lo.y && legend.lo.y < lo.y + h) {
+    if (legend.hi.x + w + 2 * edge <= area.hi.x)
+      lo.x = legend.hi.x + edge;
+    else
+      lo.y = std::max(area.lo.y + edge, legend.lo.y - h - px(8));
+  }
   const ImVec2 hi(lo.x + w, lo.y + h);
   ImDrawList* list = card(lo, hi);
-  draw_text(list, lo, hi, elided(ui.note.text, w - px(24)), colour::text, Align::centre);
+  float y = lo.y + px(6);
+  for (const std::string& text : lines) {
+    draw_text(list, {lo.x, y}, {hi.x, y + line}, text, colour::text, Align::centre);
+    y += line;
+  }
 }
 
 /// The first steps: three sentences in the middle of the picture until they are closed.
@@ -71,7 +86,7 @@ void busy_card(Ui& ui, const Area& area) {
   draw_text(list, {lo.x + px(12), lo.y}, {hi.x - px(12), lo.y + px(34)}, time, colour::text_dim,
             Align::right);
   draw_text(list, {lo.x + px(12), lo.y}, {hi.x - px(12), lo.y + px(34)},
-            elided(ui.busy.done           ? "First picture"
+            elided(ui.busy.done           ? "Drawing the picture"
                    : ui.busy.text.empty() ? "Working"
                                           : "Working: " + ui.busy.text,
                    w - px(36) - text_width(time)),
@@ -82,6 +97,15 @@ void busy_card(Ui& ui, const Area& area) {
   list->AddRectFilled({lo_x, hi.y - px(9)}, {lo_x + room, hi.y - px(6)}, colour::field, px(1));
   list->AddRectFilled({lo_x + at * room, hi.y - px(9)}, {lo_x + (at + part) * room, hi.y - px(6)},
                       colour::accent, px(1));
+}
+
+/// Says at the lower right that rendering is paused, while the picture has no light of the present state.
+void paused_card(Ui& ui, const Area& area) {
+  const std::string text = ui.snapshot ? paused_text(*ui.snapshot) : "";
+  if (text.empty() || ui.busy_seconds() > 0) return;
+  const float w = std::min(text_width(text) + px(24), area.width() - px(24)), h = px(32);
+  const ImVec2 hi(area.hi.x - px(12), area.hi.y - px(12)), lo(hi.x - w, hi.y - h);
+  draw_text(card(lo, hi), lo, hi, elided(text, w - px(24)), colour::text, Align::centre);
 }
 
 /// The current activity, at the lower left, with a Cancel button.
@@ -169,10 +193,11 @@ void draw_empty_state(Ui& ui, const Area& area) {
   }
 }
 
-void draw_cards(Ui& ui, const Area& area) {
+void draw_cards(Ui& ui, const Area& area, const Area& legend) {
   activity_card(ui, area);
   busy_card(ui, area);
-  draw_note(ui, area);
+  paused_card(ui, area);
+  draw_note(ui, area, legend);
   error_strip(ui, area);
   welcome_card(ui, area);
 }

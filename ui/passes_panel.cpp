@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 #include "chart.h"
 #include "state.h"
@@ -85,35 +87,77 @@ void pass_bars(const Snapshot& s, const Area& area) {
   }
 }
 
-/// Name, time and share of every stage; the bars' legend.
+/// A row of the legend: a stage, or several that have no rows of their own.
+struct Row {
+  std::string name;
+  double ms = 0;
+  std::optional<size_t> stage;  ///< its index; nullopt: several
+  std::string help;
+};
+
+/// Rows for at most `most` rows: all stages, or those that take longest, in order, and one row for the rest.
+std::vector<Row> rows_of(const std::vector<StageStatus>& stages, size_t most) {
+  std::vector<size_t> longest(stages.size());
+  std::iota(longest.begin(), longest.end(), size_t{0});
+  if (stages.size() > most) {
+    std::stable_sort(longest.begin(), longest.end(),
+                     [&](size_t a, size_t b) { return stages[a].ms > stages[b].ms; });
+    longest.resize(most > 0 ? most - 1 : 0);
+    std::sort(longest.begin(), longest.end());
+  }
+  std::vector<Row> rows;
+  Row others;
+  for (size_t i = 0, at = 0; i < stages.size(); ++i) {
+    const StageStatus& stage = stages[i];
+    const std::string help = fmt::format("{}: {} {}since the picture started.", stage.name, ms_text(stage.ms),
+                                         stage.host ? "of wall time on the host " : "on the device ");
+    if (at < longest.size() && longest[at] == i) {
+      rows.push_back({stage.name, stage.ms, i, help});
+      ++at;
+    } else {
+      others.ms += stage.ms;
+      others.help += (others.help.empty() ? "" : "\n") + help;
+    }
+  }
+  if (const size_t left = stages.size() - longest.size(); left > 0 && most > 0) {
+    others.name = fmt::format("{} others", left);
+    rows.push_back(others);
+  }
+  return rows;
+}
+
+/// Name, time and share of the stages; the bars' legend.
 void stage_rows(const std::vector<StageStatus>& stages, const ImVec2& at, float width, float height) {
   double total = 0;
   for (const auto& stage : stages) total += stage.ms;
   ImDrawList* list = ImGui::GetWindowDrawList();
   ImFont* font = theme().fonts.small;
+  const float least = std::ceil(font->FontSize) + px(1);
+  const std::vector<Row> rows = rows_of(stages, static_cast<size_t>(std::max(0.0f, height / least)));
   const float row =
-      std::clamp(std::floor(height / static_cast<float>(std::max<size_t>(1, stages.size()))), px(12), px(19));
-  const float share = width > px(170) ? px(46) : 0, time = px(54);
-  for (size_t i = 0; i < stages.size(); ++i) {
-    const auto& stage = stages[i];
+      std::clamp(std::floor(height / static_cast<float>(std::max<size_t>(1, rows.size()))), least, px(19));
+  const float gap = px(6), time = text_width("00000 ms", font) + gap;
+  const float share = width > px(170) ? text_width("100.0 %", font) + gap : 0;
+  for (size_t i = 0; i < rows.size(); ++i) {
     const ImVec2 lo(at.x, at.y + row * static_cast<float>(i)), hi(at.x + width, lo.y + row);
     const float middle = std::floor(0.5f * (lo.y + hi.y));
-    list->AddRectFilled({lo.x, middle - px(4)}, {lo.x + px(8), middle + px(4)}, stage_colour(i, stage.host),
-                        px(2));
+    if (const auto stage = rows[i].stage)
+      list->AddRectFilled({lo.x, middle - px(4)}, {lo.x + px(8), middle + px(4)},
+                          stage_colour(*stage, stages[*stage].host), px(2));
     const float names = hi.x - share - time;
-    draw_text(list, {lo.x + px(14), lo.y}, {names, hi.y}, elided(stage.name, names - lo.x - px(14), font),
+    draw_text(list, {lo.x + px(14), lo.y}, {names, hi.y}, elided(rows[i].name, names - lo.x - px(14), font),
               colour::text_dim, Align::left, font);
-    draw_text(list, {names, lo.y}, {hi.x - share, hi.y}, ms_text(stage.ms), colour::text, Align::right, font);
+    draw_text(list, {names, lo.y}, {hi.x - share, hi.y}, ms_text(rows[i].ms), colour::text, Align::right,
+              font);
     if (share > 0)
       draw_text(list, {hi.x - share, lo.y}, hi,
-                fmt::format("{:.1f} %", total > 0 ? 100 * stage.ms / total : 0), colour::text_dim,
+                fmt::format("{:.1f} %", total > 0 ? 100 * rows[i].ms / total : 0), colour::text_dim,
                 Align::right, font);
     ImGui::SetCursorScreenPos(lo);
     ImGui::PushID(static_cast<int>(i));
     ImGui::InvisibleButton("##stage", {width, row});
     ImGui::PopID();
-    tooltip(fmt::format("{}: {} {}since the picture started.", stage.name, ms_text(stage.ms),
-                        stage.host ? "of wall time on the host " : "on the device "));
+    tooltip(rows[i].help);
   }
 }
 

@@ -272,8 +272,8 @@ void draw_passes(Ui& ui, const Area& area);
 void draw_log(Ui& ui, const Area& area);
 /// What can be opened while there is no picture; part of draw_picture. Draws nothing during a load.
 void draw_empty_state(Ui& ui, const Area& area);
-/// Progress, errors and first steps over the picture; part of draw_picture.
-void draw_cards(Ui& ui, const Area& area);
+/// Progress, errors and first steps over the picture, notices beside `legend`; part of draw_picture.
+void draw_cards(Ui& ui, const Area& area, const Area& legend);
 /// Over the picture's lower left corner; part of draw_picture. Returns its area, which is empty if there is
 /// no legend.
 Area draw_legend(Ui& ui, const Area& frame);

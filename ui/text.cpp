@@ -67,6 +67,21 @@ std::string elided(const std::string& text, float max_width, ImFont* font, bool 
   return made(lo);
 }
 
+std::vector<std::string> wrapped(const std::string& text, float max_width, ImFont* font) {
+  std::vector<std::string> lines;
+  for (size_t begin = 0; begin < text.size();) {
+    size_t end = text.size();
+    while (text_width(text.substr(begin, end - begin), font) > max_width) {
+      const size_t space = text.rfind(' ', end - 1);
+      if (space == std::string::npos || space <= begin) break;
+      end = space;
+    }
+    lines.push_back(elided(text.substr(begin, end - begin), max_width, font));
+    begin = end == text.size() ? end : end + 1;
+  }
+  return lines;
+}
+
 std::string padded(const std::string& text, size_t width) {
   std::string result;
   for (size_t n = code_points(text); n < width; ++n) result += k_figure_space;

@@ -337,7 +337,8 @@ void inspect_at_rest(Ui& ui, const Area& shown, bool active) {
   const vec2 place((at.x - shown.lo.x) / std::max(1.0f, shown.width()),
                    (at.y - shown.lo.y) / std::max(1.0f, shown.height()));
   const bool inside = place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
-  const bool still = !(active && dragging()) && !ui.flight.moving();
+  // During a load the renderer refuses inspections.
+  const bool still = !(active && dragging()) && !ui.flight.moving() && !ui.loading();
   if (ui.inspects_pointer() && ui.picture_hovered && inside && still) {
     if (active || ui.asked == place || ui.now - since < k_rest) return;
     ui.asked = place;
@@ -447,7 +448,7 @@ void draw_picture(Ui& ui, const Area& area) {
   if (!shown) draw_empty_state(ui, area);
   const Area legend = draw_legend(ui, frame);
   draw_inspection(ui, frame, legend);
-  draw_cards(ui, area);
+  draw_cards(ui, area, legend);
 
   bool active = false;
   ui.picture_hovered = false;

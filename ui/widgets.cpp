@@ -164,12 +164,14 @@ void value_row(const std::string& name, const std::string& value, const std::str
   ImGui::Dummy({width, px(20)});
   tooltip(help);
   ImDrawList* list = ImGui::GetWindowDrawList();
-  const float value_width = text_width(value);
-  const float name_width = text_width(name);
-  draw_text(list, lo, hi, name, colour::text_dim);
-  const float room = width - name_width - px(12);
-  draw_text(list, {lo.x + name_width + px(8), lo.y}, hi,
-            value_width > room ? elided(value, room, nullptr, true) : value, value_colour, Align::right);
+  // The value matters most: the name is cut first, down to a third of the row.
+  const float gap = px(8);
+  const float name_room =
+      std::min(text_width(name), std::max(std::floor(width / 3), width - gap - text_width(value)));
+  const float room = width - gap - name_room;
+  draw_text(list, lo, hi, elided(name, name_room), colour::text_dim);
+  draw_text(list, {lo.x + name_room + gap, lo.y}, hi, elided(value, room, nullptr, true), value_colour,
+            Align::right);
   ImGui::SetCursorScreenPos({lo.x, hi.y});
 }
 

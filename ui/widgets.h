@@ -21,6 +21,8 @@ void label(const std::string& text, ImU32 colour = colour::text, ImFont* font = 
 /// The longest beginning of `text` that fits, with an ellipsis if cut. `middle` cuts the middle (paths: the
 /// file name stays).
 std::string elided(const std::string& text, float max_width, ImFont* font = nullptr, bool middle = false);
+/// Lines of `text` that fit, broken at spaces; a word that does not fit is cut like elided().
+std::vector<std::string> wrapped(const std::string& text, float max_width, ImFont* font = nullptr);
 /// Draws text in a box of the window (window pixels) without moving the cursor.
 void draw_text(ImDrawList* list, const ImVec2& lo, const ImVec2& hi, const std::string& text, ImU32 colour,
                Align align = Align::left, ImFont* font = nullptr);

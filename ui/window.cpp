@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "key_queue.h"
 #include "theme.h"
 
 namespace lucerna::ui {
@@ -24,15 +25,23 @@ struct Window::Events {
   bool any = false, rescaled = false;
   std::vector<std::string> dropped;
   std::vector<Key> keys;
-  std::vector<int> quick;  // pressed since the last frame, possibly released already
+  KeyQueue queue;                   // pressed since the last frame, possibly released already
+  std::vector<ImWchar> later_text;  // typed after keys that are still in the queue
   std::string error;
   bool scripted = false;  // a script controls the pointer
   float x = 0, y = 0;
   bool down[3] = {};
   std::set<int> held;                            // by a script
   std::vector<int> lifted;                       // of these, released ones that no real key holds
-  std::optional<std::array<bool, 3>> modifiers;  // Ctrl, Shift, Alt without them
+  std::optional<std::array<bool, 3>> modifiers;  // Ctrl, Shift, Alt that are held, if the frame has others
   float wheel = 0;
+
+  /// Modifier bits of keys that a script holds.
+  int held_mods() const {
+    return (held.contains(GLFW_KEY_LEFT_CONTROL) ? GLFW_MOD_CONTROL : 0) |
+           (held.contains(GLFW_KEY_LEFT_SHIFT) ? GLFW_MOD_SHIFT : 0) |
+           (held.contains(GLFW_KEY_LEFT_ALT) ? GLFW_MOD_ALT : 0);
+  }
 
   /// Stores dropped files, for GLFW's callback and for a script.
   void take(int count, const char** files) {
@@ -41,7 +50,8 @@ struct Window::Events {
   }
   void take_key(int key, int mods) {
     keys.push_back({key, mods});
-    if (key >= 0) quick.push_back(key);
+    queue.press(key, mods | held_mods(),
+                later_text.size() + static_cast<size_t>(ImGui::GetIO().InputQueueCharacters.Size));
     any = true;
   }
 };
@@ -164,23 +174,40 @@ void Window::begin_frame() {
   if (std::exchange(events_->rescaled, false)) follow_scale();
   ImGui_ImplOpenGL3_NewFrame();
   ImGui_ImplGlfw_NewFrame();
-  // A key that was pressed and released between two frames is down for this frame, so its press is not lost.
   ImGuiIO& io = ImGui::GetIO();
   if (events_->scripted) {
     io.MousePos = {events_->x, events_->y};
     std::copy(std::begin(events_->down), std::end(events_->down), io.MouseDown);
   }
   io.MouseWheel += std::exchange(events_->wheel, 0.0f);
-  if (!events_->held.empty()) events_->modifiers = {{io.KeyCtrl, io.KeyShift, io.KeyAlt}};
+  // A key that was pressed and released between two frames is down for this frame, so its press is not lost.
+  // Keys and text that came after it under other modifiers are for the next frame.
+  std::vector<ImWchar> text = std::exchange(events_->later_text, {});
+  text.insert(text.end(), io.InputQueueCharacters.begin(), io.InputQueueCharacters.end());
+  const KeyQueue::Frame frame = events_->queue.next(text.size());
+  io.InputQueueCharacters.resize(0);
+  for (size_t i = 0; i < frame.text; ++i) io.InputQueueCharacters.push_back(text[i]);
+  events_->later_text.assign(text.begin() + static_cast<std::ptrdiff_t>(frame.text), text.end());
+  if (!events_->queue.empty() || !events_->later_text.empty()) events_->any = true;
+  if (!events_->held.empty() || frame.mods) events_->modifiers = {{io.KeyCtrl, io.KeyShift, io.KeyAlt}};
+  if (frame.mods) {
+    io.KeyCtrl = *frame.mods & GLFW_MOD_CONTROL;
+    io.KeyShift = *frame.mods & GLFW_MOD_SHIFT;
+    io.KeyAlt = *frame.mods & GLFW_MOD_ALT;
+  }
   io.KeyCtrl |= events_->held.contains(GLFW_KEY_LEFT_CONTROL);
   io.KeyShift |= events_->held.contains(GLFW_KEY_LEFT_SHIFT);
   io.KeyAlt |= events_->held.contains(GLFW_KEY_LEFT_ALT);
+  std::vector<int> postponed;
+  for (const int key : frame.later)
+    if (std::exchange(io.KeysDown[key], false)) postponed.push_back(key);
   std::vector<int> revived;
   for (int key : events_->held)
     if (!io.KeysDown[key]) io.KeysDown[key] = true, revived.push_back(key);
-  for (int key : std::exchange(events_->quick, {}))
+  for (const int key : frame.keys)
     if (!io.KeysDown[key]) io.KeysDown[key] = true, revived.push_back(key);
   ImGui::NewFrame();
+  for (const int key : postponed) io.KeysDown[key] = true;
   // A script's held keys are down for the whole frame; its parts read the keys while they are drawn.
   std::erase_if(revived, [&](int key) {
     if (events_->held.contains(key)) return events_->lifted.push_back(key), true;

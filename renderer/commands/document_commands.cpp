@@ -173,7 +173,7 @@ void shine(const Arguments& a, scene::Light& light) {
 
 void Workspace::needs_scene() const {
   if (!scene) throw Error("", "no scene is open");
-  if (loading()) throw Error("", "a scene is being loaded; wait_scene first");
+  if (loading()) throw Error("", "a scene is being loaded; wait until it is shown (in a script: wait_scene)");
 }
 
 namespace {

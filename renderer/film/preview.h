@@ -18,7 +18,7 @@ namespace lucerna::film {
 
 /// Shares of the shown picture, 0..1.
 struct PreviewShares {
-  double stale = 0;     ///< light from before the last edit, by luminance
+  double stale = 0;     ///< light from before the last edit or improvement, by luminance
   double filtered = 0;  ///< filtered light of the present, by luminance
   /// Error of the tiles, calibrated by samples that earlier pictures had not used. None: no preview.
   std::optional<ShownError> error;

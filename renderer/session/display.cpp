@@ -25,6 +25,7 @@ void Display::restart(const scene::Changes& changes, const vec3& scale, bool sam
   else
     preview_.keep(scale, repainted, same_light);
   plan_.restart();
+  former_is_preview_ = false;
   ++version_;
 }
 
@@ -67,6 +68,7 @@ void Display::warm(gpu::Stream& stream, const film::Film& film) {
 
 void Display::light_changed() {
   preview_.better();
+  former_is_preview_ = true;
   plan_.light_changed();
   ++version_;
 }

@@ -54,6 +54,9 @@ class Display {
   uint64_t version() const { return version_; }
   /// Shares of the latest developed picture.
   film::PreviewShares shares() const { return shares_; }
+  /// True if the former light is of this picture's preview, from before light_changed(); false: from before
+  /// an edit.
+  bool former_is_preview() const { return former_is_preview_; }
   /// Call when the film has been filtered and that is shown.
   void show_filtered(gpu::Stream& stream, const film::Film& film, const film::FilterError& error,
                      const film::View& shown);
@@ -71,7 +74,7 @@ class Display {
   PixelSight sight_;
   film::PreviewShares shares_;
   std::optional<film::ShownError> filtered_error_;
-  bool developed_ = false, warm_ = false;
+  bool developed_ = false, warm_ = false, former_is_preview_ = false;
   uint64_t version_ = 0;
   /// Display settings of a picture without a preview.
   struct Plain {

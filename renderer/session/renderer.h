@@ -149,6 +149,8 @@ class Renderer {
   /// Wall time [s] since this image's first step() or draw_draft(), without the times between rest() and the
   /// next of these calls, and after the last.
   double seconds() const { return clock_.seconds(); }
+  /// Part of seconds() until solvers had prepared the data of the first sample.
+  double prepared_seconds() const { return prepared_s_; }
   /// Stops that clock: rendering waits for the user or for a scene.
   void rest() { clock_.stop(); }
   /// Part of seconds() that step() has spent tracing this image (stats::Entry::render_s).
@@ -181,6 +183,8 @@ class Renderer {
   void trace_overlay(const std::function<bool()>& cancel);
   /// Shares of the latest shown_picture().
   film::PreviewShares preview_shares() const;
+  /// Display::former_is_preview
+  bool former_is_preview() const { return display_ && display_->former_is_preview(); }
   film::View view() const;
   film::Image image() const { return film_->read(); }  ///< without a pending mix
   /// Brightness of the picture, or at a point (0..1 to the right and down): of the coarse image while there

@@ -71,8 +71,11 @@ struct Snapshot {
   double mean_samples = 0;         ///< mean samples a pixel
   uint32_t max_samples = 0;        ///< samples at which it stops
   bool coarse = false;             ///< parts still show the coarse first image
-  /// Shares of the shown picture by luminance, 0..1: light from before the last edit; filtered present light.
+  /// Shares of the shown picture by luminance, 0..1: former light; filtered present light.
   double stale = 0, filtered = 0;
+  /// Former light is of this picture's preview, from before the solvers' data was complete; false: from
+  /// before the last edit.
+  bool stale_is_preview = false;
   /// Error of a preview or filtered picture.
   std::optional<film::ShownError> shown_error;
   /// Why light groups are not separate, so that a mix relights the picture; "" if they are separate.
@@ -86,6 +89,8 @@ struct Snapshot {
   std::optional<stats::SamplePace> path_pace;
   /// Wall time since this image was begun, without pauses: the clock of the ledger's wall_s and of forecasts.
   double seconds = 0;
+  double prepared_seconds =
+      0;  ///< part of `seconds` until the solvers' data for the first sample was complete
   double mrays_per_second = 0;  ///< while rays are traced
   uint64_t rays = 0;
   std::array<ComponentStatus, k_components> components;

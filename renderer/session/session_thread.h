@@ -206,6 +206,7 @@ struct Session::Impl {
       publish_seconds = std::max(k_publish_seconds, 4 * shown.seconds());
     }
     const film::PreviewShares shares = r.preview_shares();
+    next.stale_is_preview = r.former_is_preview();
     next.stale = shares.stale, next.filtered = shares.filtered, next.shown_error = shares.error;
     const film::View view = r.view();
     next.legend = {};
@@ -220,6 +221,7 @@ struct Session::Impl {
     next.paused = paused;
     next.finished = r.done();
     next.seconds = r.seconds();
+    next.prepared_seconds = r.prepared_seconds();
     next.reports = r.reports();
     update_preparing();
     next.path_pace = r.path_pace();

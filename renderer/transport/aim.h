@@ -31,6 +31,9 @@ std::vector<double> light_weights(std::span<const std::vector<uint32_t>> groups,
 
 /// Paths of a pilot, all in one round that belongs to no sample.
 inline constexpr uint32_t k_pilot_paths = 1u << 14, k_pilot_paths_a_stratum = 8;
+/// ... and of one that aims at a wide ground: about one in a hundred of its paths goes from there through an
+/// opening, so a smaller pilot misses that light, and its strata get only the floor of aim_shares().
+inline constexpr uint32_t k_ground_pilot_paths_a_stratum = 1u << 12, k_most_ground_pilot_paths = 1u << 18;
 inline constexpr uint32_t k_pilot_round = 0xffffffffu;
 
 /// True if pilots of two frames give the same result: equal view and seed.

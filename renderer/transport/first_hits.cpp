@@ -60,6 +60,7 @@ std::vector<Box> nested_boxes(std::vector<FirstHit> places, float extent) {
     if (boxes.size() == k_nested_parts.size()) break;
   }
   // The rest comes from far away, with too few positions to be known.
+  extent = std::max(extent, 2 * order.back().first);
   while (boxes.size() < k_most_nested_boxes && greatest(boxes.back().size()) < extent) {
     const Box& last = boxes.back();
     boxes.push_back(widened(last, 0.5f * (k_shell - 1) * greatest(last.size())));

@@ -23,9 +23,9 @@ std::vector<Box> first_hit_boxes(std::vector<FirstHit> hits);
 inline constexpr uint32_t k_most_nested_boxes = 12;
 
 /// Boxes around the centre of these positions (weighted median of each axis) with 50, 80 and 95 % of their
-/// weight, and wider ones up to `extent` [m], four times each: for places so widely spread that a few
-/// clusters would be random. The density of paths aimed at all of them falls with the distance. At most
-/// k_most_nested_boxes; empty without weight.
+/// weight, and wider ones, four times each, up to `extent` [m] and the farthest position: for places so
+/// widely spread that a few clusters would be random. The density of paths aimed at all of them falls with
+/// the distance. At most k_most_nested_boxes; empty without weight.
 std::vector<Box> nested_boxes(std::vector<FirstHit> places, float extent);
 
 }  // namespace lucerna::transport

@@ -183,6 +183,53 @@ TEST_CASE("a wall far away adds no aim targets") {
   CHECK(beside == alone);
 }
 
+TEST_CASE("the ground beyond a window is aimed at, too, though the sun through it is found by chance") {
+  scene::Scene s;
+  s.name = "room on a wide ground";
+  s.materials = {test::diffuse(vec3(0.1f)), test::diffuse(vec3(0.8f)), test::diffuse(vec3(0.8f))};
+  for (auto& material : s.materials) material.double_sided = true;
+  // A dark room with a bright ceiling, a window to the side of the sun.
+  test::add_box(s, {-2.2f, 2.6f, -2.2f}, {2.2f, 2.8f, 2.2f}, 1);
+  for (const auto& [lo, hi] :
+       std::initializer_list<std::pair<vec3, vec3>>{{{-2.2f, -0.2f, -2.2f}, {2.2f, 0, 2.2f}},
+                                                    {{-2.2f, 0, -2.2f}, {-2, 2.6f, 2.2f}},
+                                                    {{-2.2f, 0, 2}, {2.2f, 2.6f, 2.2f}},
+                                                    {{-2.2f, 0, -2.2f}, {2.2f, 2.6f, -2}},
+                                                    {{2, 0, -2.2f}, {2.2f, 0.9f, 2.2f}},
+                                                    {{2, 2.1f, -2.2f}, {2.2f, 2.6f, 2.2f}},
+                                                    {{2, 0.9f, -2.2f}, {2.2f, 2.1f, -0.7f}},
+                                                    {{2, 0.9f, 0.7f}, {2.2f, 2.1f, 2.2f}}})
+    test::add_box(s, lo, hi);
+  s.lights = {{.name = "sun", .kind = scene::LightKind::directional, .intensity = vec3(10)}};
+  s.lights[0].direction = normalize(vec3(-0.77f, -0.62f, 0.15f));
+  // Looks up at the ceiling.
+  scene::Camera up;
+  up.yfov = 1.6f;
+  up.to_world = mat4(vec4(1, 0, 0, 0), vec4(0, 0, 1, 0), vec4(0, -1, 0, 0), vec4(0, 0.5f, 0, 1));
+  s.cameras = {up};
+  s.environment.given = true;
+  const test::Settings photons{{"components.secondary", "photons"},
+                               {"components.tertiary", "photons"},
+                               {"photons.efficiency", "false"},
+                               {"photons.per_round", "65536"}};
+  test::add_quad(s, {-300, -0.3f, 300}, {600, 0, 0}, {0, 0, -600}, 2);
+  const Rendered path = render(s, {}, 1024, 16);
+  const auto indirect = [](const Rendered& r) {
+    return test::mean(r.image.components[1]) + test::mean(r.image.components[2]);
+  };
+  // The median, because rare large amounts of light hide that most pictures have too little.
+  std::vector<double> found;
+  test::Settings settings = photons;
+  for (const char* seed : {"0", "1", "2"}) {
+    settings["seed"] = seed;
+    found.push_back(indirect(render(s, settings, 32, 16)));
+  }
+  std::sort(found.begin(), found.end());
+  INFO(found[1] << " of " << indirect(path));
+  CHECK(found[1] == Approx(indirect(path)).epsilon(0.15));
+  CHECK(found[2] < 1.3 * found[0]);
+}
+
 TEST_CASE("behind records, too, entrances of light are found, with and without existing records") {
   const scene::Scene room = slotted_room();
   session::Renderer r(test::renderer_options());

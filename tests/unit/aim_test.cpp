@@ -131,6 +131,23 @@ TEST_CASE("shares follow the square root of a pair's contribution, and none is z
         std::vector<double>{1});
 }
 
+TEST_CASE("nested boxes reach the farthest of a few places far away") {
+  std::vector<transport::FirstHit> places;
+  for (int i = 0; i < 1000; ++i) {
+    const auto at = [&](int step) { return float(i * step % 101) / 100 - 0.5f; };
+    places.push_back({vec3(at(7), at(13), at(29)), 1.0});
+  }
+  const auto widest = [](const Box& box) { return box.size().x; };
+  const auto near = transport::nested_boxes(places, 2);
+  CHECK(widest(near.back()) < 10);
+  places.push_back({vec3(200, 0, 0), 0.01});
+  const auto boxes = transport::nested_boxes(places, 2);
+  REQUIRE(boxes.size() > 4);
+  CHECK(boxes.back().lo.x < -200);
+  CHECK(boxes.back().hi.x > 200);
+  for (size_t i = 1; i < boxes.size(); ++i) CHECK(widest(boxes[i]) >= widest(boxes[i - 1]));
+}
+
 TEST_CASE("lights are chosen by contribution, and a strong light starves no other") {
   const std::vector<std::vector<uint32_t>> groups{{0, 1}, {2}, {3}};
   const std::vector<double> power{1, 3, 1e9, 2};

@@ -18,6 +18,8 @@ TEST_CASE("the displayed picture's error is said in words, and what is from befo
   s.filtered = 0.5;
   CHECK(ui::shown_texts(s).front() == "30.0 % off, 42 % from before the edit");
   CHECK(ui::usable_text(s) == ", usable in about 6.0 s");  // noise falls by half in four times the time
+  s.stale_is_preview = true;                               // solvers' data is complete; nothing was edited
+  CHECK(ui::shown_texts(s).front() == "30.0 % off, 42 % from the preview");
   s.stale = 0;
   CHECK(ui::shown_texts(s).front() == "30.0 % off, worst tenth 60.0 %");
   CHECK(ui::shown_texts(s).back() == "30.0 % off");
@@ -32,4 +34,26 @@ TEST_CASE("a picture is usable if the median tile and the worst tenth are") {
   CHECK(ui::usable_text(s) != ": usable");
   s.shown_error = film::ShownError{0.2, 0.25};
   CHECK(ui::usable_text(s) != ": usable");
+}
+
+TEST_CASE("a forecast counts the time after preparation only, and there is none during it") {
+  session::Snapshot s;
+  s.seconds = 100;
+  s.shown_error = film::ShownError{0.3, 0.4};
+  s.preparing = "cache, pass 1: 0 records";
+  CHECK(ui::usable_text(s) == ", not usable yet");
+  s.preparing.clear();
+  s.prepared_seconds = 98;
+  CHECK(ui::usable_text(s) == ", usable in about 6.0 s");
+}
+
+TEST_CASE("a pause before the first sample is said, because the picture shows nothing new") {
+  session::Snapshot s;
+  CHECK(ui::paused_text(s) == "");
+  s.paused = true;
+  CHECK(ui::paused_text(s) == "Paused before the first sample. Space resumes.");
+  s.samples = 1;
+  CHECK(ui::paused_text(s) == "");
+  s.samples = 0, s.activity = "loading";
+  CHECK(ui::paused_text(s) == "");
 }

@@ -283,6 +283,32 @@ TEST_CASE("mouse, keys and console act through commands, which a saved session c
   }
 }
 
+TEST_CASE("a shortcut pressed and released within a frame works in a text field") {
+  if (test::no_display()) return;
+  const test::Folder folder;
+  const std::string saved = (folder.path / "session.lucerna").string();
+  const auto outcome = window("hall.gltf",
+                              "wait_scene\nkey ctrl+l\nwait 0.3\ntype \"wrong\"\nkey ctrl+a\n"
+                              "type \"film.ev 1.25\"\nkey enter\nwait 0.3\nscript.save " +
+                                  saved + "\nquit\n");
+  INFO(outcome.output);
+  CHECK(outcome.status == 0);
+  const std::vector<std::string> lines = lines_of(saved);
+  REQUIRE(!lines.empty());
+  CHECK(lines.back() == "set film.ev 1.25");
+}
+
+TEST_CASE("a pointer that rests on the picture inspects nothing during a load") {
+  if (test::no_display()) return;
+  const auto outcome = window("hall.gltf",
+                              "wait_scene\nset components.secondary cache\nset overlay.records true\n"
+                              "mouse.move 712 380\nwait 0.5\nscene.open slow.gltf\nwait 0.3\n"
+                              "mouse.move 740 400\nwait 0.5\nwait_scene\nwait 0.3\nquit\n");
+  INFO(outcome.output);
+  CHECK(outcome.status == 0);
+  CHECK_THAT(outcome.output, !Catch::Contains("inspect.at"));
+}
+
 TEST_CASE("a dropped scene opens; a file that cannot be opened is an error, and the scene stays") {
   if (test::no_display()) return;
   const test::Folder folder;

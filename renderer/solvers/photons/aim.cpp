@@ -29,6 +29,9 @@ constexpr uint32_t k_most_regions = 1u << 15;  // texels of delegated_regions
 
 constexpr double k_least_from_afar = 0.05;  // share of all lights' power; below it entrances are not searched
 
+/// True if the scene reaches beyond its core: a wide ground, a terrain, a distant wall.
+bool beyond_core(const Picture& picture) { return picture.flat.core_radius < picture.flat.scene_radius; }
+
 /// First hits of the contributing ones among `paths` distant light paths.
 std::vector<transport::FirstHit> hits_of_use(std::span<const PhotonContribution> photons, uint32_t paths,
                                              const upload::FlatLights& lights) {
@@ -246,8 +249,7 @@ bool PhotonSolver::note_first_hits(transport::Wavefront& wavefront, const Pictur
   // If only aimed paths found entrances, there are others. Surfaces beyond the scene's core get almost no
   // paths by chance, whatever was found within it: few samples are no evidence that little light comes from
   // them.
-  const bool beyond_core = picture.flat.core_radius < picture.flat.scene_radius;
-  if (beyond_core || (!many && !by_chance)) aim_at(reached_boxes_);
+  if (beyond_core(picture) || (!many && !by_chance)) aim_at(reached_boxes_);
   first_hits_.clear();
   begin_sharing(picture);
   return true;
@@ -257,6 +259,9 @@ bool PhotonSolver::share_out(transport::Wavefront& wavefront, const Picture& pic
   Round round = round_of(picture, transport::k_pilot_round);
   round.lookup = lookup_of(picture, small_frame(picture), k_pilot_radius);
   round.paths = std::max(transport::k_pilot_paths, transport::k_pilot_paths_a_stratum * lights_.strata());
+  if (boxes_.size() > casters_.size() && beyond_core(picture))
+    round.paths = std::max(round.paths, std::min(transport::k_ground_pilot_paths_a_stratum * lights_.strata(),
+                                                 transport::k_most_ground_pilot_paths));
   if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
   if (map_.traced() > 0) return true;
   const std::vector<PhotonContribution> photons = map_.contributions(wavefront, lights_);
