@@ -16,14 +16,13 @@ using namespace shared;
 namespace {
 
 constexpr uint32_t k_most_width = 1024;  // of the map that is sampled
-constexpr int k_points = 2;              // samples of a texel along a side
 constexpr double k_pi_d = std::numbers::pi;
 
 /// The sky's sampling density, by texel, with neighbours averaged if there are many.
 class Sky {
  public:
   Sky(const scene::Scene& scene, const EnvironmentTables& tables)
-      : rotation_(double(scene.environment.rotation) * k_pi_d / 180) {
+      : rotation_(scene.environment.rotation * k_pi / 180) {
     const EnvironmentMap map(scene);
     const uint32_t factor = (map.width + k_most_width - 1) / k_most_width;
     w_ = (map.width + factor - 1) / factor, h_ = (map.height + factor - 1) / factor;
@@ -38,18 +37,21 @@ class Sky {
         }
         values_[size_t(y) * w_ + x] = float(sum / weights);
       }
-    u_scale_ = double(map.width) / (double(factor) * w_),
-    v_scale_ = double(map.height) / (double(factor) * h_);
+    u_scale_ = float(map.width) / float(factor * w_), v_scale_ = float(map.height) / float(factor * h_);
   }
-  double density(const glm::dvec3& d) const {
-    const double u = 0.5 + (std::atan2(d.z, d.x) + rotation_) / (2 * k_pi_d);
-    const double v = std::acos(std::clamp(d.y, -1.0, 1.0)) / k_pi_d;
-    const auto x = uint32_t((u - std::floor(u)) * u_scale_ * w_), y = uint32_t(v * v_scale_ * h_);
-    return values_[size_t(std::min(y, h_ - 1)) * w_ + std::min(x, w_ - 1)];
+  /// Along a side of a texel of a portal's map: enough to find every texel of the sky.
+  uint32_t points() const { return w_ > k_portal_side ? 2 : 1; }
+  double density(const vec3& d) const {
+    if (values_.size() == 1) return double(values_[0]);
+    const float u = 0.5f + (std::atan2(d.z, d.x) + rotation_) / (2 * k_pi);
+    const float v = std::acos(std::clamp(d.y, -1.f, 1.f)) / k_pi;
+    const auto x = uint32_t((u - std::floor(u)) * u_scale_ * float(w_)),
+               y = uint32_t(v * v_scale_ * float(h_));
+    return double(values_[size_t(std::min(y, h_ - 1)) * w_ + std::min(x, w_ - 1)]);
   }
 
  private:
-  double rotation_, u_scale_, v_scale_;
+  float rotation_, u_scale_, v_scale_;
   uint32_t w_, h_;
   std::vector<float> values_;
 };
@@ -82,23 +84,23 @@ Map map_of(const scene::Portal& portal, const Sky& sky, const std::vector<double
   constexpr uint32_t n = k_portal_side;
   const glm::dvec3 s(glm::normalize(portal.half_width)), t(glm::normalize(portal.half_height)),
       out(-normal_of(portal));
-  std::vector<double> along(size_t(n) * k_points);
-  for (size_t i = 0; i < along.size(); ++i) along[i] = plane_of((double(i) + 0.5) / k_points);
+  const uint32_t points = sky.points();
+  std::vector<double> along(size_t(n) * points);
+  for (size_t i = 0; i < along.size(); ++i) along[i] = plane_of((double(i) + 0.5) / points);
   Map map;
   map.weights.resize(size_t(n) * n);
   for (uint32_t y = 0; y < n; ++y)
     for (uint32_t x = 0; x < n; ++x) {
       double density = 0, cosine = 0;
-      for (int j = 0; j < k_points; ++j)
-        for (int i = 0; i < k_points; ++i) {
-          const double a = along[size_t(x) * k_points + size_t(i)],
-                       b = along[size_t(y) * k_points + size_t(j)];
+      for (uint32_t j = 0; j < points; ++j)
+        for (uint32_t i = 0; i < points; ++i) {
+          const double a = along[x * points + i], b = along[y * points + j];
           const double height = 1 / std::sqrt(1 + a * a + b * b);
-          density += sky.density(height * (a * s + b * t + out)), cosine += height;
+          density += sky.density(vec3(height * (a * s + b * t + out))), cosine += height;
         }
-      const double weight = density / (k_points * k_points) * solid_angles[size_t(y) * n + x];
+      const double weight = density / (points * points) * solid_angles[size_t(y) * n + x];
       map.weights[size_t(y) * n + x] = weight;
-      map.flux += weight * cosine / (k_points * k_points);
+      map.flux += weight * cosine / (points * points);
     }
   return map;
 }

@@ -167,11 +167,14 @@ vec3 environment_radiance(vec3 d, uint row, out float pdf) {
 float with_portals(float pdf, vec3 position, vec3 direction, uint row, uint portal, float own) {
   float sum = 0.0;
   for (uint i = 0u; i < uint(LUCERNA_PORTALS); ++i) {
-    float share = portal_share(i);
+    // A loop instead of a branch: most directions pass through no portal or one.
+    for (uint once = 0u; once < (i == portal || portal_near(i, position, direction) ? 1u : 0u); ++once) {
+      float share = portal_share(i);
 #if LUCERNA_LEARNED
-    share *= learned_ratio(row, frame.sky_clusters - uint(LUCERNA_PORTALS) + i);
+      share *= learned_ratio(row, frame.sky_clusters - uint(LUCERNA_PORTALS) + i);
 #endif
-    sum += share * (i == portal ? own : portal_pdf(i, position, direction));
+      sum += share * (i == portal ? own : portal_pdf(i, position, direction));
+    }
   }
   return (1.0 - k_portal_share) * pdf + k_portal_share * frame.environment_light_pmf * sum;
 }

@@ -46,14 +46,14 @@ uint portal_sum(uint portal, uint column, uint row) {
 // Sum of a column's or of all weights within rows.
 uint portal_sum_below(uint portal, uint column, uvec2 rows) { return portal_sum(portal, column, rows.y) - portal_sum(portal, column, rows.x); }
 
-// Density per solid angle of a direction in a texel of weight `weight`, of `all` in the rectangle. Within a texel, the part
+// Density per solid angle of a direction in a texel of weight `weight`, of `sum_seen` in the rectangle. Within a texel, the part
 // in the rectangle is sampled uniformly. `local`: along s, t and out of the room.
-float portal_density(PortalView view, uvec2 texel, uint weight, uint all, vec3 local) {
+float portal_density(PortalView view, uvec2 texel, uint weight, uint sum_seen, vec3 local) {
   vec2 size = (min(view.high, vec2(texel + 1u)) - max(view.low, vec2(texel))) * (2.0 / float(k_portal_side));
   vec2 stretch = local.z + abs(local.xy);
   float jacobian = square(stretch.x * stretch.y) / max(local.z, 1e-37);
   float area = size.x * size.y * jacobian;
-  return size.x > 0.0 && size.y > 0.0 && area > 0.0 && all > 0u ? float(weight) / (float(all) * area) : 0.0;
+  return size.x > 0.0 && size.y > 0.0 && area > 0.0 && sum_seen > 0u ? float(weight) / (float(sum_seen) * area) : 0.0;
 }
 
 // Direction to the sky through a portal, and its density by this portal alone; density 0: there is none. bits, u: random.
@@ -61,9 +61,9 @@ vec3 sample_portal(uint portal, vec3 position, uvec2 bits, vec2 u, out float pdf
   PortalView view = portal_view(portal, position);
   uvec2 rows = uvec2(view.first.y, view.end.y);
   uint before = portal_sum_below(portal, view.first.x, rows);
-  uint all = portal_sum_below(portal, view.end.x, rows) - before, target, lost;
+  uint sum_seen = portal_sum_below(portal, view.end.x, rows) - before, target, lost;
   // The column whose weights, with those left of it, first exceed the target; then the row in it.
-  umulExtended(bits.x, all, target, lost);
+  umulExtended(bits.x, sum_seen, target, lost);
   uint low = view.first.x, high = view.end.x - 1u, below = 0u;
   while (low < high) {
     uint middle = (low + high) >> 1;
@@ -90,8 +90,20 @@ vec3 sample_portal(uint portal, vec3 position, uvec2 bits, vec2 u, out float pdf
   vec2 m = mix(max(view.low, vec2(texel)), min(view.high, vec2(texel + 1u)), u) * (2.0 / float(k_portal_side)) - 1.0;
   vec2 rest = max(1.0 - abs(m), vec2(1e-7));
   vec3 local = normalize(vec3(m * rest.yx, rest.x * rest.y));
-  pdf = portal_seen(view) ? portal_density(view, texel, weight, all, local) : 0.0;
+  pdf = portal_seen(view) ? portal_density(view, texel, weight, sum_seen, local) : 0.0;
   return local.x * view.s + local.y * view.t - local.z * view.n;
+}
+
+// False only if the direction does not pass through the portal: quicker than portal_pdf().
+bool portal_near(uint portal, vec3 position, vec3 direction) {
+  int at = int(portal * k_portal_texels);
+  vec4 a = texelFetch(scene_portals, at), b = texelFetch(scene_portals, at + 1), c = texelFetch(scene_portals, at + 2);
+  vec3 n = cross(b.xyz, c.xyz), off = position - a.xyz;
+  float height = dot(off, n), out_of = -dot(direction, n);
+  // Where it meets the portal's plane, times out_of, with room for rounding.
+  vec2 from = vec2(dot(off, b.xyz), dot(off, c.xyz)) * out_of, to = vec2(dot(direction, b.xyz), dot(direction, c.xyz)) * height;
+  bvec2 within = lessThanEqual(abs(from + to), 1.001 * vec2(a.w, b.w) * out_of + 1e-5 * (abs(from) + abs(to)));
+  return height > 0.0 && out_of > 0.0 && all(within);
 }
 
 // Density of sample_portal() for a direction.
@@ -101,15 +113,10 @@ float portal_pdf(uint portal, vec3 position, vec3 direction) {
   vec2 m = local.xy / (max(local.z, 1e-37) + abs(local.xy));
   vec2 at = (0.5 + 0.5 * m) * float(k_portal_side);
   bool through = local.z > 0.0 && portal_seen(view) && at.x >= view.low.x && at.x <= view.high.x && at.y >= view.low.y && at.y <= view.high.y;
-  float pdf = 0.0;
-  // A loop instead of a branch, which would save nothing on lavapipe.
-  for (uint once = 0u; once < (through ? 1u : 0u); ++once) {
-    uvec2 rows = uvec2(view.first.y, view.end.y), texel = clamp(uvec2(at), view.first, view.end - 1u), own = uvec2(texel.y, texel.y + 1u);
-    uint all = portal_sum_below(portal, view.end.x, rows) - portal_sum_below(portal, view.first.x, rows);
-    uint weight = portal_sum_below(portal, texel.x + 1u, own) - portal_sum_below(portal, texel.x, own);
-    pdf = portal_density(view, texel, weight, all, local);
-  }
-  return pdf;
+  uvec2 rows = uvec2(view.first.y, view.end.y), texel = clamp(uvec2(max(at, vec2(0.0))), view.first, view.end - 1u), own = uvec2(texel.y, texel.y + 1u);
+  uint sum_seen = portal_sum_below(portal, view.end.x, rows) - portal_sum_below(portal, view.first.x, rows);
+  uint weight = portal_sum_below(portal, texel.x + 1u, own) - portal_sum_below(portal, texel.x, own);
+  return through ? portal_density(view, texel, weight, sum_seen, local) : 0.0;
 }
 
 // Probability of a portal among the portals, without learning.
