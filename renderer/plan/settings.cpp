@@ -71,7 +71,8 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
       choice_option("lights.sampling", "learned", {"power", "learned"}, "",
                     "Light selection at a vertex. power: by emitted power. learned: by the light that "
                     "arrives nearby, learned in short pilots between the first samples: less noise where "
-                    "walls or blinds hide most lights, or most of the sky. Unbiased in both cases.",
+                    "walls or blinds hide most lights, or most of the sky. Unbiased in both cases. "
+                    "Both sample the sky through the scene's portals (extras.portal) too.",
                     "Light selection"));
   list.push_back(integer_option("path.roulette_depth", 4, 1, 1024, "vertices",
                                 "Vertex from which Russian roulette may end a path.", "Roulette from"));

@@ -57,4 +57,12 @@ Camera starting_camera(const Scene& scene, const std::string& name) {
   return scene.cameras.empty() ? default_camera(scene) : scene.cameras.front();
 }
 
+vec3 normal_of(const Portal& portal) {
+  return glm::normalize(glm::cross(portal.half_width, portal.half_height));
+}
+
+float area_of(const Portal& portal) {
+  return 4 * glm::length(portal.half_width) * glm::length(portal.half_height);
+}
+
 }  // namespace lucerna::scene

@@ -144,6 +144,21 @@ struct Environment {
   bool given = false;  ///< the scene or its settings name an environment, be it black
 };
 
+/// A rectangle through which the sky lights a room: a mesh marked by extras.portal. It is no surface, and a
+/// hint for light sampling only: it changes noise, never the mean.
+struct Portal {
+  std::string name;  ///< of the node
+  vec3 centre{0};
+  vec3 half_width{0}, half_height{0};  ///< from the centre to the middles of two sides, perpendicular
+  bool operator==(const Portal&) const = default;
+};
+/// Unit normal, towards the room. The sky is sampled for points on this side.
+vec3 normal_of(const Portal& portal);
+/// m^2
+float area_of(const Portal& portal);
+/// A scene has at most this number of portals.
+inline constexpr size_t k_max_portals = 16;
+
 struct Scene {
   std::string name;  ///< the file's stem
   std::string file;
@@ -158,6 +173,7 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
+  std::vector<Portal> portals;  ///< at most k_max_portals
   Environment environment;
   /// Render settings from settings.json beside the scene, key -> value as text, in file order; checked by
   /// plan/.

@@ -58,6 +58,10 @@ Card card_of(const overlay::ServedPoint& served, const transport::LightLearning&
 
 std::string cluster_text(const upload::ClusterPlace& place, const upload::FlatScene& flat,
                          const scene::Scene& scene) {
+  if (place.portal != scene::k_none) {
+    const std::string& name = flat.portals.of[place.portal].name;
+    return name.empty() ? "sky through a portal" : fmt::format("sky through {}", name);
+  }
   if (place.is_sky) {
     const double height = std::asin(std::clamp(place.at.y, -1.f, 1.f)) * 180 / double(k_pi);
     return height < 0 ? fmt::format("sky, {:.0f}\u00b0 below the horizon", -height)

@@ -68,6 +68,8 @@ LightBuffers::LightBuffers(gpu::Device& device, const FlatLights& flat, const Li
       pmf(upload(device, "light probabilities", flat.primitive_light_pmf, false)),
       groups(upload(device, "groups of lights", whole_texels(flat.emissive_groups))),
       sun_density(upload(device, "sun densities", flat.sun_density)),
+      portals(upload(device, "portals", flat.portals.portals)),
+      portal_sums(upload<uint32_t>(device, "portal tables", flat.portals.sums)),
       environment(environment_of(device, flat, before)) {}
 
 MaterialBuffers::MaterialBuffers(gpu::Device& device, const FlatMaterials& flat)
@@ -125,6 +127,8 @@ void DeviceScene::bind(gpu::Resources& r) const {
   r.set("environment_alias", lights_.environment->alias);
   r.set("sun_cells", lights_.environment->sun_cells);
   r.set("sun_density", lights_.sun_density);
+  r.set("scene_portals", lights_.portals);
+  r.set("portal_sums", lights_.portal_sums);
   r.set("bsdf_table", materials_.tables);
   r.set("scene_media", materials_.media);
   r.set("bvh_nodes", nodes_);
@@ -142,6 +146,7 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_ENVIRONMENT_MAP", e.environment_map);
   set("LUCERNA_SEPARATE_SKY", e.separate_sky);
   set("LUCERNA_SUN", e.sun);
+  d["LUCERNA_PORTALS"] = std::to_string(e.portals);
   d["LUCERNA_LAMP_CANDIDATES"] = std::to_string(e.lamp_candidates);
   d["LUCERNA_LIGHT_GROUPS"] = std::to_string(e.light_groups);
   set("LUCERNA_GROUP_SUMS", e.has_compact_groups());

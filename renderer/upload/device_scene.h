@@ -25,7 +25,7 @@ struct LightBuffers {
   /// `before`: provides the environment if it is equal.
   LightBuffers(gpu::Device& device, const FlatLights& flat, const LightBuffers& before = {});
   explicit operator bool() const { return bool(lights); }
-  gpu::Buffer lights, alias, pmf, groups, sun_density;
+  gpu::Buffer lights, alias, pmf, groups, sun_density, portals, portal_sums;
   std::shared_ptr<const EnvironmentBuffers> environment;
 };
 
@@ -45,8 +45,8 @@ class DeviceScene {
   LightBuffers exchange(LightBuffers lights, const Effects& effects) noexcept;
   const LightBuffers& lights() const { return lights_; }
   MaterialBuffers exchange(MaterialBuffers materials, const Effects& effects) noexcept;
-  /// Names: scene_*, texture_bucket_N, light_alias, PrimitiveLightPmf, environment_*, sun_*, bsdf_table,
-  /// scene_media, bvh_nodes, bvh_triangles.
+  /// Names: scene_*, texture_bucket_N, light_alias, PrimitiveLightPmf, environment_*, sun_*, portal_sums,
+  /// bsdf_table, bvh_nodes, bvh_triangles.
   void bind(gpu::Resources& resources) const;
   /// #defines that compile in only the features of the scene.
   gpu::Defines defines() const;

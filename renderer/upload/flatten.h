@@ -10,6 +10,7 @@
 #include "scene/scene.h"
 #include "shaders/shared/scene.h"
 #include "upload/environment_tables.h"
+#include "upload/portal_tables.h"
 
 namespace lucerna::upload {
 
@@ -27,6 +28,7 @@ struct Effects {
   uint32_t media = 0;                      ///< number of media, if a solid absorbs (upload/media.h)
   uint32_t light_groups = 1;               ///< number of separate groups (FlatScene::groups)
   bool group_components = true;            ///< groups are separated by component too
+  uint32_t portals = 0;                    ///< number of portals through which the sky is sampled
   bool uv_transforms = false;              ///< a texture is scaled, rotated or shifted
   bool tex_nearest = false;                ///< a texture is not filtered
   bool tex_wraps = false;                  ///< a texture does not repeat
@@ -65,6 +67,7 @@ struct LightDistribution {
   float lamp_pmf = 0;       ///< probability of choosing a lamp
   float environment_light_pmf = 0;
   EnvironmentTables environment;
+  PortalTables portals;           ///< none if the sun is separate
   std::vector<vec4> sun_density;  ///< EnvironmentTables::sun_density, with the sun's own pmf
   /// Luminance of the flux of each entry [W], for light paths: of distant lights through the scene's disk, of
   /// textured triangles from 16 points of each.

@@ -10,6 +10,7 @@
 
 #include "shaders/shared/facet.h"
 #include "shaders/shared/learned_lights.h"
+#include "shaders/shared/portals.h"
 #include "upload/alias_table.h"
 
 namespace lucerna::upload {
@@ -126,18 +127,16 @@ class SkyCut {
   std::vector<double> sums_;
 };
 
-void add_sky(const FlatScene& flat, LightClusters& to) {
+void add_whole_sky(const FlatScene& flat, double pmf, LightClusters& to) {
   const uint32_t w = flat.environment_width, h = flat.environment_height;
   Builder builder(to);
   if (w * h == 1) {
     to.sky_squares = k_sky_side;
-    builder.add_squares(0, flat.environment_light_pmf, k_sky_side);
-    to.sky = to.count();
+    builder.add_squares(0, pmf, k_sky_side);
     return;
   }
   std::vector<double> weights(size_t(w) * h);
-  for (size_t i = 0; i < weights.size(); ++i)
-    weights[i] = double(flat.environment.alias[i].z) * flat.environment_light_pmf;
+  for (size_t i = 0; i < weights.size(); ++i) weights[i] = double(flat.environment.alias[i].z) * pmf;
   to.tiles.resize((weights.size() + 15) / 16 * 16);
   for (const Rectangle& r : SkyCut(weights, w, h).cut(k_sky_clusters)) {
     std::vector<uint32_t> members;
@@ -150,6 +149,14 @@ void add_sky(const FlatScene& flat, LightClusters& to) {
       }
     builder.add(members, of);
   }
+}
+
+void add_sky(const FlatScene& flat, LightClusters& to) {
+  const double pmf{flat.environment_light_pmf};
+  to.portals = flat.portals.count();
+  const double share = to.portals > 0 ? double{shared::k_portal_share} : 0;
+  add_whole_sky(flat, pmf * (1 - share), to);
+  for (uint32_t i = 0; i < to.portals; ++i) Builder(to).add({i}, {pmf * share * flat.portals.shares[i]});
   to.sky = to.count();
 }
 
@@ -291,6 +298,13 @@ void find_places(const FlatScene& flat, LightClusters& to) {
                count = std::bit_cast<uint32_t>(to.clusters[c].y),
                square = std::bit_cast<uint32_t>(to.clusters[c].z);
     ClusterPlace place{.is_sky = c < to.sky, .count = count};
+    if (place.is_sky && c + to.portals >= to.sky) {
+      place.portal = c + to.portals - to.sky;
+      place.at = flat.portals.of[place.portal].centre;
+      place.light = uint32_t(flat.entries.size()) - 1;
+      to.places.push_back(place);
+      continue;
+    }
     for (uint32_t i = first; i < first + count; ++i) {
       const auto member = std::bit_cast<uint32_t>(to.members[i].z);
       if (!place.is_sky) {

@@ -1,6 +1,6 @@
 #pragma once
 // Clusters of lights for learned light selection (shaders/shared/learned_lights.h): disjoint parts of all
-// lights. Host code.
+// lights, and the sky through each portal. Host code.
 #include <vector>
 
 #include "gpu/kernel.h"
@@ -13,12 +13,14 @@ struct ClusterPlace {
   vec3 at{0};  ///< mean position of its lights; of distant ones the unit direction towards them
   bool is_far = false;
   bool is_sky = false;
-  uint32_t light = 0;  ///< its first light: an entry of LightDistribution::entries
-  uint32_t count = 0;  ///< number of lights, or of texels of the sky
+  uint32_t portal = scene::k_none;  ///< the sky through FlatScene::portals.of[portal]; `at`: its centre
+  uint32_t light = 0;               ///< its first light: an entry of LightDistribution::entries
+  uint32_t count = 0;               ///< number of lights, or of texels of the sky
 };
 
 struct LightClusters {
   uint32_t sky = 0;          ///< number of clusters of the sky, which are the first
+  uint32_t portals = 0;      ///< number of portals, which are the last of these
   uint32_t sky_squares = 0;  ///< squares per side into which a constant sky is divided; 0: into texels
   std::vector<float> plain;  ///< by cluster: probability without learning; they sum to 1
   std::vector<vec4> clusters, members;  ///< light_clusters, cluster_members

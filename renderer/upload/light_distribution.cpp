@@ -138,6 +138,7 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
       return sum * 2 * k_pi / EnvironmentMap(scene).width * scene.environment.scale * disk;
     };
     sun = power(d.environment.sun_weight);
+    if (!separate_sun) d.portals = portal_tables(scene, d.environment, flat.portals);
     environment = power(d.environment.sky_weight);
   }
   const bool has_sun = sun > 0;
@@ -168,6 +169,7 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   flat.effects.environment_map = lit;
   flat.effects.separate_sky = separate_sun;
   flat.effects.sun = has_sun;
+  flat.effects.portals = d.portals.count();
   flat.effects.light_groups = flat.groups ? uint32_t(flat.groups->groups.size()) : 1;
   flat.effects.group_components = flat.group_components;
   static_cast<LightDistribution&>(flat) = std::move(d);

@@ -53,6 +53,9 @@ struct LightSample {
   uint cluster;      // light cluster
   float chosen;      // probability of that
   float factor;      // weight of the sample: pdf over its effective density after resampling
+#if LUCERNA_SKY_PORTALS
+  float own;         // of a sample of the sky: density of the cluster alone, without that of other clusters
+#endif
 #endif
 };
 
@@ -138,7 +141,7 @@ vec3 environment_in_cell(uint cell, vec2 u) {
 #if LUCERNA_SEPARATE_SKY
 #include "lib/sky.glsl"
 #else
-// Radiance arriving from direction -d, and the density with which sample_light samples d.
+// Radiance arriving from direction -d, and the density with which sample_light samples d, without portals.
 vec3 environment_radiance(vec3 d, out float pdf) {
   pdf = 0.0;
 #if LUCERNA_ENVIRONMENT_MAP
@@ -155,6 +158,25 @@ vec3 environment_radiance(vec3 d, uint row, out float pdf) {
   EnvironmentTexels t = environment_texels_at(d);
   pdf = frame.environment_light_pmf * t.density * learned_ratio(row, sky_cluster(d, uint(t.texel), t.u));
   return environment_mix(t.a.rgb, t.b.rgb, t.c.rgb, t.d.rgb, t.f);
+}
+#endif
+#if LUCERNA_SKY_PORTALS
+#include "lib/portals.glsl"
+// Density with which sample_light samples a direction at `position`: the sum over all strategies that sample it. `pdf`:
+// that of environment_radiance(). `portal`: one whose own density is known.
+float with_portals(float pdf, vec3 position, vec3 direction, uint row, uint portal, float own) {
+  float sum = 0.0;
+  for (uint i = 0u; i < uint(LUCERNA_PORTALS); ++i) {
+    // A loop instead of a branch: most directions pass through no portal or one.
+    for (uint once = 0u; once < (i == portal || portal_near(i, position, direction) ? 1u : 0u); ++once) {
+      float share = portal_share(i);
+#if LUCERNA_LEARNED
+      share *= learned_ratio(row, frame.sky_clusters - uint(LUCERNA_PORTALS) + i);
+#endif
+      sum += share * (i == portal ? own : portal_pdf(i, position, direction));
+    }
+  }
+  return (1.0 - k_portal_share) * pdf + k_portal_share * frame.environment_light_pmf * sum;
 }
 #endif
 #endif
@@ -305,6 +327,11 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   LightCluster cluster = light_cluster(s.cluster);
   s.chosen = ratio * cluster.plain;
   uint member = cluster_member(cluster, detail);
+#if LUCERNA_SKY_PORTALS
+  // Portals are the last clusters of the sky.
+  uint portal = s.cluster + uint(LUCERNA_PORTALS) - frame.sky_clusters;
+  if (portal >= uint(LUCERNA_PORTALS)) portal = k_no_portal;
+#endif
   // The environment is the last light.
   uint light = s.cluster < frame.sky_clusters ? frame.light_count - 1u : member;
   pmf = ratio * texelFetch(light_alias, int(light)).z;
@@ -312,6 +339,9 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   light = draw_lamp_of(cluster, light, position, normal, detail.x, u.x, ratio, pmf);
 #endif
   s.factor = 1.0;
+#if LUCERNA_SKY_PORTALS
+  s.own = 0.0;
+#endif
 #if LUCERNA_TRIANGLE_CANDIDATES
   light = draw_triangle_of(cluster, light, position, normal, detail, ratio, pmf, s.factor);
 #endif
@@ -389,14 +419,37 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
     s.radiance = s.sky ? e.sky : e.sun;
     s.pdf = s.sky ? e.pdf_sky * sky_share : e.pdf_sun * (1.0 - sky_share);
 #else
+#if LUCERNA_SKY_PORTALS
+#if !LUCERNA_LEARNED
+    const uint row = 0u;
+    uint portal = choose_portal(detail.y);
+#endif
+    float own = 0.0;
+    vec3 through = vec3(0.0);
+    for (uint once = 0u; once < (portal != k_no_portal ? 1u : 0u); ++once) through = sample_portal(portal, position, detail, u, own);
+#endif
 #if LUCERNA_LEARNED
     s.direction = environment_in_cell(member, u);
-    s.radiance = environment_radiance(s.direction, row, s.pdf);
 #else
     uint cells = frame.environment_width * frame.environment_height;
     float texel_pmf;
     s.direction = environment_in_cell(alias_choose(environment_alias, cells, detail, texel_pmf), u);
+#endif
+#if LUCERNA_SKY_PORTALS
+    if (portal != k_no_portal) s.direction = through;
+#endif
+#if LUCERNA_LEARNED
+    s.radiance = environment_radiance(s.direction, row, s.pdf);
+#else
     s.radiance = environment_radiance(s.direction, s.pdf);
+#endif
+#if LUCERNA_SKY_PORTALS
+#if LUCERNA_LEARNED
+    s.own = portal == k_no_portal ? (1.0 - k_portal_share) * s.pdf / max(s.chosen, 1e-30) : own;
+#endif
+    s.pdf = with_portals(s.pdf, position, s.direction, row, portal, own);
+    // Nothing is seen through that portal.
+    if (portal != k_no_portal && !(own > 0.0)) s.pdf = 0.0;
 #endif
 #endif
   }

@@ -23,6 +23,10 @@
 #ifndef LUCERNA_SUN
 #define LUCERNA_SUN 0
 #endif
+// Number of portals through which the sky is sampled.
+#ifndef LUCERNA_PORTALS
+#define LUCERNA_PORTALS 0
+#endif
 #ifndef LUCERNA_LAMP_CANDIDATES
 #define LUCERNA_LAMP_CANDIDATES 0
 #endif
@@ -241,6 +245,8 @@
 // Derived from these.
 #define LUCERNA_GLASS (LUCERNA_SOLID_GLASS || LUCERNA_THIN_GLASS)
 #define LUCERNA_TRANSPARENT (LUCERNA_ALPHA || LUCERNA_THIN_GLASS)
+// The sky is sampled through portals.
+#define LUCERNA_SKY_PORTALS (LUCERNA_PORTALS && LUCERNA_ENVIRONMENT_MAP && !LUCERNA_SEPARATE_SKY)
 // Light samples of emissive triangles read their surface, for textures and holes.
 #define LUCERNA_LIGHT_SURFACE \
   (LUCERNA_EMISSIVE && !LUCERNA_PLAIN_EMITTERS && (LUCERNA_TEX_EMISSION || LUCERNA_ALPHA || LUCERNA_VERTEX_EXTRA))

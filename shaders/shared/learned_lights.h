@@ -2,7 +2,8 @@
 // Read by C++ and GLSL.
 //
 // Clusters are disjoint parts of all lights: rectangles of the sky's texels, squares of large emissive triangles, runs of
-// neighbouring small ones, lamps. A row holds the probability of each cluster for one cell of space and one facing. Within a
+// neighbouring small ones, lamps. Each portal is one too (shared/portals.h), the last of the sky's; it samples the same
+// directions as the sky's texels. A row holds the probability of each cluster for one cell of space and one facing. Within a
 // cluster, lights are chosen as without learning, so that the density of a light sample is the density without learning times
 // the ratio of row and cluster.
 //
@@ -14,7 +15,7 @@
 // A square is column | row << 8 | squares a side << 16 of the unit square of random numbers that choose a place on the
 // member; 1 << 16: the whole unit square. k_cluster_of_triangles: a run of emissive triangles.
 // cluster_members: alias tables: (threshold, bits 0, bits member, bits member of the alias). A member of the sky is a texel of
-// the environment, else an entry of scene_lights.
+// the environment, of a portal the portal, else an entry of scene_lights.
 // light_facets (LUCERNA_TRIANGLE_CANDIDATES): one texel a triangle of scene_lights: (centroid, bits facing). Facing: the normal
 // of the emitting side, octahedral, 12 bits each; bits 24-30 e of the area 2^(e - 64) m^2; bit 31: both sides emit.
 // primitive_clusters: a word a primitive, four a texel: first cluster | squares a side << 24.

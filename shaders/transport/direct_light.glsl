@@ -40,25 +40,37 @@ layout(scalar) writeonly buffer LightRecords { LightRecord light_records[]; };
 // are rarely chosen would learn to be chosen more rarely.
 void record_light_sample(uint slot, PathState path, vec3 position, vec3 normal, LightSample l, BsdfValue f, bool sent, inout ShadowState shadow) {
   uint at = slot * k_learned_vertices + path_depth(path);
-  float within = l.pdf / max(l.chosen, 1e-30);
-  float rate = l.delta ? 0.0 : f.pdf / max(within, 1e-30);
+  float within = l.pdf / max(l.chosen, 1e-30), alone = within;
+#if LUCERNA_SKY_PORTALS
+  // Portals and the sky's texels sample the same directions. A cluster's part of a contribution is its share of the density,
+  // so that second moments of these parts lead to the mixture of least variance.
+  if (l.own > 0.0) alone = l.own;
+#endif
+  float rate = l.delta ? 0.0 : f.pdf / max(alone, 1e-30);
   float value = l.factor * luminance(l.radiance * (f.diffuse + f.glossy)) / (max(within, 1e-30) * (1.0 + rate * rate));
   float full = luminance(shadow.diffuse + shadow.glossy);
   sent = sent && full > 0.0 && value > 0.0 && value < 1e30;
   light_records[at].position = position;
   light_records[at].cell = learned_facing(normal) << 16 | l.cluster;
   light_records[at].value = sent ? value : 0.0;
+#if LUCERNA_SKY_PORTALS
+  // Light that scattered rays meet is recorded for the sky's texels.
+  if (l.cluster + uint(LUCERNA_PORTALS) - frame.sky_clusters < uint(LUCERNA_PORTALS)) rate = 0.0;
+#endif
   light_records[at].rate = min(rate, 1e30);
   light_records[at].full = sent ? full : -1.0;
   light_records[at].before = luminance(path.throughput);
   shadow.tag = at + 1u;
 }
 
-// Records an emitter hit that light samples would have found with that density.
-void record_light_met(uint slot, PathState path, vec3 light, float pdf, uint cluster) {
+// Records an emitter hit that light samples would have found with density `pdf`, of which `part` by its own cluster.
+void record_light_met(uint slot, PathState path, vec3 light, float pdf, uint cluster, float part) {
   float chosen = learned_ratio(path.light_group, cluster) * light_cluster(cluster).plain;
-  float within = pdf / max(chosen, 1e-30), rate = path.pdf / max(within, 1e-30);
+  float within = part / max(chosen, 1e-30), rate = path.pdf / max(within, 1e-30);
   float value = luminance(path.throughput * light) * rate / (1.0 + rate * rate);  // times `before`
+#if LUCERNA_SKY_PORTALS
+  value *= part / max(pdf, 1e-30);
+#endif
   uint depth = path_depth(path);
   if (value > 0.0 && value < 1e30 && within > 0.0 && path.pdf > 0.0 && depth > 0u && depth <= k_learned_vertices) {
     uint at = slot * k_learned_vertices + depth - 1u;
@@ -70,7 +82,7 @@ void record_light_met(uint slot, PathState path, vec3 light, float pdf, uint clu
 #endif
 
 // Light of a path that leaves the scene; with light groups, without the sun's part.
-vec3 environment_met(uint slot, PathState path, vec3 direction, out vec3 sun) {
+vec3 environment_met(uint slot, PathState path, vec3 origin, vec3 direction, out vec3 sun) {
   sun = vec3(0.0);
 #if LUCERNA_SEPARATE_SKY
   Environment e = environment_radiance(direction);
@@ -89,13 +101,22 @@ vec3 environment_met(uint slot, PathState path, vec3 direction, out vec3 sun) {
   float pdf;
 #if LUCERNA_LEARNED && LUCERNA_ENVIRONMENT_MAP
   vec3 light = environment_radiance(direction, path.light_group, pdf);
+  float part = pdf;
+#if LUCERNA_SKY_PORTALS
+  part *= 1.0 - k_portal_share;
+  // Null events have moved the ray's origin away from the vertex.
+  pdf = with_portals(pdf, origin - path.travelled * direction, direction, path.light_group, k_no_portal, 0.0);
+#endif
   // A loop instead of a branch: on lavapipe a branch saves no work, and only pilot paths are recorded.
   for (uint once = 0u; once < frame.learning; ++once) {
     EnvironmentTexels t = environment_texels_at(direction);
-    record_light_met(slot, path, light, pdf, sky_cluster(direction, uint(t.texel), t.u));
+    record_light_met(slot, path, light, pdf, sky_cluster(direction, uint(t.texel), t.u), part);
   }
 #else
   vec3 light = environment_radiance(direction, pdf);
+#if LUCERNA_SKY_PORTALS
+  pdf = with_portals(pdf, origin - path.travelled * direction, direction, 0u, k_no_portal, 0.0);
+#endif
 #endif
   return path.throughput * light * met_weight(path, pdf);
 #endif

@@ -52,7 +52,7 @@ vec3 emission_met(uint slot, PathState path, Surface surface, Hit hit, float tra
 #if LUCERNA_LEARNED
     uint cluster = emissive_cluster(hit.prim, vec2(hit.u, hit.v));
     pdf *= learned_ratio(path.light_group, cluster);
-    for (uint once = 0u; once < frame.learning; ++once) record_light_met(slot, path, surface.emission, pdf, cluster);
+    for (uint once = 0u; once < frame.learning; ++once) record_light_met(slot, path, surface.emission, pdf, cluster, pdf);
 #endif
     return path.throughput * surface.emission * emissive_weight(path, pdf);
   }
@@ -146,7 +146,7 @@ void main() {
   found.branches = 1u;
 #if LUCERNA_HITS_SKY
   if (hit.prim == k_no_hit) {
-    gain = environment_met(slot, path, ray.direction, sun);
+    gain = environment_met(slot, path, ray.origin, ray.direction, sun);
 #if LUCERNA_HIDDEN_BACKGROUND
     // Directly visible emission; its reflections, and the light it casts, remain.
     if (depth == 0u && automaton_no_diffuse(state)) gain = sun = vec3(0.0);

@@ -11,9 +11,15 @@ using namespace lucerna;
 using namespace lucerna::test;
 
 TEST_CASE("densities of light samples and of rays that hit the same light agree in every row") {
-  for (const bool constant : {false, true}) {
+  for (const auto& [constant, portals] :
+       {std::pair(false, false), {true, false}, {false, true}, {true, true}}) {
     scene::Scene scene = constant ? scene::Scene{} : sky(64, 32, 40);
     if (constant) scene.environment.radiance = vec3(2), scene.environment.given = true;
+    if (portals) {
+      scene.portals.push_back({"over each other", {0, 3, 0}, {1, 0, 0}, {0, 0, 1}});
+      scene.portals.push_back({"over each other", {0.5f, 3.5f, 0}, {1, 0, 0}, {0, 0, 1}});
+      scene.portals.push_back({"turned away", {0, 2, 0}, {0, 0, 1}, {1, 0, 0}});
+    }
     add_triangle(scene, {0, 4, 0}, {3, 4, 0}, {0.5f, 4, 1}, {10, 20, 30});
     for (int i = 0; i < 200; ++i)
       add_triangle(scene, {5, 0.1f * float(i), 1}, {5, 0.1f * float(i), 1.2f}, {5, 0.1f * float(i) + 0.1f, 1},
@@ -65,6 +71,11 @@ TEST_CASE("densities of light samples and of rays that hit the same light agree 
     stream.run();
     std::array<size_t, 3> drawn{}, apart{};
     for (const Pair& p : pairs.read_all<Pair>()) {
+      // From behind a portal nothing is seen through it.
+      if (portals && p.cluster + 1 == learning.clusters().sky) {
+        CHECK(p.drawn == 0);
+        continue;
+      }
       ++drawn[p.kind];
       apart[p.kind] += !(p.drawn > 0) || std::abs(p.met / p.drawn - 1) > 1e-4;
     }

@@ -80,6 +80,16 @@ Json describe_lights(const Scene& scene) {
   return list;
 }
 
+Json describe_portals(const Scene& scene) {
+  Json list = Json::array();
+  for (const Portal& portal : scene.portals)
+    list.push_back({{"name", portal.name},
+                    {"centre", rgb(portal.centre)},
+                    {"size", {2 * glm::length(portal.half_width), 2 * glm::length(portal.half_height)}},
+                    {"normal", rgb(normal_of(portal))}});
+  return list;
+}
+
 /// Groups by the scene's own rules; invalid rules are not reported here.
 LightGroups groups_of(const Scene& scene) {
   for (const auto& [key, value] : scene.settings)
@@ -172,6 +182,7 @@ nlohmann::ordered_json describe(const Scene& scene) {
                                {"wrap", {wrap_name(texture.wrap_u), wrap_name(texture.wrap_v)}},
                                {"nearest", texture.nearest}});
   out["lights"] = describe_lights(scene);
+  out["portals"] = describe_portals(scene);
   const LightGroups groups = groups_of(scene);
   out["light_groups"] = describe_groups(groups);
   out["cameras"] = describe_cameras(scene);
@@ -232,6 +243,10 @@ std::string describe_text(const Scene& scene) {
   line("lights       {}", d["lights"].size());
   for (const Json& light : d["lights"])
     line("  {}: {}, {}", name(light), kind(light), triple(light["intensity"]));
+  if (!d["portals"].empty()) line("portals      {}", d["portals"].size());
+  for (const Json& portal : d["portals"])
+    line("  {}: {:.4g} x {:.4g} m at {}, lights towards {}", name(portal), portal["size"][0].get<double>(),
+         portal["size"][1].get<double>(), triple(portal["centre"]), triple(portal["normal"]));
   line("light groups {}", d["light_groups"].size());
   for (const Json& group : d["light_groups"]) line("  {}: {}", name(group), members(group));
   line("cameras      {}", d["cameras"].size());

@@ -318,4 +318,14 @@ std::string light_group(const Item& item) {
   return group_name(json.get<std::string>());
 }
 
+std::optional<bool> portal_mark(const Item& item) {
+  const auto extras = item.find("extras");
+  if (!extras || !extras->json().is_object()) return std::nullopt;
+  const auto mark = extras->find("portal");
+  if (!mark) return std::nullopt;
+  // Blender's custom properties are numbers unless made Boolean.
+  if (mark->json() == 0 || mark->json() == 1) return mark->json() == 1;
+  return mark->boolean();
+}
+
 }  // namespace lucerna::scene

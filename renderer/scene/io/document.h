@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -114,6 +115,8 @@ void check_structure(const Document& document);
 /// extras.light_group of a node, material or lamp: a text or a whole number, normalized as in light_groups.h;
 /// "" if there is none. Throws a located Error for other types.
 std::string light_group(const Item& item);
+/// extras.portal of a node or mesh; none: not given. Throws a located Error for other types.
+std::optional<bool> portal_mark(const Item& item);
 /// True if the extension is supported (load.h lists them).
 bool is_known_extension(const std::string& name);
 

@@ -9,6 +9,7 @@
 #include "scene/io/geometry.h"
 #include "scene/io/materials.h"
 #include "scene/io/nodes.h"
+#include "scene/io/portals.h"
 #include "scene/recentre.h"
 
 namespace lucerna::scene {
@@ -50,6 +51,10 @@ void load_meshes(Document& document, Scene& scene, Placement& placement, Materia
   std::stable_sort(order.begin(), order.end(),
                    [&](uint32_t a, uint32_t b) { return placement.uses[a].mesh < placement.uses[b].mesh; });
   std::vector<Id> ids(order.size(), k_none);
+  std::vector<uint8_t> shown_use(order.size(), 0);
+  for (const Instance& instance : std::as_const(scene.instances)) shown_use[instance.mesh] = 1;
+  std::map<uint32_t, std::vector<size_t>> portals_of;  // by use
+  for (size_t i = 0; i < placement.portals.size(); ++i) portals_of[placement.portals[i].use].push_back(i);
   std::vector<glm::dvec3> origins(order.size(), glm::dvec3(0));
   size_t done = 0;
   for (const uint32_t use : order) {
@@ -57,7 +62,9 @@ void load_meshes(Document& document, Scene& scene, Placement& placement, Materia
                       "geometry");
     const auto& [index, pose] = placement.uses[use];
     Mesh mesh = load_mesh(document, index, materials, pose, origins[use]);
-    if (mesh.primitives.empty()) continue;
+    for (const size_t portal : portals_of[use])
+      take_corners(document, mesh, origins[use], placement.portals[portal]);
+    if (mesh.primitives.empty() || !shown_use[use]) continue;
     ids[use] = static_cast<Id>(scene.meshes.size());
     scene.meshes.push_back(std::move(mesh));
   }
@@ -203,6 +210,7 @@ Scene load(const std::filesystem::path& path, const LoadOptions& options, const 
     const std::vector<Box> boxes = mesh_boxes(scene);
     check_world(document, scene, placement, boxes);
     place(scene, placement, boxes, document);
+    load_portals(document, scene, placement.portals);
     check_lights(document, scene);
     document.progress(0.5f, "textures");
     materials.load_images(options.images);

@@ -28,6 +28,8 @@
 // values of settings.json go to Scene::settings, nested objects as dotted keys: {"film": {"ev": 1}} is
 // "film.ev" = "1".
 //
+// Nodes or meshes with extras {"portal": true} are portals of the sky instead of surfaces (portals.h).
+//
 // Images: PNG, JPEG, EXR, HDR and other formats that OpenImageIO decodes from memory (TIFF, TGA, BMP, WebP,
 // PNM, DDS, PSD ...; not SGI, ICO, RLA, FITS and others that it opens by name only), as files, data URIs or
 // buffer views. Grey, grey with alpha and RGB become RGBA; alpha stays unassociated. 8-bit texels stay bytes.

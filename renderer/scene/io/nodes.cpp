@@ -208,6 +208,9 @@ class Walker {
   void visit(uint32_t index, const tinygltf::Node& node, const Item& item, const dmat4& world) {
     const auto extensions = item.find("extensions");
     const auto light = light_of(index);
+    const bool portal = is_portal(item, node.mesh);
+    if (portal && node.mesh < 0)
+      document_.warnings.add("{} nodes with extras.portal but without a mesh: no portals", item.path());
     if (node.mesh < 0 && node.camera < 0 && !light) return;
     const auto skin = node.mesh >= 0 ? item.find("skin") : std::nullopt;
     const Kind kind = kind_of(world);
@@ -231,6 +234,7 @@ class Walker {
         add_instance(name, mesh, weights, world, item.path());
       for (size_t i = before; !group.empty() && i < scene_.instances.size(); ++i)
         scene_.instances[i].group = group;
+      if (portal) make_portals(before, item.path());
     }
     if ((node.camera >= 0 || light) && kind == Kind::nothing) {
       document_.warnings.add("{} cameras or lamps in nodes of scale 0: left out", item.path());
@@ -238,6 +242,22 @@ class Walker {
     }
     if (node.camera >= 0) add_camera(name, static_cast<size_t>(node.camera), world);
     if (light) add_light(*light, name, world, group);
+  }
+
+  bool is_portal(const Item& node, int mesh) const {
+    if (const auto marked = portal_mark(node)) return *marked;
+    return mesh >= 0 && portal_mark(root_.at("meshes").at(static_cast<size_t>(mesh))).value_or(false);
+  }
+
+  // Turns the instances from there on into portals.
+  void make_portals(size_t first, const std::string& where) {
+    for (size_t i = first; i < placement_.instances.size(); ++i) {
+      const Instance& instance = std::as_const(scene_.instances)[i];
+      placement_.portals.push_back(
+          {instance.name, where, instance.mesh, placement_.instances[i], instance.flipped});
+    }
+    scene_.instances.resize(first);
+    placement_.instances.resize(first);
   }
 
   void place_instance(const std::string& name, Id use, const dmat4& world) {

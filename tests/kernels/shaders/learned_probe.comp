@@ -32,6 +32,9 @@ void main() {
   } else if (!s.delta) {
     p.kind = 0u;
     environment_radiance(s.direction, row, p.met);
+#if LUCERNA_SKY_PORTALS
+    p.met = with_portals(p.met, position, s.direction, row, k_no_portal, 0.0);
+#endif
   }
   pairs[i] = p;
 }
