@@ -165,7 +165,7 @@ bool Ui::pressed(int key, int mods) const {
 namespace {
 
 /// Keys of views and commands of the solvers in use. If two share a key, the one whose panel is shown has it,
-/// otherwise the first.
+/// otherwise the first. Keys of views that no solver in use has say so.
 void solver_keys(Ui& ui) {
   std::vector<const solvers::SolverInfo*> used;
   for (const solvers::SolverInfo* solver : solvers::registered())
@@ -180,6 +180,12 @@ void solver_keys(Ui& ui) {
     for (const solvers::CommandInfo& command : solver->commands)
       if (pressed(command.shortcut)) ui.act(solver->name + "." + command.name);
   }
+  if (!ui.scene) return;
+  for (const solvers::SolverInfo* solver : solvers::registered())
+    for (const solvers::ViewInfo& view : solver->views)
+      if (!ui.uses(*solver) && pressed(view.shortcut))
+        ui.notice(fmt::format("{}: no component is computed by {}. Choose it in the Light panel.", view.label,
+                              solver->title));
 }
 
 }  // namespace

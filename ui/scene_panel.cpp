@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "base/blackbody.h"
 #include "base/color.h"
@@ -440,6 +441,7 @@ void objects(Ui& ui, bool reveal) {
 void draw_scene_panel(Ui& ui, const Area& area) {
   if (!ui.shown.right_open) return;
   begin_panel("##scene", area, colour::panel, true);
+  if (std::exchange(ui.scene_panel_to_top, false)) ImGui::SetScrollY(0);
   if (!ui.scene) {
     bool open = true;
     section("Scene", open);

@@ -118,11 +118,13 @@ void Ui::follow_busy() {
   if (current == busy.command && all_done == busy.done) return;
   busy.command = current, busy.done = all_done, busy.since = now;
   busy.text = current == 0 || all_done ? "" : line_of(current);
+  if (busy.text.starts_with("inspect.")) busy.text.clear();  // follows the pointer; no one has typed it
 }
 
 void Ui::scene_changed() {
   flight = {};
   errors.clear();
+  scene_panel_to_top = true;
   if (!scene->unknown_extensions.empty())
     notice(fmt::format("Not supported and ignored: {}", fmt::join(scene->unknown_extensions, ", ")), 12);
   if (scene->file.empty()) return;

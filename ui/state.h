@@ -150,6 +150,7 @@ struct Ui : commands::Workspace {
   Console console;
   Dialog dialog;
   bool help = false;
+  bool scene_panel_to_top = false;  ///< another scene: its panel is not scrolled
   std::vector<std::string> recent;  ///< files, newest first, from the root
   unsigned texture = 0;             ///< OpenGL name of the picture
   uint32_t texture_width = 0, texture_height = 0;

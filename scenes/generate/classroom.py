@@ -349,6 +349,9 @@ def main():
     s.camera("main", (2.75, 1.52, 4.15), (-1.25, 1.52, -4.4), yfov=50.0)
     env = {"file": "sky.hdr", "scale": 3}
     s.extras = {"environment": env}
+    x = -WIDTH / 2 - 0.30    # just outside the frames
+    for k, (a, b) in enumerate(WINDOWS):
+        s.portal(f"sky portal {k + 1}", quad((x, SILL, b), (x, SILL, a), (x, HEAD, a), (x, HEAD, b)))
     s.write("A classroom with twenty desks on thin legs, chairs, books, pencils and shelves, lit through its windows by sun "
             "and sky and by panels in the ceiling: many small objects, the hard case for caching.",
             {"film.ev": 0.6, "environment": env})

@@ -281,6 +281,12 @@ class Scene:
         self.nodes.append(node)
         self.total += self.triangles[mesh]
 
+    def portal(self, name, mesh):
+        """Marks a rectangle whose front faces the room as an opening through which the sky lights it."""
+        attributes, indices, _, _ = self._geometry(mesh, False)
+        self.meshes.append({"name": name, "primitives": [{"attributes": attributes, "indices": indices}]})
+        self.nodes.append({"name": name, "mesh": len(self.meshes) - 1, "extras": {"portal": True}})
+
     # ---- cameras and lights ----------------------------------------------------------------------------------------
     @staticmethod
     def look(eye, target, up=(0, 1, 0)):
