@@ -10,6 +10,7 @@
 #include "scene/io/load.h"
 #include "scene/light_factor.h"
 #include "scene/range.h"
+#include "session/found_portals.h"
 #include "shaders/shared/film.h"
 
 namespace lucerna::session {
@@ -57,6 +58,8 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
   for (const SettingChange& change : changes) settings.set(change.key, change.value, change.where);
   scene::Camera camera = scene::starting_camera(*scene, settings.text("camera"));
   const auto loaded = scene;
+  if (settings.text("lights.portals") == "found") report_progress(progress, 0, "searching openings");
+  scene = with_portals(std::move(scene), loaded->portals, settings.text("lights.portals"));
   install(std::move(scene), std::move(settings), camera, progress, scene::Change::shape);
   loaded_ = loaded;
 }
@@ -369,8 +372,11 @@ void Renderer::apply_settings() {
     const scene::Camera camera =
         changed("camera") ? scene::starting_camera(*world_.scene, settings_.text("camera")) : camera_;
     scene::check_range(camera);
-    if (changed("tracer") || changed("path.batch") || changed("path.classes")) {
-      install(world_.scene, settings_, camera, {}, changes);
+    std::shared_ptr<const scene::Scene> scene = world_.scene;
+    if (changed("lights.portals"))
+      scene = with_portals(scene, loaded_->portals, settings_.text("lights.portals"));
+    if (scene != world_.scene || changed("tracer") || changed("path.batch") || changed("path.classes")) {
+      install(std::move(scene), settings_, camera, {}, changes);
       return;
     }
     again |= apply_plan(changes);

@@ -32,6 +32,19 @@ void check_same_light(const char* name, const scene::Scene& plain, std::vector<s
   }
 }
 
+/// Variance of primary light.
+double noise(const scene::Scene& s, const char* how, Settings settings = {}) {
+  for (const char* c : {"components.secondary", "components.tertiary", "components.caustic"})
+    settings[c] = "off";
+  const film::Image image = with(s, how, 16, settings, 96).image;
+  double sum = 0;
+  for (size_t i = 0; i < image.components[0].size(); ++i) {
+    const double d = luminance(image.components[0][i]) - luminance(image.odd_half[0][i]);
+    sum += d * d;
+  }
+  return sum;
+}
+
 }  // namespace
 
 TEST_CASE("portals leave the mean as it is under several skies") {
@@ -79,24 +92,58 @@ TEST_CASE("portals survive a bad sky and are nothing without a sky") {
 
 TEST_CASE("less noise through a marked window") {
   scene::Scene s = window_room(sky(), false, 0.2f);
-  const Settings primary = {
-      {"components.secondary", "off"}, {"components.tertiary", "off"}, {"components.caustic", "off"}};
-  const auto noise = [&](const char* how) {
-    const film::Image image = with(s, how, 16, primary, 96).image;
-    double sum = 0;
-    for (size_t i = 0; i < image.components[0].size(); ++i) {
-      const double d = luminance(image.components[0][i]) - luminance(image.odd_half[0][i]);
-      sum += d * d;
-    }
-    return sum;
-  };
-  const double power = noise("power"), learned = noise("learned");
+  const double power = noise(s, "power"), learned = noise(s, "learned");
   s.portals = {in_window(0.2f)};
-  const double marked_power = noise("power"), marked_learned = noise("learned");
+  const double marked_power = noise(s, "power"), marked_learned = noise(s, "learned");
   INFO("variance " << power << " by power, " << learned << " learned; with a portal " << marked_power << ", "
                    << marked_learned);
   CHECK(5 * marked_power < power);
   CHECK(1.5 * marked_learned < learned);
+}
+
+TEST_CASE("found openings leave the mean as it is and lessen noise as marked ones do") {
+  for (const bool pane : {false, true}) {
+    INFO("pane " << pane);
+    const scene::Scene s = window_room(sky(), pane, 0.2f);
+    const test::Result reference = with(s, "power", 1024, {{"seed", "10"}});
+    for (const char* how : {"power", "learned"}) {
+      INFO(how);
+      const test::Result r = with(s, how, 256, {{"lights.portals", "found"}});
+      CHECK(test::worst_z(r.image, reference.image) < 6);
+      CHECK(r.stats.dropped == 0);
+    }
+    const double plain = noise(s, "power"), found = noise(s, "power", {{"lights.portals", "found"}});
+    scene::Scene marked = s;
+    marked.portals = {in_window(0.2f)};
+    const double by_mark = noise(marked, "power");
+    INFO("variance " << plain << ", marked " << by_mark << ", found " << found);
+    CHECK(20 * found < plain);
+    CHECK(found < 2 * by_mark);
+  }
+}
+
+TEST_CASE("openings are searched by the setting, and only where none are marked") {
+  scene::Scene s = window_room(sky(), false);
+  const Settings found = {{"lights.portals", "found"}};
+  // These set it after loading.
+  const film::Image plain = with(s, "power", 4).image, with_found = with(s, "power", 4, found).image;
+  CHECK_FALSE(test::identical(plain, with_found));
+
+  session::Renderer r(test::renderer_options(true));
+  r.set_size(32, 32);
+  r.set_scene(std::make_shared<scene::Scene>(s), {},
+              {{"lights.portals", "found", ""}, {"lights.sampling", "power", ""}, {"samples", "4", ""}});
+  CHECK(test::identical(test::finish(r), with_found));
+  // An edit of light keeps what was found.
+  r.set_environment(0, 90);
+  (void)test::finish(r);
+  r.set_environment(1, 0);
+  CHECK(test::identical(test::finish(r), with_found));
+  test::set(r, {{"lights.portals", "marked"}});
+  CHECK(test::identical(test::finish(r), plain));
+
+  s.portals = {in_window(0.5f, 0, 0.5f)};
+  CHECK(test::identical(with(s, "power", 4).image, with(s, "power", 4, found).image));
 }
 
 TEST_CASE("with portals a picture is a function of scene, settings and seed") {
