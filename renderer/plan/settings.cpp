@@ -75,11 +75,11 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
                     "Both sample the sky through portals too (lights.portals).",
                     "Light selection"));
   list.push_back(
-      choice_option("lights.portals", "marked", {"marked", "found"}, "",
+      choice_option("lights.portals", "found", {"marked", "found"}, "",
                     "Rectangles through which the sky is sampled, a hint that changes noise and never the "
                     "mean. marked: the scene's own portals (extras.portal). found: where the scene marks "
-                    "none, openings of the rooms around its cameras are searched by rays while it loads; "
-                    "the log lists them. No use outdoors.",
+                    "none, openings of the rooms around its cameras are searched by rays while a scene "
+                    "with a sky loads; the log lists them. No use outdoors.",
                     "Portals"));
   list.push_back(integer_option("path.roulette_depth", 4, 1, 1024, "vertices",
                                 "Vertex from which Russian roulette may end a path.", "Roulette from"));

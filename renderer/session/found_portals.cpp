@@ -165,7 +165,8 @@ std::shared_ptr<const scene::Scene> with_portals(std::shared_ptr<const scene::Sc
                                                  const std::vector<scene::Portal>& marked,
                                                  const std::string& how) {
   std::vector<scene::Portal> portals = marked;
-  if (how == "found" && marked.empty()) {
+  const scene::Environment& sky = scene->environment;
+  if (how == "found" && marked.empty() && (sky.image != scene::k_none || sky.radiance != vec3(0))) {
     const std::vector<scene::Opening> openings = search_openings(scene);
     if (openings.empty()) log::info("no opening of a room found");
     for (const scene::Opening& opening : openings) {
