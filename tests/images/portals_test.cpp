@@ -146,6 +146,17 @@ TEST_CASE("openings are searched by the setting, and only where none are marked"
   CHECK(test::identical(with(s, "power", 4).image, with(s, "power", 4, found).image));
 }
 
+TEST_CASE("no openings are found from outdoors, in a closed room, or in an empty scene") {
+  const Settings found = {{"lights.portals", "found"}};
+  scene::Scene outside = window_room(sky(), false);
+  outside.cameras[0].to_world[3] = vec4(0, 1.2f, 0, 1);  // above the roof
+  const scene::Scene closed = window_room(sky(), false, 0);
+  scene::Scene empty;
+  empty.environment.radiance = vec3(1), empty.environment.given = true;
+  for (const scene::Scene& s : {outside, closed, empty})
+    CHECK(test::identical(with(s, "power", 4).image, with(s, "power", 4, found).image));
+}
+
 TEST_CASE("with portals a picture is a function of scene, settings and seed") {
   scene::Scene s = window_room(sky(), false);
   s.portals = {in_window(0.5f, 0, 0.7f), in_window(0.5f, 0.4f, 1)};
