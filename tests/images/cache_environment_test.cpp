@@ -126,7 +126,8 @@ TEST_CASE("a room under an even environment") {
   const Result path = render(room, {}, 256), cached = render(room, k_sky, 16);
   compare(path, cached);
   // The picture has little noise, and reports that it may be biased.
-  CHECK(median_difference(cached, path) < 0.5 * median_difference(render(room, {}, 16), path));
+  const Result sampled = render(room, {{"lights.portals", "marked"}}, 16);  // without portals
+  CHECK(median_difference(cached, path) < 0.5 * median_difference(sampled, path));
   CHECK_FALSE(cached.bias_known[0]);
   CHECK_FALSE(cached.bias_known[1]);
   CHECK(cached.bias_known[3]);

@@ -114,7 +114,7 @@ TEST_CASE("every kind of change invalidates what its row says, and nothing else"
       {"camera", {{"camera", "above"}}},
       {"tracer", {{"tracer", "host"}}},
       {"path.batch", {{"path.batch", "4096"}}},
-      {"lights.", {{"lights.sampling", "power"}, {"lights.portals", "found"}}},
+      {"lights.", {{"lights.sampling", "power"}, {"lights.portals", "marked"}}},
       {"path.classes", {{"path.classes", "off"}}},
       {"path.", {}},  // no other setting of paths
       {"path.roulette_depth", {{"path.roulette_depth", "7"}}},

@@ -8,9 +8,11 @@
 
 namespace lucerna::test {
 
+/// Without a search for openings, unless `settings` has it.
 inline Result with(const scene::Scene& s, const char* how, uint32_t samples, Settings settings = {},
                    uint32_t size = 32) {
   settings["lights.sampling"] = how;
+  settings.insert({"lights.portals", "marked"});
   return render(s, settings, samples, size, false);
 }
 

@@ -27,7 +27,7 @@ TEST_CASE("arrows show a point's lights with their shares, and a map shows which
   r.settings().set("path.batch", test::k_batch);
   r.set_size(48, 48);
   r.set_scene(std::make_shared<scene::Scene>(window_room(sky(), false)));
-  test::set(r, {{"samples", "8"}});
+  test::set(r, {{"samples", "8"}, {"lights.portals", "marked"}});
   const film::Image image = test::finish(r);
   const std::vector<uint8_t> plain = r.picture(false);
   CHECK(of_lights(r.reports()) == nullptr);

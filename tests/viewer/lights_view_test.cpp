@@ -22,7 +22,8 @@ TEST_CASE("a point's lights are shown with their shares, and a map shows where s
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   const std::string steps =
-      "window.size 1100 700\nwait_scene\nset preview.filter off\nview.size 160 100\nsamples 8\nwait_samples "
+      "window.size 1100 700\nwait_scene\nset preview.filter off\nset lights.portals marked\nview.size 160 "
+      "100\nsamples 8\nwait_samples "
       "8\nwait "
       "0.5\nscreenshot " +
       file("plain.png") + "\nset overlay.lights true\ninspect.at 0.5 0.75\nwait 0.5\nscreenshot " +
