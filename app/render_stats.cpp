@@ -44,6 +44,7 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
     part("bias", error.seen_interpolation, error.relative_interpolation(), error.interpolation_rms,
          &film::TileError::relative_interpolation);
   }
+  if (!r.lookup_bias_estimated()) j["bias"] = nullptr;
   for (int c = 0; c < paths::k_component_count; ++c) {
     auto& component = j["components"][paths::k_component_names[c]];
     component = {{"seen", error.seen(c + 1)},

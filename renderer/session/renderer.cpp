@@ -316,6 +316,14 @@ bool Renderer::lookup_errors_known() const {
   return engine_ && samples() >= 2 && !engine_->owing_errors(*film_);
 }
 
+bool Renderer::lookup_bias_estimated() const {
+  if (!engine_) return false;
+  return std::all_of(engine_->solvers().begin(), engine_->solvers().end(), [](const auto& solver) {
+    const auto* bias = solvers::offered<solvers::LookupBias>(*solver);
+    return !bias || bias->estimates_bias();
+  });
+}
+
 std::optional<double> Renderer::bias(size_t component) const {
   if (!engine_) return std::nullopt;
   // Paths compute all primary light if the scene has nothing of the part that another solver looks up.

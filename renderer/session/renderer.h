@@ -128,6 +128,8 @@ class Renderer {
   uint32_t tile_side() const;  ///< sampling.tile [pixels]
   /// True once the lookup-error estimate is complete (film::RecordsError).
   bool lookup_errors_known() const;
+  /// False if some solver's lookups have a bias that none of these errors contains.
+  bool lookup_bias_estimated() const;
   /// Errors not contained in these, which only estimate noise: plan::Plan::bias of the current settings;
   /// nullopt before the first scene.
   std::optional<double> bias(size_t component) const;

@@ -136,6 +136,14 @@ class LookupErrors {
                                bool restarted, const Cancel& cancel) = 0;
 };
 
+/// States whether the bias of its lookups is among the film's errors.
+class LookupBias {
+ public:
+  virtual ~LookupBias() = default;
+  /// False if some of the looked up light has a bias that is not estimated.
+  virtual bool estimates_bias() const = 0;
+};
+
 /// Draws the overlays of SolverInfo::views.
 class Views {
  public:

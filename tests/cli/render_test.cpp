@@ -291,6 +291,9 @@ TEST_CASE("--stats and --ledger report noise and bias of lookups separately") {
   // One sample has no halves, so the bias is unknown; paths have no bias.
   CHECK(stats("--set components.caustic=photons --set photons.efficiency=false --samples 1")["error"]["bias"]
             .is_null());
+  // The irradiance map of tertiary light has a bias that nothing estimates.
+  CHECK(stats("--samples 2 --set components.tertiary=photons --set photons.efficiency=false")["error"]["bias"]
+            .is_null());
   CHECK_FALSE(stats("--samples 6 --set components.caustic=path")["error"].contains("bias"));
 }
 

@@ -27,6 +27,7 @@ class PhotonSolver final : public solvers::Solver,
                            public solvers::Preparation,
                            public solvers::PreviewLookups,
                            public solvers::Rounds,
+                           public solvers::LookupBias,
                            public solvers::Views,
                            public solvers::Statistics {
  public:
@@ -54,6 +55,8 @@ class PhotonSolver final : public solvers::Solver,
                const solvers::Cancel& cancel) override;
   bool in_rounds() const override { return sends_ && (reads_rounds() || renews_standing()); }
   bool round_ready(uint32_t sample) const override;
+  /// Cells of the irradiance map with hidden area are too dark by an unknown amount.
+  bool estimates_bias() const override { return !gathers() && !feeds_; }
   bool prepare_round(transport::Wavefront& wavefront, const solvers::Picture& picture, uint32_t sample,
                      const solvers::Cancel& cancel) override;
 
