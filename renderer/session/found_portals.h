@@ -14,8 +14,8 @@ namespace lucerna::session {
 /// long as loading the scene's geometry. Throws Error: memory.
 std::vector<scene::Opening> search_openings(std::shared_ptr<const scene::Scene> scene);
 
-/// The scene with the marked portals or, if there are none, `how` is "found" and the scene has a sky, with the
-/// openings found, each of which is logged.
+/// The scene with the marked portals or, if there are none, `how` is "found" and the scene has a sky, with
+/// the openings found, each of which is logged.
 std::shared_ptr<const scene::Scene> with_portals(std::shared_ptr<const scene::Scene> scene,
                                                  const std::vector<scene::Portal>& marked,
                                                  const std::string& how);
