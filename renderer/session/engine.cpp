@@ -67,6 +67,15 @@ constexpr uint32_t k_most_recorded_paths = 32768;
 constexpr uint32_t k_generations[] = {2, 4, 8};
 constexpr double k_pilot_share = 1.0 / 7, k_most_pilot_pixels = 256 * 144;
 
+/// The first solver that offers the capability and meets the condition; null: none.
+template <class Capability, class Condition>
+solvers::Solver* first(const std::vector<std::shared_ptr<solvers::Solver>>& all, Condition&& meets) {
+  for (const auto& solver : all)
+    if (const Capability* offer = solvers::offered<Capability>(*solver); offer && meets(*offer))
+      return solver.get();
+  return nullptr;
+}
+
 /// Delegates these components (bits) to paths.
 void to_paths(plan::Plan& plan, uint32_t components) {
   for (size_t c = 0; c < plan.solver.size(); ++c)
@@ -246,42 +255,25 @@ solvers::Solver* Engine::unready() const {
 }
 
 bool Engine::in_rounds() const {
-  return std::any_of(solvers_.begin(), solvers_.end(), [](const auto& solver) {
-    const auto* rounds = solvers::offered<solvers::Rounds>(*solver);
-    return rounds && rounds->in_rounds();
-  });
+  return first<solvers::Rounds>(solvers_, [](const auto& rounds) { return rounds.in_rounds(); }) != nullptr;
 }
 
 solvers::Solver* Engine::unready_for(uint32_t sample) const {
-  for (const auto& solver : solvers_)
-    if (const auto* rounds = solvers::offered<solvers::Rounds>(*solver);
-        rounds && rounds->in_rounds() && !rounds->round_ready(sample))
-      return solver.get();
-  return nullptr;
+  return first<solvers::Rounds>(
+      solvers_, [&](const auto& rounds) { return rounds.in_rounds() && !rounds.round_ready(sample); });
 }
 
 solvers::Solver* Engine::owing_errors(const film::Film& film) const {
-  for (const auto& solver : solvers_)
-    if (const auto* errors = solvers::offered<solvers::LookupErrors>(*solver);
-        errors && errors->owes_errors(film))
-      return solver.get();
-  return nullptr;
+  return first<solvers::LookupErrors>(solvers_, [&](const auto& errors) { return errors.owes_errors(film); });
 }
 
 solvers::Solver* Engine::refining() const {
-  for (const auto& solver : solvers_)
-    if (const auto* refinement = solvers::offered<solvers::Refinement>(*solver);
-        refinement && refinement->refines())
-      return solver.get();
-  return nullptr;
+  return first<solvers::Refinement>(solvers_, [](const auto& refinement) { return refinement.refines(); });
 }
 
 solvers::Solver* Engine::refinable() const {
-  for (const auto& solver : solvers_)
-    if (const auto* refinement = solvers::offered<solvers::Refinement>(*solver);
-        refinement && refinement->paths_refined() > 0)
-      return solver.get();
-  return nullptr;
+  return first<solvers::Refinement>(solvers_,
+                                    [](const auto& refinement) { return refinement.paths_refined() > 0; });
 }
 
 bool Engine::learns(uint32_t samples) const {

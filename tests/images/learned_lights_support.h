@@ -16,6 +16,19 @@ inline Result with(const scene::Scene& s, const char* how, uint32_t samples, Set
   return render(s, settings, samples, size, false);
 }
 
+/// Variance of primary light after 16 samples, up to a common factor.
+inline double noise(const scene::Scene& s, const char* how, Settings settings = {}) {
+  for (const char* c : {"components.secondary", "components.tertiary", "components.caustic"})
+    settings[c] = "off";
+  const film::Image image = with(s, how, 16, settings, 96).image;
+  double sum = 0;
+  for (size_t i = 0; i < image.components[0].size(); ++i) {
+    const double d = luminance(image.components[0][i]) - luminance(image.odd_half[0][i]);
+    sum += d * d;
+  }
+  return sum;
+}
+
 /// A room under that environment with one opening of `wide` metres in its wall, seen from above.
 inline scene::Scene window_room(scene::Image sky, bool pane, float wide = 0.5f) {
   scene::Scene s;

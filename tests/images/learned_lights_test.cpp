@@ -7,7 +7,7 @@ using namespace lucerna;
 
 namespace {
 
-using test::Settings, test::sky, test::window_room, test::with;
+using test::noise, test::Settings, test::sky, test::window_room, test::with;
 
 /// Lamps of very different power behind a screen: the brightest is next to a surface, one is in a niche.
 scene::Scene lamps() {
@@ -97,18 +97,7 @@ TEST_CASE("the picture is a function of scene, settings and seed") {
 
 TEST_CASE("less noise through a window") {
   const scene::Scene s = window_room(sky(), false, 0.2f);
-  const Settings primary = {
-      {"components.secondary", "off"}, {"components.tertiary", "off"}, {"components.caustic", "off"}};
-  const auto noise = [&](const char* how) {
-    const film::Image image = with(s, how, 16, primary, 96).image;
-    double sum = 0;
-    for (size_t i = 0; i < image.components[0].size(); ++i) {
-      const double d = luminance(image.components[0][i]) - luminance(image.odd_half[0][i]);
-      sum += d * d;
-    }
-    return sum;
-  };
-  const double power = noise("power"), learned = noise("learned");
+  const double power = noise(s, "power"), learned = noise(s, "learned");
   INFO("variance " << power << " by power, " << learned << " learned");
   CHECK(2.5 * learned < power);
 }

@@ -7,7 +7,7 @@ using namespace lucerna;
 
 namespace {
 
-using test::Settings, test::sky, test::window_room, test::with;
+using test::noise, test::Settings, test::sky, test::window_room, test::with;
 
 /// A portal in the plane of the window of window_room(), over that part of its width and height.
 scene::Portal in_window(float wide = 0.5f, float from = 0, float to = 1) {
@@ -30,19 +30,6 @@ void check_same_light(const char* name, const scene::Scene& plain, std::vector<s
       CHECK(r.stats.dropped == 0);
     }
   }
-}
-
-/// Variance of primary light.
-double noise(const scene::Scene& s, const char* how, Settings settings = {}) {
-  for (const char* c : {"components.secondary", "components.tertiary", "components.caustic"})
-    settings[c] = "off";
-  const film::Image image = with(s, how, 16, settings, 96).image;
-  double sum = 0;
-  for (size_t i = 0; i < image.components[0].size(); ++i) {
-    const double d = luminance(image.components[0][i]) - luminance(image.odd_half[0][i]);
-    sum += d * d;
-  }
-  return sum;
 }
 
 }  // namespace
