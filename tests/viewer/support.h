@@ -43,7 +43,7 @@ inline std::string with_display(const std::string& command) {
   if (std::system("command -v xvfb-run >/dev/null 2>&1") != 0) return "";
   // Different first display numbers, so concurrent tests do not race for one.
   return "xvfb-run -a -n " + std::to_string(100 + getpid() % 20000) + " -f " + authority() +
-         " -s '-screen 0 1600x1000x24' " + command;
+         " -s '-screen 0 1600x1000x24 -noreset' " + command;
 }
 
 /// Warns if a test is skipped because no window can be opened.
