@@ -7,14 +7,15 @@
 namespace lucerna::scene {
 namespace {
 
-constexpr int k_cells = 40;             // along the longer side of a plane
-constexpr int k_heights = 64;           // planes of one direction
-constexpr int k_finer = 16;             // steps between two of them, for a chosen opening
-constexpr float k_grazing = 0.05f;      // least cosine between a ray and the plane's normal
-constexpr float k_margin = 0.1f;        // planes and cells beyond the rays' origins, over the room's size
-constexpr double k_least_dense = 0.2;   // part of a cell's rays that escape, for a cell of an opening
-constexpr double k_least_clear = 0.25;  // the same for an opening
-constexpr double k_least_share = 0.01;  // of all escaping rays
+constexpr int k_cells = 40;                 // along the longer side of a plane
+constexpr int k_heights = 64;               // planes of one direction
+constexpr int k_finer = 16;                 // steps between two of them, for a chosen opening
+constexpr float k_grazing = 0.05f;          // least cosine between a ray and the plane's normal
+constexpr float k_margin = 0.1f;            // planes and cells beyond the rays' origins, over the room's size
+constexpr double k_least_dense = 0.2;       // part of a cell's rays that escape, for a cell of an opening
+constexpr double k_least_clear = 0.25;      // the same for an opening
+constexpr double k_least_share = 0.01;      // of all escaping rays
+constexpr double k_least_of_largest = 0.2;  // each portal costs time at every light sample
 constexpr double k_enough = 0.95;
 constexpr double k_stray = 0.005;  // part of an opening's rays that may lie beyond each side
 constexpr float k_widening = 0.01f;
@@ -242,6 +243,7 @@ std::vector<Opening> find_openings(std::span<const RoomRay> rays, std::span<cons
   }
   std::stable_sort(found.begin(), found.end(),
                    [](const Opening& a, const Opening& b) { return a.share > b.share; });
+  std::erase_if(found, [&](const Opening& o) { return o.share < k_least_of_largest * found[0].share; });
   return found;
 }
 

@@ -21,8 +21,9 @@ struct Opening {
 /// Rectangles in planes along walls with these outward unit normals, the most frequent first, that contain
 /// many escaping rays and few others: an opening's own plane is where its rays are least spread. They are
 /// slightly widened and light towards the rooms. At most k_max_portals, the largest share first, until they
-/// contain 95 % of the escaping rays; rays through one come from several points. None if half of all rays
-/// escape: that is open air. Rays of one point are consecutive.
+/// contain 95 % of the escaping rays; none has less than a fifth of the largest share, and rays through one
+/// come from several points. None if half of all rays escape: that is open air. Rays of one point are
+/// consecutive.
 std::vector<Opening> find_openings(std::span<const RoomRay> rays, std::span<const vec3> walls);
 
 }  // namespace lucerna::scene

@@ -12,12 +12,14 @@ namespace lucerna::session {
 namespace {
 
 constexpr size_t k_most_cameras = 16;
-constexpr size_t k_walks = 128;         // in all, shared by the cameras
-constexpr size_t k_bounces = 4;         // points of a walk
-constexpr size_t k_rays = 256;          // from each point
-constexpr size_t k_most_walls = 12;     // directions of walls besides the axes
-constexpr float k_same_wall = 0.9998f;  // cosine
-constexpr double k_least_wall = 0.02;   // of all hits
+constexpr size_t k_walks = 128;          // in all, shared by the cameras
+constexpr size_t k_bounces = 4;          // points of a walk
+constexpr size_t k_rays = 256;           // from each point
+constexpr size_t k_most_walls = 12;      // directions of walls besides the axes
+constexpr float k_same_wall = 0.9998f;   // cosine
+constexpr double k_least_wall = 0.02;    // of all hits
+constexpr size_t k_portal_points = 256;  // of a marked portal
+constexpr size_t k_portal_rays = 4;      // from each of them
 
 class Random {
  public:
@@ -60,6 +62,14 @@ struct Walk {
   }
 };
 
+/// The nearest surface that stops light samples.
+std::optional<Picked> nearest_surface(const Probe& probe, const vec3& from, const vec3& direction) {
+  return probe.nearest(from, direction, k_infinity, [&](const Picked& p) {
+    const scene::Material& m = probe.scene().materials[p.material];
+    return !(m.transmission > 0 && m.thickness <= 0);
+  });
+}
+
 class Search {
  public:
   explicit Search(std::shared_ptr<const scene::Scene> scene) : probe_(std::move(scene)) {}
@@ -68,7 +78,7 @@ class Search {
     vec3 from = eye, direction = random.on_sphere();
     size_t count = 0;
     for (Point& p : walk.points) {
-      const std::optional<Picked> hit = surface(from, direction);
+      const std::optional<Picked> hit = nearest_surface(probe_, from, direction);
       if (!hit) break;
       // Off the surface, by more than rounding.
       const float off = 1e-4f * std::max(hit->distance, 1e-3f * glm::length(hit->position));
@@ -81,17 +91,11 @@ class Search {
   }
 
  private:
-  std::optional<Picked> surface(const vec3& from, const vec3& direction) const {
-    return probe_.nearest(from, direction, k_infinity, [&](const Picked& p) {
-      const scene::Material& m = probe_.scene().materials[p.material];
-      return !(m.transmission > 0 && m.thickness <= 0);
-    });
-  }
   void look_around(Point& p, Random& random) const {
     size_t escaping = 0;
     for (size_t i = 0; i < k_rays; ++i) {
       const vec3 direction = random.on_hemisphere(p.normal);
-      const std::optional<Picked> hit = surface(p.position, direction);
+      const std::optional<Picked> hit = nearest_surface(probe_, p.position, direction);
       p.rays.push_back({p.position, direction, !hit});
       if (hit) p.normals.push_back(hit->normal);
       escaping += !hit;
@@ -134,6 +138,22 @@ std::vector<vec3> walls_of(const std::vector<const Point*>& points) {
   return to;
 }
 
+/// True if a ray from the room through some point of the portal leaves the scene.
+bool sees_sky(const Probe& probe, const scene::Portal& portal) {
+  Random random(0);
+  const vec3 out = -scene::normal_of(portal);
+  // In front of a wall in the portal's plane.
+  const float size = glm::length(portal.half_width) + glm::length(portal.half_height);
+  const vec3 front = portal.centre - 1e-3f * size * out;
+  for (size_t i = 0; i < k_portal_points; ++i) {
+    const float u = 2 * random() - 1, v = 2 * random() - 1;
+    const vec3 from = front + u * portal.half_width + v * portal.half_height;
+    for (size_t k = 0; k < k_portal_rays; ++k)
+      if (!nearest_surface(probe, from, random.on_hemisphere(out))) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<scene::Opening> search_openings(std::shared_ptr<const scene::Scene> scene) {
@@ -161,12 +181,32 @@ std::vector<scene::Opening> search_openings(std::shared_ptr<const scene::Scene> 
   return scene::find_openings(rays, walls_of(points));
 }
 
+std::vector<scene::Portal> open_portals(std::shared_ptr<const scene::Scene> scene,
+                                        const std::vector<scene::Portal>& marked) {
+  if (marked.empty()) return {};
+  const Probe probe(std::move(scene));
+  std::vector<scene::Portal> open;
+  for (const scene::Portal& portal : marked) {
+    if (sees_sky(probe, portal)) {
+      open.push_back(portal);
+      continue;
+    }
+    const vec3& at = portal.centre;
+    log::warning(
+        "sky portal '{}' at {:.2f} {:.2f} {:.2f}: no ray through it reaches the sky (it lies in a wall, or "
+        "faces outwards), left out",
+        portal.name, at.x, at.y, at.z);
+  }
+  return open;
+}
+
 std::shared_ptr<const scene::Scene> with_portals(std::shared_ptr<const scene::Scene> scene,
                                                  const std::vector<scene::Portal>& marked,
-                                                 const std::string& how) {
-  std::vector<scene::Portal> portals = marked;
+                                                 const std::string& how, const Progress& progress) {
+  std::vector<scene::Portal> portals = open_portals(scene, marked);
   const scene::Environment& sky = scene->environment;
   if (how == "found" && marked.empty() && (sky.image != scene::k_none || sky.radiance != vec3(0))) {
+    if (progress && !progress(0, "searching openings")) throw Error("", "cancelled");
     const std::vector<scene::Opening> openings = search_openings(scene);
     if (openings.empty()) log::info("no opening of a room found");
     for (const scene::Opening& opening : openings) {

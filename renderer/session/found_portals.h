@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "scene/openings.h"
+#include "session/world.h"
 
 namespace lucerna::session {
 
@@ -14,10 +15,15 @@ namespace lucerna::session {
 /// long as loading the scene's geometry. Throws Error: memory.
 std::vector<scene::Opening> search_openings(std::shared_ptr<const scene::Scene> scene);
 
-/// The scene with the marked portals or, if there are none, `how` is "found" and the scene has a sky, with
-/// the openings found, each of which is logged.
+/// Those of the portals through which some of a fixed set of rays from the room leaves the scene; the others
+/// are warnings. Throws Error: memory.
+std::vector<scene::Portal> open_portals(std::shared_ptr<const scene::Scene> scene,
+                                        const std::vector<scene::Portal>& marked);
+
+/// The scene with the marked portals that are open or, if none is marked, `how` is "found" and the scene has
+/// a sky, with the openings found, each of which is logged. Throws Error: memory, or `progress` cancels.
 std::shared_ptr<const scene::Scene> with_portals(std::shared_ptr<const scene::Scene> scene,
                                                  const std::vector<scene::Portal>& marked,
-                                                 const std::string& how);
+                                                 const std::string& how, const Progress& progress = {});
 
 }  // namespace lucerna::session

@@ -58,8 +58,7 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
   for (const SettingChange& change : changes) settings.set(change.key, change.value, change.where);
   scene::Camera camera = scene::starting_camera(*scene, settings.text("camera"));
   const auto loaded = scene;
-  if (settings.text("lights.portals") == "found") report_progress(progress, 0, "searching openings");
-  scene = with_portals(std::move(scene), loaded->portals, settings.text("lights.portals"));
+  scene = with_portals(std::move(scene), loaded->portals, settings.text("lights.portals"), progress);
   install(std::move(scene), std::move(settings), camera, progress, scene::Change::shape);
   loaded_ = loaded;
 }

@@ -4,6 +4,7 @@
 #include "scene/io/environment_file.h"
 #include "scene/light_factor.h"
 #include "scene/range.h"
+#include "session/found_portals.h"
 #include "session/renderer.h"
 
 namespace lucerna::session {
@@ -44,7 +45,11 @@ void Renderer::set_environment_file(const std::filesystem::path& file, std::opti
   environment.rotation = rotation_degrees.value_or(world_.scene->environment.rotation);
   scene::check_range(environment);
   edited->environment = environment;
-  edit(edited, scene::Change::environment, false);
+  std::shared_ptr<const scene::Scene> lit = edited;
+  // The first sky of this scene.
+  if (lit->portals.empty() && loaded_->portals.empty())
+    lit = with_portals(lit, {}, settings_.text("lights.portals"));
+  edit(lit, scene::Change::environment, false);
 }
 
 void Renderer::set_material(uint32_t index, const scene::Material& material) {

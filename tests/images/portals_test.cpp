@@ -1,7 +1,8 @@
 // links: session
 // Portals change noise and never the mean: pictures with marked openings equal those without, also where
-// portals miss an opening, overlap, lie in walls or face outwards.
+// portals miss an opening, overlap, lie in the room or face outwards; those that lie in walls are left out.
 #include "images/learned_lights_support.h"
+#include "session/found_portals.h"
 
 using namespace lucerna;
 
@@ -61,6 +62,21 @@ TEST_CASE("portals leave the mean as it is wherever they are") {
                     {"room", {0, 0.5f, 0}, {0, 0, 0.5f}, {0, 0.3f, 0}},
                     {"outwards", {1, 0.55f, 0}, {0, 0, -0.5f}, {0, 0.25f, 0}},
                     {"floor", {0, 0, 0}, {0, 0, 0.5f}, {0.5f, 0, 0}}});
+}
+
+TEST_CASE("portals through which no sky is seen are left out") {
+  const auto room = std::make_shared<scene::Scene>(window_room(sky(), false));
+  const auto pane = std::make_shared<scene::Scene>(window_room(sky(), true));
+  const std::vector<scene::Portal> marked{in_window(),
+                                          {"wall", {-1, 0.5f, 0}, {0, 0, -0.5f}, {0, 0.3f, 0}},
+                                          {"room", {0, 0.5f, 0}, {0, 0, 0.5f}, {0, 0.3f, 0}},
+                                          {"floor", {0, 0, 0}, {0, 0, 0.5f}, {0.5f, 0, 0}}};
+  for (const auto& scene : {room, pane}) {
+    const std::vector<scene::Portal> open = session::open_portals(scene, marked);
+    REQUIRE(open.size() == 2);
+    CHECK(open[0].name == "window");
+    CHECK(open[1].name == "room");
+  }
 }
 
 TEST_CASE("portals survive a bad sky and are nothing without a sky") {

@@ -83,6 +83,17 @@ TEST_CASE("two windows of one wall are two openings, the larger first") {
   CHECK(found[0].share > found[1].share);
 }
 
+TEST_CASE("a small opening beside a large one is left out") {
+  const Hole slot{0, true, {0, 2.2f, 3.5f}, {0, 2.5f, 3.9f}};
+  auto found = find_openings(rays_in(k_room, {slot, k_window}), k_axes);
+  REQUIRE(found.size() == 1);
+  check_is(found[0].portal, k_window, k_room);
+  // Alone, it is an opening.
+  found = find_openings(rays_in(k_room, {slot}), k_axes);
+  REQUIRE(found.size() == 1);
+  check_is(found[0].portal, slot, k_room);
+}
+
 TEST_CASE("two windows with half a metre between them are two openings") {
   const Hole beside{0, true, {0, 1, 3}, {0, 2, 4.5f}};
   const auto found = find_openings(rays_in(k_room, {k_window, beside}), k_axes);
