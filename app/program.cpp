@@ -315,7 +315,8 @@ void Program::add_bench_latency() {
   latency_
       ->add_option("--edits", bt.edits,
                    "some of load, strength, move (of the brightest lamp), sky (rotation), material, undo, "
-                   "camera, solver (switch); each on top of those before")
+                   "camera, solver (switch); each on top of those before; orbit: pictures per second while "
+                   "the camera moves")
       ->delimiter(',');
   latency_->add_option("--solvers", bt.solvers, "of secondary and tertiary light [path,cache]")
       ->delimiter(',');

@@ -59,7 +59,7 @@ std::optional<uint32_t> brightest_emitter(const Scene& s) {
 /// Amounts of edits.
 class Draw {
  public:
-  Draw(Edit edit, uint64_t seed) : fixed_(seed == 0), bits_(seed * k_edit_names.size() + size_t(edit)) {}
+  Draw(Edit edit, uint64_t seed) : fixed_(seed == 0), bits_(seed * 8 + size_t(edit)) {}
 
   /// In lo..hi, or `usual` for seed 0.
   float between(float lo, float hi, float usual) {

@@ -18,10 +18,11 @@ enum class Edit {
   material,  ///< another colour for the material of the largest surface without a texture
   undo,      ///< undoes the last of the edits above except load
   camera,    ///< turns and steps aside
-  solver     ///< from path tracing to the solver, or back
+  solver,    ///< from path tracing to the solver, or back
+  orbit      ///< moves the camera continuously (bench/orbit.h)
 };
-inline constexpr std::array<const char*, 8> k_edit_names = {"load",     "strength", "move",   "sky",
-                                                            "material", "undo",     "camera", "solver"};
+inline constexpr std::array<const char*, 9> k_edit_names = {"load", "strength", "move",   "sky",  "material",
+                                                            "undo", "camera",   "solver", "orbit"};
 /// Throws Error listing the names.
 Edit edit_of(const std::string& name);
 

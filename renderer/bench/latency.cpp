@@ -139,6 +139,10 @@ class Latency {
       if (edit == Edit::load) continue;
       if (edit == Edit::solver) choose(s, solver == "path" ? "cache" : "path");
       settle(s);
+      if (edit == Edit::orbit) {
+        orbit(file, solver, s);
+        continue;
+      }
       const scene::Camera camera = s.snapshot()->camera;
       std::optional<Change> change;
       std::string done = done_edits_ + std::string("-") + k_edit_names[size_t(edit)];
@@ -169,6 +173,15 @@ class Latency {
       }
       report(file, solver, edit, watch(s, since, o_.seconds), s, 0);
     }
+  }
+
+  void orbit(const fs::path& file, const std::string& solver, session::Session& s) {
+    LatencyResult result;
+    result.scene = file.stem().string(), result.solver = solver;
+    result.edit = k_edit_names[size_t(Edit::orbit)];
+    result.orbit = measure_orbit(s, o_.seconds, [this] { check(); });
+    results_.push_back(result);
+    done_(result);
   }
 
   void report(const fs::path& file, const std::string& solver, Edit edit, const std::vector<Shown>& shown,
@@ -315,6 +328,10 @@ LatencyResult median_of(std::span<const LatencyResult> runs) {
   };
   r.lit_s = middle(of(&LatencyResult::lit_s)), r.usable_s = middle(of(&LatencyResult::usable_s));
   r.rise = *middle(of(&LatencyResult::rise)), r.loading_s = *middle(of(&LatencyResult::loading_s));
+  if (r.orbit)
+    for (double Orbit::*figure : {&Orbit::frames_s, &Orbit::gap_s, &Orbit::behind_s})
+      (*r.orbit).*figure =
+          *middle([&](const LatencyResult& run) { return std::optional((*run.orbit).*figure); });
   for (const auto figures : {&LatencyResult::error, &LatencyResult::worst, &LatencyResult::reported,
                              &LatencyResult::reported_worst})
     for (size_t k = 0; k < r.error.size(); ++k)
@@ -370,6 +387,10 @@ std::string latency_heading() {
 }
 
 std::string latency_row(const LatencyResult& r) {
+  if (r.orbit)
+    return fmt::format(
+        "{:<14} {:<8} {:<10} {:.1f} pictures per second, 95 % within {:.2f} s, {:.2f} s behind", r.scene,
+        r.solver, r.edit, r.orbit->frames_s, r.orbit->gap_s, r.orbit->behind_s);
   std::string row = fmt::format("{:<14} {:<8} {:<10} {:>8} {:>8}", r.scene, r.solver, r.edit,
                                 text(r.lit_s, "s"), text(r.usable_s, "s"));
   const auto pair = [](const std::optional<double>& median, const std::optional<double>& worst) {
@@ -387,6 +408,10 @@ std::string latency_row(const LatencyResult& r) {
 
 nlohmann::ordered_json to_json(const LatencyResult& r) {
   nlohmann::ordered_json j{{"scene", r.scene}, {"solver", r.solver}, {"edit", r.edit}};
+  if (r.orbit) {
+    j["frames_s"] = r.orbit->frames_s, j["gap_s"] = r.orbit->gap_s, j["behind_s"] = r.orbit->behind_s;
+    return j;
+  }
   const auto or_null = [](const std::optional<double>& x) {
     return x ? nlohmann::ordered_json(*x) : nlohmann::ordered_json();
   };

@@ -12,6 +12,7 @@
 
 #include "bench/edit.h"
 #include "bench/folder.h"
+#include "bench/orbit.h"
 #include "bench/picture_distance.h"
 #include "scene/io/load.h"
 #include "session/session.h"
@@ -43,6 +44,7 @@ struct LatencyResult {
   /// Maximum increase of the error over its minimum so far.
   double rise = 0;
   double loading_s = 0;         ///< loading time, of Edit::load
+  std::optional<Orbit> orbit;   ///< of Edit::orbit, which has none of the figures above
   std::vector<Moment> moments;  ///< all shown pictures; empty for medians
 };
 /// Median of repeated measurements of one edit, for each figure separately; of an even number the larger of

@@ -161,6 +161,24 @@ TEST_CASE("an edit is undone to the previous values, and seeds give other amount
   CHECK(drawn->light->second.intensity == again->light->second.intensity);
 }
 
+TEST_CASE("pictures per second count cameras, not pictures") {
+  const std::vector<double> sent{0, 0.1, 0.2, 0.3, 0.4};
+  // Two pictures of the same camera are one.
+  const std::vector<OrbitFrame> frames{{0.05, 0}, {0.25, 1}, {0.35, 1}, {0.85, 4}};
+  const Orbit o = orbit_of(frames, sent, 1);
+  CHECK(o.frames_s == Approx(3));
+  CHECK(o.gap_s == Approx(0.6));
+  CHECK(o.behind_s == Approx(0.15));
+  CHECK(orbit_of({}, sent, 2).frames_s == 0);
+  CHECK(orbit_of({}, sent, 2).gap_s == 2);
+  const scene::Camera camera;
+  CHECK(orbit_camera(camera, 1, 0).to_world == camera.to_world);
+  // A quarter of the swing: 20 degrees around a point half a metre ahead.
+  const vec3 eye(orbit_camera(camera, 1, 1).to_world[3]);
+  CHECK(glm::length(eye - vec3(0, 0, -0.5f)) == Approx(0.5));
+  CHECK(std::abs(eye.x) == Approx(0.5 * std::sin(glm::radians(20.0))));
+}
+
 TEST_CASE("edits are identified by their names") {
   for (size_t i = 0; i < k_edit_names.size(); ++i) CHECK(size_t(edit_of(k_edit_names[i])) == i);
   CHECK_THROWS_WITH(edit_of("lamp"), Contains("'lamp'") && Contains("strength") && Contains("solver"));
