@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/timer.h"
+#include "session/pick.h"
 
 namespace lucerna::bench {
 namespace {
@@ -39,9 +40,9 @@ Orbit orbit_of(std::span<const OrbitFrame> frames, std::span<const double> sent_
   return orbit;
 }
 
-scene::Camera orbit_camera(const scene::Camera& from, float radius, double seconds) {
+scene::Camera orbit_camera(const scene::Camera& from, float distance, double seconds) {
   const auto angle = float(glm::radians(k_swing_degrees) * std::sin(2 * k_pi * seconds / k_swing_s));
-  const vec3 centre = vec3(from.to_world[3]) - 0.5f * radius * glm::normalize(vec3(from.to_world[2]));
+  const vec3 centre = vec3(from.to_world[3]) - distance * glm::normalize(vec3(from.to_world[2]));
   scene::Camera camera = from;
   camera.to_world = glm::translate(mat4(1), centre) * glm::rotate(mat4(1), angle, vec3(0, 1, 0)) *
                     glm::translate(mat4(1), -centre) * from.to_world;
@@ -52,7 +53,9 @@ Orbit measure_orbit(session::Session& session, double seconds, const std::functi
   const auto first = session.snapshot();
   if (!first || !session.scene()) return {};
   const scene::Camera from = first->camera;
-  const float radius = scene::bounds(*session.scene()).radius();
+  const std::shared_ptr<const scene::Scene> scene = session.scene();
+  const auto middle = session::pick(*scene, from, 0.5f, 0.5f, float(first->width) / float(first->height));
+  const float distance = middle ? middle->distance : 0.5f * scene::bounds(*scene).radius();
   std::vector<double> sent;
   std::vector<OrbitFrame> frames;
   std::map<uint64_t, size_t> of_command;
@@ -62,7 +65,7 @@ Orbit measure_orbit(session::Session& session, double seconds, const std::functi
     check();
     if (sent.empty() || clock.seconds() - sent.back() >= k_send_s) {
       sent.push_back(clock.seconds());
-      session.set_camera(orbit_camera(from, radius, sent.back()));
+      session.set_camera(orbit_camera(from, distance, sent.back()));
       of_command[session.commands()] = sent.size() - 1;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(2));

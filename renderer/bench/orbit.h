@@ -21,11 +21,12 @@ struct OrbitFrame {
 /// From the pictures shown within `seconds`, in order; cameras were sent at these times.
 Orbit orbit_of(std::span<const OrbitFrame> frames, std::span<const double> sent_s, double seconds);
 
-/// The camera after that time: it swings by 20 degrees to both sides around a vertical axis in front of it,
-/// half of the scene's radius away, in four seconds.
-scene::Camera orbit_camera(const scene::Camera& from, float radius, double seconds);
+/// The camera after that time: it swings by 20 degrees to both sides around a vertical axis at that distance
+/// in front of it, in four seconds.
+scene::Camera orbit_camera(const scene::Camera& from, float distance, double seconds);
 
-/// Sends a camera 60 times per second for that long, then the first one again. `check` may throw.
+/// Sends a camera that swings around what is in the middle of the picture, 60 times per second for that long,
+/// then the first one again. `check` may throw.
 Orbit measure_orbit(session::Session& session, double seconds, const std::function<void()>& check);
 
 }  // namespace lucerna::bench

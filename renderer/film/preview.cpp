@@ -44,6 +44,7 @@ Preview::Preview(gpu::Device& device, gpu::ShaderCompiler& compiler)
       filter_(device, compiler, "film/preview_filter.comp"),
       scatter_(device, compiler, "film/preview_scatter.comp"),
       gather_(device, compiler, "film/preview_gather.comp"),
+      fetch_(device, compiler, "film/preview_fetch.comp"),
       recall_(device, compiler, "film/preview_recall.comp"),
       resolve_(device, compiler, "film/preview_resolve.comp"),
       judge_(device, compiler, "film/preview_judge.comp") {}
@@ -63,7 +64,7 @@ void Preview::forget() {
 void Preview::keep(const vec3& scale, bool repainted, bool same_light) {
   if (shown_) {
     std::swap(now_, history_.pixels);
-    history_.known = true;
+    history_.known = true, history_.surfaces = surfaces_known_;
     history_.camera = camera_, history_.exposure = exposure_;
     history_.scale = vec3(1);
     history_.same_light = true, history_.recoloured = false;
@@ -170,16 +171,37 @@ void Preview::move(gpu::Stream& stream, PreviewReprojectPush push) {
   stream.dispatch(gather_, resources_, push, groups(pixels()));
 }
 
-/// The previous picture from the present camera. It is always reprojected from the picture as it was shown,
-/// not from a reprojection, so that nothing is lost on the way.
-const Preview::Pixels& Preview::history(gpu::Stream& stream, const PreviewCamera& now) {
+void Preview::fetch(gpu::Stream& stream, const PreviewCamera& now, const gpu::Buffer& seen, uint32_t width,
+                    uint32_t height, const Pixels& to, bool keep) {
+  resources_.set("from_texels", history_.pixels.light);
+  resources_.set("from_surfaces", history_.pixels.surfaces);
+  resources_.set("seen_surfaces", seen);
+  resources_.set("Packed", to.light);
+  resources_.set("PackedSurfaces", to.surfaces);
+  stream.dispatch(fetch_, resources_,
+                  PreviewFetchPush{width_, height_, width, height,
+                                   uint32_t(history_.camera.orthographic) | now.orthographic << 1, keep,
+                                   history_.camera.axes, now.axes},
+                  groups(std::max(uint64_t{width} * height, uint64_t{1})));
+}
+
+/// The previous picture from the present camera. It always comes from the picture as it was shown, not from a
+/// reprojection, so that nothing is lost on the way.
+const Preview::Pixels& Preview::history(gpu::Stream& stream, const PreviewCamera& now,
+                                        const gpu::Buffer* seen) {
   if (!history_.known || history_.camera == now) return history_.pixels;
-  if (moved_camera_ == now) return moved_;
-  move(stream, PreviewReprojectPush{width_, height_, 0,
-                                    uint32_t(history_.camera.orthographic) | now.orthographic << 1,
-                                    history_.camera.axes, now.axes});
+  const bool by_surfaces = seen && history_.surfaces;
+  if (moved_camera_ == now && moved_by_surfaces_ == by_surfaces) return moved_;
+  if (by_surfaces) {
+    make_pixels(moved_);
+    fetch(stream, now, *seen, width_, height_, moved_, false);
+  } else {
+    move(stream, PreviewReprojectPush{width_, height_, 0,
+                                      uint32_t(history_.camera.orthographic) | now.orthographic << 1,
+                                      history_.camera.axes, now.axes});
+  }
   stream.run();
-  moved_camera_ = now;
+  moved_camera_ = now, moved_by_surfaces_ = by_surfaces;
   return moved_;
 }
 
@@ -187,12 +209,17 @@ void Preview::show(gpu::Stream& stream, const Film& film, const Pixels& seen, Pr
   resources_.set("history_texels", seen.light);
   resources_.set("history_surfaces", seen.surfaces);
   resources_.set("Picture", film.picture());
+  resources_.set("shown_texels", texture_[0]);
   constexpr uint32_t k_step = k_preview_first_step;
-  const uint32_t cells = ((width_ + k_step - 1) / k_step) * ((height_ + k_step - 1) / k_step);
-  for (push.pass = 0; push.pass < 3; ++push.pass) {
+  const uint32_t cells = ((push.width + k_step - 1) / k_step) * ((push.height + k_step - 1) / k_step);
+  push.across = width_, push.down = height_;
+  for (push.pass = 0; push.pass < (push.seen ? 4u : 3u); ++push.pass) {
     resources_.set("cell_texels", before_[(push.pass + 1) % 2]);
-    resources_.set("Cells", before_[push.pass % 2]);
-    stream.dispatch(recall_, resources_, push, groups(push.pass < 2 ? cells : pixels()));
+    resources_.set("Cells", push.pass == 2 ? texture_[0] : before_[push.pass % 2]);
+    stream.dispatch(recall_, resources_, push,
+                    groups(push.pass < 2    ? cells
+                           : push.pass == 2 ? push.width * push.height
+                                            : pixels()));
   }
   stream.run();
   stream.take_times();
@@ -206,20 +233,32 @@ void Preview::warm(gpu::Stream& stream, const Film& film) {
   resources_.set("Ratios", ratios_);
   stream.dispatch(change_, resources_, PreviewChangePush{.all = 1}, 1);  // without blocks
   move(stream, {});                                                      // without pixels
+  fetch(stream, camera_, moved_.surfaces, 0, 0, moved_, false);
   show(stream, film, moved_, {});
 }
 
 void Preview::recall(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera) {
   show(stream, film, history(stream, camera),
-       {width_, height_, 0, shown_components(view), view.curve, history_.scale_for(view)});
+       {width_, height_, 0, shown_components(view), view.curve, history_.scale_for(view), 0, 0, 0});
+}
+
+void Preview::recall_on(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera,
+                        const gpu::Buffer& seen, uint32_t width, uint32_t height) {
+  const uint64_t count = uint64_t{width} * height;
+  gpu::make_texel_room(device_, draft_.light, "preview draft", count * k_light_bytes);
+  gpu::make_texel_room(device_, draft_.surfaces, "preview draft surfaces", count * 16);
+  fetch(stream, camera, seen, width, height, draft_, true);
+  show(stream, film, draft_,
+       {width, height, 0, shown_components(view), view.curve, history_.scale_for(view), 1, 0, 0});
 }
 
 void Preview::take(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera,
-                   float noise) {
+                   float noise, const gpu::Buffer* seen) {
   make_room(film.width(), film.height(), nullptr);
-  pack(stream, film, now_, view, nullptr, sums_[0], noise);
+  pack(stream, film, now_, view, seen, sums_[0], noise);
   stream.run();
   camera_ = camera, exposure_ = view.exposure;
+  surfaces_known_ = true;
   shown_ = true;
 }
 
@@ -285,7 +324,7 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
                                const PreviewCamera& camera, bool filtered, Sampled sampled,
                                const gpu::Buffer* seen) {
   make_room(film.width(), film.height(), draft);
-  const Pixels& before_edit = history(stream, camera);
+  const Pixels& before_edit = history(stream, camera, seen);
   const gpu::Buffer* guide = seen ? seen : history_.known ? &before_edit.surfaces : nullptr;
   const uint32_t surfaces = seen             ? k_preview_surface_seen
                             : history_.known ? k_preview_surface_before
@@ -408,6 +447,7 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
   stream.take_times();
   camera_ = camera, exposure_ = view.exposure;
   shown_ = draft || sampled != Sampled::none;
+  surfaces_known_ = seen || sampled == Sampled::all;
   repainted_ = repainted_ && sampled != Sampled::all;
 
   PreviewShares shares;

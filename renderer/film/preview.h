@@ -65,11 +65,20 @@ class Preview {
   /// Requires has_history(). Newly visible parts are filled from their surroundings. Throws and runs the
   /// stream like develop().
   void recall(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera);
+  /// True if recall_on() can show a picture from this camera: the history has another one, and its surfaces
+  /// are known.
+  bool recalls_on(const PreviewCamera& camera) const {
+    return history_.known && history_.surfaces && history_.camera != camera;
+  }
+  /// Likewise, on surfaces of that camera seen by rays, `width` times `height` over the picture, at most half
+  /// of its pixels along a side: newly visible parts have their colours, and light from their surroundings.
+  void recall_on(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera,
+                 const gpu::Buffer& seen, uint32_t width, uint32_t height);
   /// Takes the film's picture, shown unfiltered with that exposure, as the last shown picture for keep().
   /// Requires a sample in every pixel. Throws and runs the stream like develop().
-  /// `noise`: factor on the standard errors of its halves.
+  /// `noise`: factor on the standard errors of its halves; `seen`: as for develop().
   void take(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera,
-            float noise = 1);
+            float noise = 1, const gpu::Buffer* seen = nullptr);
   /// Takes a filtered picture that is shown in place of a preview: `luminances` and their standard `errors`,
   /// one a pixel. Returns its expected error. Throws and runs the stream like develop().
   ShownError show_filtered(gpu::Stream& stream, const Film& film, std::span<const float> luminances,
@@ -87,6 +96,7 @@ class Preview {
   struct History {
     Pixels pixels;
     bool known = false;
+    bool surfaces = false;  ///< the surfaces of all pixels are known
     PreviewCamera camera;
     float exposure = 1;
     vec3 scale{1};  ///< known factor on its light by edits since
@@ -105,12 +115,15 @@ class Preview {
   void judge_tiles(gpu::Stream& stream, const Film& by, uint32_t step, const gpu::Buffer& shown);
   std::span<const shared::PreviewTile> tiles() const;
   void move(gpu::Stream& stream, shared::PreviewReprojectPush push);
+  void fetch(gpu::Stream& stream, const PreviewCamera& now, const gpu::Buffer& seen, uint32_t width,
+             uint32_t height, const Pixels& to, bool keep);
   void show(gpu::Stream& stream, const Film& film, const Pixels& seen, shared::PreviewRecallPush push);
-  const Pixels& history(gpu::Stream& stream, const PreviewCamera& now);
+  const Pixels& history(gpu::Stream& stream, const PreviewCamera& now, const gpu::Buffer* seen = nullptr);
   uint32_t pixels() const { return width_ * height_; }
 
   gpu::Device& device_;
-  gpu::Kernel pack_, halve_, change_, first_filter_, filter_, scatter_, gather_, recall_, resolve_, judge_;
+  gpu::Kernel pack_, halve_, change_, first_filter_, filter_, scatter_, gather_, fetch_, recall_, resolve_,
+      judge_;
   uint32_t width_ = 0, height_ = 0;
   Pixels now_, draft_;
   History history_;
@@ -137,7 +150,9 @@ class Preview {
   gpu::Resources resources_;
   PreviewCamera camera_;
   std::optional<PreviewCamera> moved_camera_;  ///< camera of `moved_`
+  bool moved_by_surfaces_ = false;             ///< `moved_` was fetched by seen surfaces
   float exposure_ = 1;
+  bool surfaces_known_ = false;  ///< surfaces of all pixels of `now_`
   bool shown_ = false;  ///< `now_` is the last developed picture, with light that `history_` does not include
   bool repainted_ = false;  ///< surfaces without samples may have colours other than the known ones
 };

@@ -33,7 +33,8 @@ bool Display::take(gpu::Stream& stream, const film::Film& film, double noise) {
   bool taken = false;
   ++version_;
   if (plain_ && film::Preview::fits(device_.info().limits, film.width(), film.height())) try {
-      preview_.take(stream, film, plain_->shown, plain_->camera, float(noise));
+      preview_.take(stream, film, plain_->shown, plain_->camera, float(noise),
+                    sight_.surfaces(plain_->camera, film.width(), film.height()));
       taken = true;
     } catch (const Error&) {
       preview_.forget();  // no memory: the next picture starts without history
@@ -134,10 +135,19 @@ void Display::develop(Engine& engine, const PictureView& view, const film::Film&
                                             : film::Sampled::none;
   const film::PreviewCamera camera = preview_camera(engine.frame(view, view.width, view.height));
   if (!draft && sampled == film::Sampled::none && preview_.has_history()) {
-    preview_.recall(engine.wavefront().stream(), film, shown, camera);
+    gpu::Stream& stream = engine.wavefront().stream();
+    std::optional<PixelSight::Coarse> seen;
+    if (preview_.recalls_on(camera)) seen = sight_.see_coarse(engine, view);
+    if (seen)
+      preview_.recall_on(stream, film, shown, camera, *seen->surfaces, seen->width, seen->height);
+    else
+      preview_.recall(stream, film, shown, camera);
     shares_ = {.stale = 1};
     return;
   }
+  // While the camera moves, a picture without known surfaces would be a poor source of the next ones.
+  if (draft && sampled == film::Sampled::none && preview_.recalls_on(camera))
+    while (sight_.wanted(engine, view)) sight_.see(engine, view, {});
   shares_ = preview_.develop(engine.wavefront().stream(), film, draft, shown, camera, true, sampled,
                              sight_.surfaces(engine, view));
 }

@@ -75,7 +75,7 @@ void Session::Impl::advance(Renderer& renderer, bool work) {
   const auto draft_cancelled = [&] {
     return quit || (pending && (!draft_given_up || since_given_up.seconds() < k_draft_seconds));
   };
-  if (!paused && renderer.draw_draft(draft_cancelled)) {
+  if (!paused && !draft_cancelled() && renderer.draw_draft(draft_cancelled)) {
     draft_given_up = false;
     changed = changed || renderer.draft_news();
     // The first one, and the first of improved light, are shown at once; more of them at the usual rate.

@@ -1,5 +1,6 @@
 // Shows the previous picture from the present camera until there is new light. Newly visible surfaces take the light next to
-// them, preferably of surfaces behind, found for cells of k_preview_first_step pixels.
+// them, preferably of surfaces behind, found for cells of k_preview_first_step pixels. The picture may have more pixels than
+// those recalled.
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "film/preview.glsl"
@@ -8,16 +9,22 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewRecallPush push; };
 uniform samplerBuffer history_texels, history_surfaces;
 uniform samplerBuffer cell_texels;  // per cell: light, depth (0: unknown)
+uniform samplerBuffer shown_texels;  // of pass 2, for pass 3: tone-mapped
 layout(scalar) writeonly buffer Cells { vec4 cells[]; };
 layout(scalar) writeonly buffer Picture { uint picture[]; };
 
 const int k_reach = 64;    // cells
 const float k_sky = 10.0;  // depth assumed for the background [m], so that it does not outweigh an adjacent wall
 
+PreviewSurface surface_at(int pixel) { return preview_surface(texelFetch(history_surfaces, pixel)); }
+// Divisor of the light of cells.
+vec3 modulation_at(int pixel) { return push.seen != 0u ? preview_modulation(surface_at(pixel)) : vec3(1.0); }
+
 // Approximate depth of the previous picture's surface; 0: surface and light are unknown.
 float depth_at(int pixel) {
   float depth = texelFetch(history_surfaces, pixel).x;
   if (depth < 0.0 && depth > k_preview_about) return 0.0;
+  if (push.seen != 0u && preview_light(history_texels, pixel).of[0].w < 0.0) return 0.0;
   depth = depth < 0.0 ? k_preview_about - depth : depth;
   return depth > 0.0 ? depth : k_sky;
 }
@@ -38,7 +45,7 @@ vec4 cell_mean(ivec2 cell) {
     int pixel = at.y * int(push.width) + at.x;
     float depth = depth_at(pixel);
     if (depth <= 0.0) continue;
-    sum += vec4(shown_at(pixel), depth);
+    sum += vec4(shown_at(pixel) / modulation_at(pixel), depth);
     known += 1.0;
   }
   return sum / max(known, 1.0);
@@ -75,6 +82,20 @@ void main() {
     cells[index] = here;
     return;
   }
+  if (push.pass == 3u) {
+    if (index >= push.across * push.down) return;
+    vec2 p = (vec2(index % push.across, index / push.across) + 0.5) * vec2(push.width, push.height) / vec2(push.across, push.down) - 0.5;
+    ivec2 base = ivec2(floor(p)), last = ivec2(push.width, push.height) - 1;
+    vec2 f = p - vec2(base);
+    vec3 sum = vec3(0.0);
+    for (int k = 0; k < 4; ++k) {
+      ivec2 corner = ivec2(k & 1, k >> 1), at = clamp(base + corner, ivec2(0), last);
+      vec2 g = mix(1.0 - f, f, vec2(corner));
+      sum += g.x * g.y * texelFetch(shown_texels, at.y * int(push.width) + at.x).rgb;
+    }
+    picture[index] = picture_packed(sum);
+    return;
+  }
   if (index >= push.width * push.height) return;
   vec3 here;
   if (depth_at(int(index)) > 0.0) {
@@ -90,7 +111,11 @@ void main() {
       vec2 g = mix(1.0 - f, f, vec2(corner));
       sum += (there.w > 0.0 ? g.x * g.y + 1e-4 : 0.0) * vec4(there.rgb, 1.0);
     }
-    here = sum.rgb / max(sum.w, 1e-20);
+    here = sum.rgb / max(sum.w, 1e-20) * modulation_at(int(index));
   }
-  picture[index] = picture_packed(tone_map(here * push.history_scale, push.curve));
+  vec3 shown = tone_map(here * push.history_scale, push.curve);
+  if (push.seen != 0u)
+    cells[index] = vec4(shown, 1.0);
+  else
+    picture[index] = picture_packed(shown);
 }

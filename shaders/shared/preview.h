@@ -75,12 +75,22 @@ struct PreviewReprojectPush {
   PreviewCamera before, now;
 };
 
+struct PreviewFetchPush {
+  uint width, height;    ///< of the previous picture
+  uint across, down;     ///< of the surfaces
+  uint orthographic;     ///< as in PreviewReprojectPush
+  uint keep;             ///< not 0: surfaces without known light stay known
+  PreviewCamera before, now;
+};
+
 struct PreviewRecallPush {
-  uint width, height;
-  uint pass;             ///< 0: known cells, 1: unknown cells, 2: the picture
+  uint width, height;    ///< of the recalled pixels
+  uint pass;             ///< 0: known cells, 1: unknown cells, 2: the pixels, 3: the picture from pixels of another size
   uint show;             ///< bit i: component i is shown
   uint curve;
   vec3 history_scale;    ///< factor on the previous picture
+  uint seen;             ///< not 0: all surfaces are known, and unknown light is found over their colours
+  uint across, down;     ///< of the picture
 };
 
 struct PreviewResolvePush {

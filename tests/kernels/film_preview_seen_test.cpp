@@ -216,3 +216,47 @@ TEST_CASE("closer up, the previous picture gets the detail of the visible surfac
   CHECK(wall / count == Approx(0.4).epsilon(0.1));
   CHECK(light / dark > 3);
 }
+
+TEST_CASE("while the camera moves, visible surfaces show the previous picture's light in their colours") {
+  // A near wall on the right, and a far one with stripes. The camera steps to the left: the near wall moves
+  // by eight pixels, the far one by four, and a strip between them becomes visible.
+  Stage stage(96, 64);
+  constexpr float k_near_light = 0.8f, k_far_light = 0.5f;
+  const auto stripe = [](float x) { return int(std::floor(x / 8)) % 2 == 0 ? 0.2f : 0.8f; };
+  stage.sample(stage.film, 8, [&](uint32_t x, uint32_t) {
+    const bool near = x >= 48;
+    const float albedo = near ? 0.5f : stripe(float(x));
+    return Sample{.light = vec3(albedo * (near ? k_near_light : k_far_light)),
+                  .albedo = vec3(albedo),
+                  .depth = near ? 2.5f : 5};
+  });
+  CHECK_FALSE(stage.preview.recalls_on(stage.camera));
+  stage.preview.take(stage.stream, stage.film, stage.view, stage.camera);
+  stage.preview.keep(vec3(0.5f), false, true);
+  CHECK_FALSE(stage.preview.recalls_on(stage.camera));  // it is there as it was
+  stage.film.clear(stage.stream);
+  stage.camera.axes.origin.x = -8 * 2 * 5 / 96.0f;
+  REQUIRE(stage.preview.recalls_on(stage.camera));
+  const auto near_now = [](float x) { return x >= 64; };
+  const auto albedo_now = [&](float x) { return near_now(x) ? 0.5f : stripe(x - 8); };
+  const gpu::Buffer seen = surfaces_of(stage, 48, 32, [&](uint32_t x, uint32_t) {
+    const float at = 2 * float(x) + 1;
+    return Seen{.albedo = albedo_now(at), .depth = near_now(at) ? 2.5f : 5};
+  });
+  stage.preview.recall_on(stage.stream, stage.film, stage.view, stage.camera, seen, 48, 32);
+  const std::vector<float> shown = stage.shown();
+  const auto border = [&](float x) {
+    return albedo_now(x - 2) != albedo_now(x + 2) || near_now(x - 2) != near_now(x + 2);
+  };
+  for (uint32_t y = 0; y < 64; ++y)
+    for (uint32_t x = 0; x < 96; ++x) {
+      const float at = float(x) + 0.5f, light = near_now(at) ? k_near_light : k_far_light;
+      const float found = shown[y * 96 + x] / (0.5f * albedo_now(at));
+      INFO(x << ", " << y << ": " << found);
+      if (at < 8 || border(at)) continue;
+      if (at >= 56 && at < 64)  // newly visible: the light around it, rather of the far wall
+        REQUIRE(found == Approx(k_far_light + 0.05f).margin(0.1));
+      else
+        REQUIRE(found == Approx(light).margin(0.02));
+    }
+}

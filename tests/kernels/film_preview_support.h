@@ -99,11 +99,12 @@ struct Seen {
   bool emits = false, beyond = false;
 };
 
-/// Surfaces of a stage's pixels that face the camera, in the format of shaders/shared/preview.h.
-inline gpu::Buffer surfaces_of(Stage& stage, const std::function<Seen(uint32_t x, uint32_t y)>& at) {
+/// Surfaces of so many pixels, or a stage's, that face the camera, in the format of shaders/shared/preview.h.
+inline gpu::Buffer surfaces_of(Stage& stage, uint32_t width, uint32_t height,
+                               const std::function<Seen(uint32_t x, uint32_t y)>& at) {
   std::vector<vec4> texels;
-  for (uint32_t y = 0; y < stage.height; ++y)
-    for (uint32_t x = 0; x < stage.width; ++x) {
+  for (uint32_t y = 0; y < height; ++y)
+    for (uint32_t x = 0; x < width; ++x) {
       const Seen s = at(x, y);
       const auto byte = uint32_t(std::lround(s.albedo * 255));
       // A normal towards the camera is 0 on the octahedron.
@@ -115,6 +116,9 @@ inline gpu::Buffer surfaces_of(Stage& stage, const std::function<Seen(uint32_t x
   gpu::Buffer surfaces(stage.device, {.name = "surfaces", .bytes = texels.size() * 16, .texel = true});
   surfaces.write(std::span<const vec4>(texels));
   return surfaces;
+}
+inline gpu::Buffer surfaces_of(Stage& stage, const std::function<Seen(uint32_t x, uint32_t y)>& at) {
+  return surfaces_of(stage, stage.width, stage.height, at);
 }
 
 /// The preview of a stage's film with known primary visibility.

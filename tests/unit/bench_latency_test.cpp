@@ -172,9 +172,9 @@ TEST_CASE("pictures per second count cameras, not pictures") {
   CHECK(orbit_of({}, sent, 2).frames_s == 0);
   CHECK(orbit_of({}, sent, 2).gap_s == 2);
   const scene::Camera camera;
-  CHECK(orbit_camera(camera, 1, 0).to_world == camera.to_world);
+  CHECK(orbit_camera(camera, 0.5f, 0).to_world == camera.to_world);
   // A quarter of the swing: 20 degrees around a point half a metre ahead.
-  const vec3 eye(orbit_camera(camera, 1, 1).to_world[3]);
+  const vec3 eye(orbit_camera(camera, 0.5f, 1).to_world[3]);
   CHECK(glm::length(eye - vec3(0, 0, -0.5f)) == Approx(0.5));
   CHECK(std::abs(eye.x) == Approx(0.5 * std::sin(glm::radians(20.0))));
 }

@@ -1,0 +1,66 @@
+// The previous picture on surfaces that rays have found from another camera: each takes the light of the previous picture's
+// pixels that show the same place. Unlike moved pixels (preview_scatter.comp), it has no holes between them, the borders of the
+// surfaces, and their colours. Places that were not visible stay unknown.
+#include "lib/invocation.glsl"
+#include "film/preview.glsl"
+layout(local_size_x = 64) in;
+layout(push_constant, scalar) uniform Push { PreviewFetchPush push; };
+uniform samplerBuffer from_texels, from_surfaces, seen_surfaces;
+layout(scalar) writeonly buffer Packed { vec4 packed[]; };
+layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
+
+const float k_far = 1e8;       // where there is no surface
+const float k_off = 0.02;      // tolerance of the distance from a plane, over the depth: depths are means over a pixel
+const float k_least = 0.02;    // least weight of pixels of the same place
+
+// A point relative to the present camera, from its position in a picture of that camera (-1..1) and its depth.
+vec3 point_at(PreviewCamera camera, bool parallel, vec2 p, float depth) {
+  vec3 ray = p.x * camera.right + p.y * camera.up;
+  return camera.origin - push.now.origin + (parallel ? ray + depth * camera.forward : depth * (ray + camera.forward));
+}
+vec2 position(vec2 pixel, vec2 size) { return vec2(2.0, -2.0) * pixel / size + vec2(-1.0, 1.0); }
+
+void main() {
+  uint index = global_index();
+  if (index >= push.across * push.down) return;
+  bool parallel_before = (push.orthographic & 1u) != 0u, parallel_now = (push.orthographic & 2u) != 0u;
+  vec4 texel = texelFetch(seen_surfaces, int(index));
+  PreviewSurface here = preview_surface(texel);
+  vec2 p = position(vec2(index % push.across, index / push.across) + 0.5, vec2(push.across, push.down));
+  float far = here.depth > 0.0 ? here.depth : k_far;
+  vec3 point = point_at(push.now, parallel_now, p, far), from_before = point + push.now.origin - push.before.origin;
+  float depth = dot(from_before, push.before.forward), ratio = parallel_before ? 1.0 : 1.0 / depth;
+  vec2 q = ratio * vec2(dot(from_before, push.before.right) / dot(push.before.right, push.before.right),
+                        dot(from_before, push.before.up) / dot(push.before.up, push.before.up));
+  vec2 size = vec2(push.width, push.height), there = (q * vec2(0.5, -0.5) + 0.5) * size - 0.5;
+  PreviewLight light;
+  for (uint c = 0u; c < k_component_count; ++c) light.of[c] = vec4(0.0);
+  float weights = 0.0;
+  bool visible = here.depth >= 0.0 && depth > 0.0 && all(greaterThan(there, vec2(-1.0))) && all(lessThan(there, size));
+  ivec2 base = ivec2(floor(there));
+  vec2 f = there - vec2(base);
+  vec3 m = preview_modulation(here);
+  for (int k = 0; visible && k < 4; ++k) {
+    ivec2 corner = ivec2(k & 1, k >> 1), at = base + corner;
+    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(size)))) continue;
+    int pixel = at.y * int(push.width) + at.x;
+    PreviewSurface was = preview_surface(texelFetch(from_surfaces, pixel));
+    PreviewLight l = preview_light(from_texels, pixel);
+    if (was.depth < 0.0 || !preview_lit(l, was)) continue;
+    // A film's picture does not say which surfaces emit.
+    was.emits = here.emits;
+    vec3 offset = point_at(push.before, parallel_before, position(vec2(at) + 0.5, size), was.depth) - point;
+    vec2 g = mix(1.0 - f, f, vec2(corner));
+    float w = (g.x * g.y + 1e-3) * preview_alike(here, was, offset, k_off * far);
+    vec3 modulation = preview_modulation(was);
+    for (uint c = 0u; c < k_component_count; ++c)
+      light.of[c] += w * vec4(l.of[c].rgb / modulation, max(l.of[c].w, 0.0) / luminance(modulation));
+    weights += w;
+  }
+  bool known = weights > k_least;
+  float inverse = 1.0 / max(weights, 1e-20);
+  for (uint c = 0u; c < k_component_count; ++c)
+    light.of[c] = known ? light.of[c] * inverse * vec4(m, luminance(m)) : vec4(0.0, 0.0, 0.0, -1.0);
+  LUCERNA_PREVIEW_STORE(packed, index, light)
+  packed_surfaces[index] = known || push.keep != 0u ? vec4(texel.xyz, 0.0) : vec4(-1.0, 0.0, 0.0, 0.0);
+}
