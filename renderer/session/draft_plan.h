@@ -40,7 +40,7 @@ class DraftPlan {
   /// A first preview sample comes at once, then a few more, because the picture's first samples fill it from
   /// one side to the other. While waiting, the preview is refined: two fine samples at once, then most of the
   /// time until `error`, estimated for the shown picture, suffices to judge a room, for some seconds at most;
-  /// then less and less, as more samples help less. `sight`: the visible surfaces are not known yet; the
+  /// then a third of the time, so that the picture gets better until it is replaced. `sight`: the visible surfaces are not known yet; the
   /// first preview sample does not wait for them.
   Next next(bool preparing, bool filled, bool sight = false, std::optional<double> error = {}) const {
     if (filled) return Next::nothing;
@@ -48,9 +48,9 @@ class DraftPlan {
     if (!begun()) return coarse ? Next::coarse : Next::fine;
     if (sight) return Next::sight;
     if (coarse && coarse_ < k_coarse_samples) return Next::coarse;
-    if (!preparing || fine_ >= k_fine_samples) return Next::nothing;
+    if (!preparing) return Next::nothing;
     const bool rough = error.value_or(1) > k_good_error && draft_s_ < k_patience_s;
-    const double share = fine_ < 2 ? 1 : rough ? 0.75 : fine_ < 4 ? 0.5 : fine_ < 16 ? 0.25 : 0.1;
+    const double share = fine_ < 2 ? 1 : rough ? 0.75 : fine_ < 4 ? 0.5 : 1 / 3.0;
     return draft_s_ <= share * (draft_s_ + work_s_) ? Next::fine : Next::nothing;
   }
   /// True if there is a preview sample.
@@ -64,7 +64,6 @@ class DraftPlan {
   uint32_t fine_samples() const { return fine_; }
 
  private:
-  static constexpr uint32_t k_fine_samples = 64;
   /// Relative error below which preview samples are not urgent, and seconds after which they never are.
   static constexpr double k_good_error = 0.06, k_patience_s = 6;
   uint32_t coarse_ = 0, fine_ = 0;

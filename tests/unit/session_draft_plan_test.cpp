@@ -49,12 +49,12 @@ TEST_CASE("while the picture's samples arrive there are four coarse preview samp
   CHECK(drawn == 4);
 }
 
-TEST_CASE("while the picture waits, previews with low error take half of the time, then less, and end") {
+TEST_CASE("while the picture waits, previews with low error take half of the time, then a third") {
   constexpr double k_good = 0.05;
   DraftPlan plan;
   double drafts = 0, work = 0, halved = 0;
   uint32_t coarse = 0, fine = 0;
-  for (int step = 0; step < 100000; ++step) {
+  for (int step = 0; step < 10000; ++step) {
     const Next next = plan.next(true, false, false, k_good);
     if (next == Next::nothing) {
       plan.worked(0.02), work += 0.02;
@@ -66,9 +66,8 @@ TEST_CASE("while the picture waits, previews with low error take half of the tim
   }
   CHECK(halved == Approx(0.5).margin(0.15));
   CHECK(coarse == 4);
-  CHECK(fine == 64);
-  // All 68 samples together within a tenth of the time over which they are spread.
-  CHECK(drafts / 0.3 == Approx(68));
+  CHECK(fine > 64);
+  CHECK(drafts / (drafts + work) == Approx(1 / 3.0).margin(0.01));
 }
 
 TEST_CASE("while the picture waits, previews with high error take most of the time, for some seconds") {
@@ -86,7 +85,7 @@ TEST_CASE("while the picture waits, previews with high error take most of the ti
       }
     }
     CHECK(drafts_at_9 == Approx(6).margin(0.5));
-    CHECK(drafts / (drafts + work) < 0.35);
+    CHECK(drafts / (drafts + work) < 0.36);
   }
 }
 
