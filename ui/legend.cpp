@@ -11,7 +11,9 @@
 
 #include "chart.h"
 #include "film/tile_scale.h"
+#include "shaders/shared/preview.h"
 #include "shaders/shared/ramp.h"
+#include "shown_text.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -229,7 +231,7 @@ HeatWords heat_words(uint32_t layer) {
   return {"Device time per pixel", "Time that the paths of a pixel took. Middle of the scale: the mean."};
 }
 
-std::vector<solvers::Legend> window_legends(const session::Legend& layer, bool light_marks) {
+std::vector<solvers::Legend> window_legends(const session::Legend& layer, bool light_marks, bool former) {
   std::vector<solvers::Legend> list;
   if (layer.layer == shared::k_layer_albedo)
     list.push_back({.title = "Albedo",
@@ -248,6 +250,10 @@ std::vector<solvers::Legend> window_legends(const session::Legend& layer, bool l
                     .note =
                         "Circle: lamp. Square: emitting surface. Cross: aim of the selected spot. Filled: "
                         "on. Where many lie together, the nearest are marked."});
+  if (former)
+    list.push_back({.title = "Light from before the edit",
+                    .marks = {{shared::k_preview_former_tint, "not replaced yet"}},
+                    .note = "The new light replaces it where it is less noisy, or clearly different."});
   return list;
 }
 
@@ -257,7 +263,8 @@ Area draw_legend(Ui& ui, const Area& frame) {
   std::vector<Block> blocks;
   // The coarse first image has neither samples to be counted nor tiles; solvers draw over it too.
   if (!s->coarse && s->legend.layer >= shared::k_layer_samples) blocks.push_back(heat_block(s->legend));
-  const std::vector<solvers::Legend> own = window_legends(s->legend, ui.light_marks);
+  const std::vector<solvers::Legend> own =
+      window_legends(s->legend, ui.light_marks, ui.setting_on("overlay.former") && shows_former(*s));
   const auto add = [&](const solvers::Legend& legend) {
     blocks.push_back({legend.title, legend.note, body_height(legend),
                       [&legend](ImDrawList* list, const ImVec2& at) { draw_body(list, at, legend); }});

@@ -7,8 +7,10 @@
 
 namespace lucerna::ui {
 
-/// Of a layer that is no light and no heat map (session::Legend), and of the marks of lights.
-std::vector<solvers::Legend> window_legends(const session::Legend& layer, bool light_marks);
+/// Of a layer that is no light and no heat map (session::Legend), of the marks of lights, and of the tint of
+/// former light.
+std::vector<solvers::Legend> window_legends(const session::Legend& layer, bool light_marks,
+                                            bool former = false);
 
 /// What a heat map shows: its title, and what its colours mean.
 struct HeatWords {

@@ -264,6 +264,9 @@ void view_menu(Ui& ui) {
   for (const solvers::ViewInfo& view : plan::views())
     if (entry(view.label.c_str(), nullptr, plan::find_option(view.option)->help.c_str(), ui.view_on(view)))
       ui.turn_view(view);
+  if (const OptionInfo* former = plan::find_option("overlay.former");
+      entry("Light from before the edit", nullptr, former->help.c_str(), ui.setting_on(former->key)))
+    ui.toggle(former->key);
   if (entry("Unfiltered samples", "U",
             "Shows samples only: no filter for noise, and no light from before an edit.",
             ui.setting("preview.filter") == "off"))
@@ -445,7 +448,8 @@ void draw_menu_bar(Ui& ui, const Area& area) {
       const float begin = preview_end - text_width(*preview);
       draw_text(list, {begin, area.lo.y}, {preview_end, area.hi.y}, *preview, colour::accent, Align::right);
       ImGui::SetCursorScreenPos({begin, area.lo.y});
-      ImGui::InvisibleButton("##preview", {preview_end - begin, area.hi.y - area.lo.y - px(2)});
+      if (ImGui::InvisibleButton("##preview", {preview_end - begin, area.hi.y - area.lo.y - px(2)}))
+        ui.toggle("overlay.former");
       tooltip(
           (s->shown_error
                ? fmt::format("Estimated error of the displayed picture, of the median tile and of the worst "
@@ -456,7 +460,7 @@ void draw_menu_bar(Ui& ui, const Area& area) {
           "Light from before the last edit stays until the new light is better, and the noise of few samples "
           "is "
           "filtered. EXR files store the samples; a PNG can be saved either way. U shows the unfiltered "
-          "samples.");
+          "samples. Click to tint light from before the edit.");
     }
     ImGui::SetCursorScreenPos({state_left, area.lo.y});
     ImGui::InvisibleButton("##state", {std::max(1.0f, right - state_left), area.hi.y - area.lo.y - px(2)});

@@ -8,10 +8,15 @@
 
 namespace lucerna::ui {
 
+bool shows_former(const session::Snapshot& s) {
+  constexpr double k_least_stale = 0.005;
+  return s.stale > k_least_stale;
+}
+
 std::vector<std::string> shown_texts(const session::Snapshot& s) {
-  constexpr double k_least_stale = 0.005, k_least_filtered = 0.02;
+  constexpr double k_least_filtered = 0.02;
   const std::string off = s.shown_error ? percent_text(s.shown_error->median) + " off" : "";
-  if (s.stale > k_least_stale) {
+  if (shows_former(s)) {
     const std::string before = fmt::format("{:.0f} % from {}", 100 * s.stale,
                                            s.stale_is_preview ? "the preview" : "before the edit");
     return off.empty() ? std::vector{before} : std::vector{off + ", " + before, before};

@@ -7,6 +7,9 @@
 
 namespace lucerna::ui {
 
+/// True if a part of the picture that counts is light from before the last edit.
+bool shows_former(const session::Snapshot& snapshot);
+
 /// "7.2 % off, worst tenth 18 %": the median tile's error and the error that a tenth of the tiles exceed.
 /// With light from before the last edit "12 % off, 42 % from before the edit", with light of the preview
 /// during preparation "12 % off, 42 % from the preview". Shorter texts follow for less

@@ -44,6 +44,7 @@ struct View {
   HeatScale heat;      ///< for heat maps
   /// Side of the tiles whose marks (Film::mark_tiles) are drawn over the picture; 0: none.
   uint32_t tiles = 0;
+  bool tint_former = false;  ///< of a preview: tints light from before the last edit
 };
 
 /// Storage of separate light groups.

@@ -239,7 +239,8 @@ void Preview::warm(gpu::Stream& stream, const Film& film) {
 
 void Preview::recall(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera) {
   show(stream, film, history(stream, camera),
-       {width_, height_, 0, shown_components(view), view.curve, history_.scale_for(view), 0, 0, 0});
+       {width_, height_, 0, shown_components(view), view.curve, history_.scale_for(view), 0, 0, 0,
+        view.tint_former});
 }
 
 void Preview::recall_on(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera,
@@ -249,7 +250,8 @@ void Preview::recall_on(gpu::Stream& stream, const Film& film, const View& view,
   gpu::make_texel_room(device_, draft_.surfaces, "preview draft surfaces", count * 16);
   fetch(stream, camera, seen, width, height, draft_, true);
   show(stream, film, draft_,
-       {width, height, 0, shown_components(view), view.curve, history_.scale_for(view), 1, 0, 0});
+       {width, height, 0, shown_components(view), view.curve, history_.scale_for(view), 1, 0, 0,
+        view.tint_former});
 }
 
 void Preview::take(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera,
@@ -440,7 +442,8 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
                                    .blocks_across = blocks.x,
                                    .blocks_down = blocks.y,
                                    .surfaces = surfaces,
-                                   .moved = moved};
+                                   .moved = moved,
+                                   .tint = view.tint_former};
   stream.dispatch(resolve_, resources_, resolve, groups(pixels()));
   const bool measured = judge(stream, by_draft && draft ? *draft : film, view);
   stream.run();

@@ -151,6 +151,9 @@ void add_display_options(std::vector<OptionInfo>& list) {
                                                "", "Layer shown and written to PNG files.")));
   list.push_back(without_restart(boolean_option(
       "overlay.tiles", "false", "Draws active tiles and the ratio of their error to the target.")));
+  list.push_back(without_restart(
+      boolean_option("overlay.former", "false",
+                     "Tints light from before the last edit, as far as the new light has not replaced it.")));
   list.push_back(without_restart(boolean_option(
       "overlay.lights", "false",
       "Draws light selection at the point under the pointer: arrows to the lights, or parts of the sky, that "

@@ -34,6 +34,7 @@ film::View Renderer::view() const {
   v.scale = 2 * world_.flat.core_radius;
   v.heat = heat_scale(v.layer);
   if (settings_.boolean("overlay.tiles")) v.tiles = tile_side();
+  v.tint_former = settings_.boolean("overlay.former");
   return v;
 }
 

@@ -86,6 +86,12 @@ vec4 preview_change(samplerBuffer ratios, uvec2 blocks, vec2 cell) {
              mix(texelFetch(ratios, hi.y * row + lo.x), texelFetch(ratios, hi.y * row + hi.x), f.x), f.y);
 }
 
+// A shown colour of which that share is light from before the last edit, marked as such: in shades of one hue.
+vec3 preview_tinted(vec3 shown, float share) {
+  vec3 marked = k_preview_former_tint * mix(0.15, 1.0, luminance(shown));
+  return mix(shown, marked, 0.7 * clamp(share, 0.0, 1.0));
+}
+
 // Divisor of light for filtering: the surface's colour, if there is a surface.
 vec3 preview_modulation(PreviewSurface s) { return s.depth > 0.0 ? max(s.albedo, vec3(0.04)) : vec3(1.0); }
 

@@ -114,6 +114,7 @@ void main() {
     here = sum.rgb / max(sum.w, 1e-20) * modulation_at(int(index));
   }
   vec3 shown = tone_map(here * push.history_scale, push.curve);
+  if (push.tint != 0u) shown = preview_tinted(shown, 1.0);
   if (push.seen != 0u)
     cells[index] = vec4(shown, 1.0);
   else

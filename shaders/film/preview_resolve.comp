@@ -280,6 +280,7 @@ void main() {
     float by_chance = push.same_light != 0u ? k_by_chance_same : k_by_chance;
     PreviewLight result;
     vec3 color = vec3(0.0);
+    float former = 0.0;    // luminance of older light in the shown colour
     float variance = 0.0;  // of a mean of the shown picture over 3x3 pixels
     bool unknown = false;
     for (uint c = 0u; c < k_component_count; ++c) {
@@ -324,6 +325,7 @@ void main() {
       result.of[c] = vec4(now, nothing && !has_old ? -1.0 : left);
       if ((push.show >> c & 1u) != 0u) color += now;
       float showing = float(push.show >> c & 1u), shown = luminance(now) * showing;
+      former += keep * shown;
       totals.xyz += vec3(shown, keep * shown, amount * (1.0 - keep) * shown);
       // Pixels' own samples are independent; what is filtered, or was there before, errs alike in pixels side by side.
       variance += showing * (square(1.0 - keep) * (square((1.0 - amount) * noise[c]) / 9.0 + square(amount * smooth_error)) + of_before);
@@ -333,7 +335,9 @@ void main() {
     totals.w = unknown ? 1.0 : min(k_mean_deviation * sqrt(variance) / max(luminance(color), k_preview_dark), 1.0);
     shown_pixels[pixel] = packHalf2x16(vec2(min(luminance(color), 60000.0), totals.w));
     LUCERNA_PREVIEW_STORE(packed, pixel, result)
-    picture[pixel] = picture_packed(tone_map(color, push.curve));
+    vec3 displayed = tone_map(color, push.curve);
+    if (push.tint != 0u) displayed = preview_tinted(displayed, former / max(luminance(color), 1e-20));
+    picture[pixel] = picture_packed(displayed);
   }
   group_shares[lane] = totals;
   barrier();

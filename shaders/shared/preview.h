@@ -91,6 +91,7 @@ struct PreviewRecallPush {
   vec3 history_scale;    ///< factor on the previous picture
   uint seen;             ///< not 0: all surfaces are known, and unknown light is found over their colours
   uint across, down;     ///< of the picture
+  uint tint;             ///< not 0: tints the picture as light from before the last edit
 };
 
 struct PreviewResolvePush {
@@ -108,7 +109,11 @@ struct PreviewResolvePush {
   uint blocks_across, blocks_down;  ///< blocks that measure the change of light; 0: it has not changed
   uint surfaces;         ///< k_preview_surface_*
   uint moved;            ///< not 0: the camera has moved since the previous picture
+  uint tint;             ///< not 0: tints light from before the last edit
 };
+
+/// Colour of light from before the last edit, sRGB.
+LUCERNA_CONST vec3 k_preview_former_tint = vec3(0.36f, 0.55f, 1.0f);
 
 LUCERNA_CONST uint k_preview_tile = 16u;  ///< pixels along the side of a tile for error estimates
 struct PreviewJudgePush {

@@ -322,6 +322,33 @@ TEST_CASE("the previous picture can be recalled immediately, reprojected and wit
     }
 }
 
+TEST_CASE("light from before an edit can be tinted, new light is not") {
+  Stage stage(64, 48);
+  stage.sample(stage.film, 8, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.5f)}; });
+  stage.show();
+  const auto blue = [&] {
+    const std::vector<uint8_t> rgba = stage.film.read_picture();
+    return int(rgba[2]) - int(rgba[0]);
+  };
+  stage.view.tint_former = true;
+  stage.show();
+  CHECK(blue() == 0);
+  stage.preview.keep();
+  stage.film.clear(stage.stream);
+  stage.preview.recall(stage.stream, stage.film, stage.view, stage.camera);
+  CHECK(blue() > 50);
+  CHECK(stage.show().stale == Approx(1));
+  CHECK(blue() > 50);
+  stage.view.tint_former = false;
+  stage.show();
+  CHECK(blue() == 0);
+  // Twice as bright without noise: nothing of before stays.
+  stage.view.tint_former = true;
+  stage.sample(stage.film, 8, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.9f)}; });
+  stage.show();
+  CHECK(blue() == 0);
+}
+
 TEST_CASE("when the camera comes close the enlarged previous picture has no holes") {
   Stage stage(64, 48);
   const auto wall = [](uint32_t x, uint32_t y) { return 0.2f + 0.3f * float((x / 8 + y / 8) % 2); };

@@ -74,4 +74,6 @@ TEST_CASE("layers that are no light and marks of lights have a legend in words")
   CHECK(ui::window_legends({}, false).empty());
   REQUIRE(ui::window_legends({}, true).size() == 1);
   CHECK(!ui::window_legends({}, true)[0].note.empty());
+  REQUIRE(ui::window_legends({}, false, true).size() == 1);
+  CHECK(ui::window_legends({}, false, true)[0].marks.size() == 1);
 }
