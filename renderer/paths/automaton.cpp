@@ -418,13 +418,12 @@ namespace {
 /// lookup_routes(); `onward`: also behind lookups, for paths that have passed one.
 LookupRoutes routes_of(const Automaton& automaton, uint32_t enabled, uint32_t cached, bool direct,
                        bool onward) {
-  constexpr uint32_t k_primary = 1u << 0, k_secondary = 1u << 1, k_tertiary = 1u << 2;
   cached &= enabled;
   // Words of the secondary component continue as words of the tertiary one, and nothing is traced behind a
   // lookup.
-  if (cached & k_secondary) cached |= enabled & k_tertiary;
+  if (cached & k_secondary_bit) cached |= enabled & k_tertiary_bit;
   LookupRoutes routes;
-  routes.traced = enabled & (~cached | k_primary);
+  routes.traced = enabled & (~cached | k_primary_bit);
   routes.component.assign(automaton.states.size(),
                           {k_no_component, k_no_component, k_no_component, k_no_component});
   std::set<uint8_t> open{0}, seen{0};  // states that a path can be in before it has been looked up
@@ -442,7 +441,7 @@ LookupRoutes routes_of(const Automaton& automaton, uint32_t enabled, uint32_t ca
     const bool traced_on = (within(component_of[1], enabled) && !within(component_of[1], cached)) ||
                            (within(component_of[2], enabled) && !within(component_of[2], cached));
     const bool any = within(component_of[1], cached) || within(component_of[2], cached) ||
-                     (direct && component_of[0] == 0 && (cached & k_primary) != 0);
+                     (direct && component_of[0] == k_primary && (cached & k_primary_bit) != 0);
     const bool looks = any && !traced_on;
     for (uint32_t p = 1; looks && p < k_part_count; ++p)
       if (within(component_of[p], cached))
@@ -465,11 +464,10 @@ LookupRoutes lookup_routes(const Automaton& automaton, uint32_t enabled, uint32_
 }
 
 LookupRoutes record_routes(const Automaton& automaton, uint32_t parts, bool recursive, bool caustics) {
-  constexpr uint32_t k_secondary = 1u << 1, k_tertiary = 1u << 2, k_caustic = 1u << 3;
-  if (!recursive || (parts & k_tertiary) == 0) return {.component = {}, .parts = parts, .traced = parts};
+  if (!recursive || (parts & k_tertiary_bit) == 0) return {.component = {}, .parts = parts, .traced = parts};
   // Behind ED the components are the parts, so that the rays' own routes are those of a picture of them.
-  const uint32_t gathered = parts | k_secondary | (caustics ? k_caustic : 0);
-  LookupRoutes own = lookup_routes(automaton, gathered, k_tertiary, (parts & 1u) != 0);
+  const uint32_t gathered = parts | k_secondary_bit | (caustics ? k_caustic_bit : 0);
+  LookupRoutes own = lookup_routes(automaton, gathered, k_tertiary_bit, (parts & 1u) != 0);
   own.parts = gathered;
   if (!caustics)
     for (auto& component : own.component) component[3] = k_no_component;
@@ -477,9 +475,8 @@ LookupRoutes record_routes(const Automaton& automaton, uint32_t parts, bool recu
 }
 
 LookupRoutes gather_routes(const Automaton& automaton, uint32_t enabled, const LookupRoutes& own) {
-  constexpr uint32_t k_tertiary = 1u << 2;
   if (own.component.empty()) return {};
-  LookupRoutes routes = routes_of(automaton, enabled, k_tertiary, (own.parts & 1u) != 0, true);
+  LookupRoutes routes = routes_of(automaton, enabled, k_tertiary_bit, (own.parts & 1u) != 0, true);
   // Parts that records do not gather there are not there.
   for (auto& component : routes.component)
     for (uint32_t p = 0; p < k_part_count; ++p)

@@ -21,7 +21,11 @@ inline constexpr int k_scatter_events = 3;
 inline constexpr int k_component_count = 4;
 inline constexpr uint8_t k_no_component = 0xff;
 
-/// primary, secondary, tertiary, caustic
+/// Components, as indices of k_component_names.
+inline constexpr uint8_t k_primary = 0, k_secondary = 1, k_tertiary = 2, k_caustic = 3;
+/// Bits of sets of components.
+inline constexpr uint32_t k_primary_bit = 1u << k_primary, k_secondary_bit = 1u << k_secondary,
+                          k_tertiary_bit = 1u << k_tertiary, k_caustic_bit = 1u << k_caustic;
 extern const std::array<const char*, k_component_count> k_component_names;
 extern const std::array<const char*, k_component_count> k_component_expressions;
 

@@ -57,10 +57,7 @@ std::vector<uint32_t> pack(const LightAutomaton& automaton, uint32_t parts, uint
   return packed;
 }
 
-namespace {
-constexpr uint8_t k_primary_component = 0;
-constexpr uint32_t k_primary = 1u << k_primary_component;
-}  // namespace
+namespace {}  // namespace
 
 LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_t own,
                            uint32_t directly_visible_by_other) {
@@ -70,8 +67,8 @@ LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_
   };
   LookupRoutes routes;
   // Emitters that are seen directly or in mirrors remain to eye paths.
-  routes.traced = enabled & (~own | k_primary);
-  if ((own & k_primary) != 0) routes.replaced.assign(automaton.states.size(), 0);
+  routes.traced = enabled & (~own | k_primary_bit);
+  if ((own & k_primary_bit) != 0) routes.replaced.assign(automaton.states.size(), 0);
   routes.component.assign(automaton.states.size(),
                           {k_no_component, k_no_component, k_no_component, k_no_component});
   // States of eye paths, each with the components that have been looked up on the way there.
@@ -95,7 +92,7 @@ LookupRoutes photon_routes(const Automaton& automaton, uint32_t enabled, uint32_
       routes.component[state][p] = component[p];
       routes.parts |= 1u << p;
       looked_up |= 1u << component[p];
-      if (component[p] == k_primary_component) routes.replaced[d] = 1;
+      if (component[p] == k_primary) routes.replaced[d] = 1;
     }
     for (const Event e : {Event::diffuse, Event::glossy, Event::specular}) {
       const uint8_t next = automaton.after(state, e);

@@ -89,13 +89,12 @@ std::string joined(const std::vector<std::string>& words, const char* between) {
 std::vector<std::string> unreachable_light(const Plan& plan, const scene::Scene& scene) {
   // Words that end in D[DGS]*SL: of primary light lamps without size have none, and secondary light reaches
   // its lamp from a diffuse vertex.
-  constexpr size_t k_caustic = 3;
   size_t lamps = 0;
   for (const scene::Light& light : scene.lights) lamps += light.enabled && light.intensity != vec3(0);
   const std::vector<std::string> materials = polished_materials(scene);
   if (lamps == 0 || materials.empty()) return {};
   std::vector<std::string> missing, settings, lines;
-  for (const size_t c : {size_t{2}, k_caustic}) {
+  for (const size_t c : {paths::k_tertiary, paths::k_caustic}) {
     const solvers::SolverInfo *solver = plan.solver[c], *rest = plan.rest[c];
     if (!solver || (rest && rest->finds_points) || (solver->finds_points && !solver->directly_visible_only))
       continue;

@@ -166,13 +166,12 @@ TEST_CASE("where paths are chosen photons compute the light that paths cannot fi
   for (const size_t c : {1u, 2u, 3u}) check_same_light(image, truth, c, 0.02);
   // Only tertiary light, with path traced secondary light: from irradiance maps, and where the maps have no
   // value.
-  for (const char* nearest : {"8", "1024"}) {
-    Session gathers(room,
-                    {{"components.tertiary", "photons"},
-                     {"components.caustic", "off"},
-                     {"photons.per_round", "16384"},
-                     {"photons.nearest", nearest}},
-                    64);
+  for (const char* paths : {"16384", "64"}) {
+    INFO(paths << " light paths");
+    Session gathers(
+        room,
+        {{"components.tertiary", "photons"}, {"components.caustic", "off"}, {"photons.per_round", paths}},
+        64);
     check_same_light(gathers.image(), truth, 2, 0.03);
   }
 }
@@ -180,7 +179,7 @@ TEST_CASE("where paths are chosen photons compute the light that paths cannot fi
 TEST_CASE("records whose rays find no irradiance include the light that paths cannot find",
           "[photons_trials]") {
   scene::Scene room = mirror_room();
-  const auto compare = [&](const char* nearest) {
+  const auto compare = [&] {
     const test::Settings all{{"components.secondary", "photons"},
                              {"components.tertiary", "photons"},
                              {"components.caustic", "off"},
@@ -190,15 +189,14 @@ TEST_CASE("records whose rays find no irradiance include the light that paths ca
     Session records(room,
                     {{"components.secondary", "cache"},
                      {"components.tertiary", "photons"},
-                     {"components.caustic", "off"},
-                     {"photons.nearest", nearest}},
+                     {"components.caustic", "off"}},
                     16);
     check_same_light(records.image(), truth, 2, 0.04);
   };
-  compare("8");
+  compare();
   // The map never has values on transmitting surfaces.
   room.materials[0].diffuse_transmission = 0.1f;
-  compare("8");
+  compare();
 }
 
 TEST_CASE("a house on wide ground has its light, and photons do not report darkness as exact",

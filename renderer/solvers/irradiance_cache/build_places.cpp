@@ -96,9 +96,7 @@ void Cache::Impl::end_probing() {
   end_stage(BuildStage::probe);
 }
 
-bool Cache::Impl::looks_first() const {
-  return options.screen.density > 0 && tables.picture_routes[0] != k_no_routes && status.pass == 0;
-}
+bool Cache::Impl::looks_first() const { return tables.picture_routes[0] != k_no_routes && status.pass == 0; }
 
 ReachOptions Cache::Impl::reach(const CacheView& view) const {
   return {.spacing = view.scene_radius * std::ldexp(k_first_spacing, -2 * static_cast<int>(status.pass)),
@@ -131,9 +129,8 @@ bool Cache::Impl::see_all(transport::Wavefront& wavefront, const CacheView& view
 bool Cache::Impl::look(const Work& w, bool& cancelled) {
   // The first pass searches detail of the geometry; later ones of the irradiance.
   const bool geometry = looks_first();
-  const bool irradiance = options.screen.density > 0 && options.screen.irradiance_weight > 0 &&
-                          tables.picture_routes[0] != k_no_routes && status.pass > 0 &&
-                          ranges.evaluated() > 0;
+  const bool irradiance = options.screen.irradiance_weight > 0 && tables.picture_routes[0] != k_no_routes &&
+                          status.pass > 0 && ranges.evaluated() > 0;
   if (progress.probing.screen_done || !(geometry || irradiance)) return true;
   StageTimer timer(w.wavefront);
   Discontinuity& screen = picture.screen;

@@ -17,8 +17,7 @@
 namespace lucerna::irradiance_cache {
 
 struct DiscontinuityOptions {
-  /// Candidates per cell of the finest level at full detail; 0: the stage is skipped, and every path may
-  /// become a candidate.
+  /// Candidates per cell of the finest level at full detail.
   float density = 1;
   /// Ratio of probabilities between a level and the next coarser one, 0..1. 1/4: equally many candidates per
   /// cell at every scale.

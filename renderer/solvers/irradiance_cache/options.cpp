@@ -77,10 +77,6 @@ std::vector<OptionInfo> light_rows() {
 /// Candidates in the picture.
 std::vector<OptionInfo> candidate_rows() {
   return {
-      real_option("cache.candidates", "1", 0, 16, "a cell",
-                  "Irradiance cache: candidates for records in a picture cell of full detail, at every "
-                  "scale; flat walls get few. 0: every pixel without a record is a candidate.",
-                  "Candidates"),
       real_option("cache.irradiance_weight", "1", 0, 1000, "",
                   "Irradiance cache: weight of the relative difference of irradiance between neighbouring "
                   "cells as detail, in later passes; 0: ignored.",

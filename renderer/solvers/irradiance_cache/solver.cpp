@@ -30,37 +30,32 @@ CacheOptions read_options(const Task& task) {
           .groups = task.effects.has_compact_groups() ? task.effects.light_groups : 1,
           .stop_share = float(s.real("cache.stop")),
           .seed = uint32_t(s.integer("seed")),
-          .screen = {.density = float(s.real("cache.candidates")),
-                     .irradiance_weight = float(s.real("cache.irradiance_weight")),
+          .screen = {.irradiance_weight = float(s.real("cache.irradiance_weight")),
                      .irradiance_noise = 2 * float(s.real("cache.noise"))}};
 }
-
-constexpr uint32_t k_primary = 1u << 0;  // component
 
 paths::LookupRoutes picture_routes(const Task& task) {
   return paths::lookup_routes(task.automaton, task.enabled, task.own, task.effects.separate_sky);
 }
 
 paths::LookupRoutes routes_of_records(const Task& task) {
-  constexpr uint32_t k_tertiary = 1u << 2;
-  return paths::record_routes(task.automaton, picture_routes(task).parts, (task.own & k_tertiary) != 0,
+  return paths::record_routes(task.automaton, picture_routes(task).parts,
+                              (task.own & paths::k_tertiary_bit) != 0,
                               task.effects.specular || task.effects.solid_glass || task.effects.thin_glass);
 }
 
 /// True if another solver computes the tertiary light behind a cached secondary component by lookups: it then
 /// serves records' rays too.
 bool elsewhere(const Task& task) {
-  constexpr uint32_t k_tertiary = 1u << 2;
-  return (task.provided & task.enabled & ~task.own & picture_routes(task).parts & k_tertiary) != 0;
+  return (task.provided & task.enabled & ~task.own & picture_routes(task).parts & paths::k_tertiary_bit) != 0;
 }
 
 /// Parts that paths compute for records' rays; with `elsewhere` another solver provides lookups.
 paths::LookupRoutes routes_of_rays(const Task& task) {
-  constexpr uint32_t k_tertiary = 1u << 2;
   paths::LookupRoutes records = routes_of_records(task);
   if (!elsewhere(task)) return records;
   // Behind ED the components are the parts, so records' rays are paths of a picture of these components.
-  paths::LookupRoutes rays = paths::photon_routes(task.automaton, records.parts, k_tertiary);
+  paths::LookupRoutes rays = paths::photon_routes(task.automaton, records.parts, paths::k_tertiary_bit);
   rays.parts = records.parts;
   return rays;
 }
@@ -79,12 +74,12 @@ solvers::Routing routing(const Task& task) {
   return {.lookups = std::move(routes.picture),
           .fallback = task.enabled,
           .gather = std::move(routes.picture_gather),
-          .through = routes.elsewhere ? 1u << 2 : 0};
+          .through = routes.elsewhere ? paths::k_tertiary_bit : 0};
 }
 
 /// Texels brighter than this times the sky's mean are the sun, if records store sky light.
 float sun_threshold(const Task& task) {
-  if ((task.own & k_primary) == 0) return 0;
+  if ((task.own & paths::k_primary_bit) == 0) return 0;
   const uint32_t parts = paths::lookup_routes(task.automaton, task.enabled, task.own, true).parts;
   return (parts >> shared::k_part_direct & 1u) != 0 ? float(task.settings.real("cache.environment_threshold"))
                                                     : 0;

@@ -10,7 +10,7 @@ namespace lucerna::irradiance_cache {
 namespace {
 
 /// Options that affect the number of records, not their contents.
-const std::set<std::string> k_amounts{"cache.max_records", "cache.passes", "cache.stop", "cache.candidates",
+const std::set<std::string> k_amounts{"cache.max_records", "cache.passes", "cache.stop",
                                       "cache.irradiance_weight"};
 
 MadeWith current_provenance(const Cache& cache, const OptionValues& settings,

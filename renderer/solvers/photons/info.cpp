@@ -50,10 +50,6 @@ std::vector<OptionInfo> option_rows() {
                     "the path continues. records: for rays of the irradiance cache; all: for gathering paths "
                     "too. off: sums nearby photons, which is slow, and noisy where photons are sparse.",
                     "Irradiance map"),
-      integer_option("photons.nearest", 8, 2, 1024, "photons",
-                     "Photons: minimum number that determines a cell of the irradiance map; as many again "
-                     "determine its light. Smaller: finer cells, more noise.",
-                     "Photons per cell"),
       without_restart(choice_option(
           "overlay.photon_density", "off", {"off", "photons", "irradiance", "importance", "caustics"}, "",
           "Draws the density of the last round's photons or their irradiance: a heat map on surfaces, also "

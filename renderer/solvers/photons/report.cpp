@@ -194,7 +194,7 @@ Report make_report(const PhotonReport& r) {
        .note = "",
        .items = {OptionRow{"photons.per_round"}, OptionRow{"photons.radius"}, OptionRow{"photons.floor"},
                  OptionRow{"photons.alpha"}, OptionRow{"photons.borders"},
-                 OptionRow{"photons.irradiance_map"}, OptionRow{"photons.nearest"}, OptionRow{"photons.aim"},
+                 OptionRow{"photons.irradiance_map"}, OptionRow{"photons.aim"},
                  OptionRow{"photons.importons"}, OptionRow{"photons.efficiency"}}});
   report.sections.push_back(
       {.title = "Overlays",

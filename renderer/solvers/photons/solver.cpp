@@ -11,7 +11,8 @@
 namespace lucerna::photons {
 
 using namespace shared;
-using paths::k_caustic_part;
+using paths::k_secondary, paths::k_tertiary, paths::k_caustic;
+using paths::k_secondary_bit, paths::k_tertiary_bit, paths::k_caustic_bit, paths::k_caustic_part;
 using solvers::Picture, solvers::Task, solvers::Cancel;
 
 namespace {
@@ -27,6 +28,8 @@ constexpr float k_standing_photons = 30;
 /// Later maps have more, in proportion to the samples.
 constexpr uint32_t k_paths_for_records = 1u << 20, k_gather_paths_a_pixel = 2,
                    k_least_gather_paths = 1u << 17, k_most_gather_paths = 1u << 22;
+/// Minimum photons that determine an irradiance cell; as many again determine its light.
+constexpr uint32_t k_cell_photons = 8;
 /// Maximum size of irradiance cells, in discs that contain as many photons at typical lookups.
 constexpr float k_widest = 8;
 /// Maximum radius over half the smaller side of the picture for orthographic cameras; otherwise
@@ -43,8 +46,6 @@ uint32_t parts_of(const Task& task) {
   const bool focuses = e.specular || e.solid_glass || e.thin_glass;
   return routes_of(task).parts & (focuses ? ~0u : ~(1u << k_caustic_part));
 }
-
-constexpr uint8_t k_secondary = 1, k_tertiary = 2, k_caustic = 3;  // components
 
 /// True if another solver traces rays to prepare secondary light for lookups, and this solver computes
 /// tertiary light.
@@ -63,7 +64,7 @@ bool prepares_irradiance(const Task& task) {
 }
 
 /// True if all own light is read from it.
-bool gathers_alone(const Task& task) { return prepares_irradiance(task) && task.own == 1u << k_tertiary; }
+bool gathers_alone(const Task& task) { return prepares_irradiance(task) && task.own == k_tertiary_bit; }
 
 /// States of the eye path in which lookups contribute tertiary light and nothing else.
 uint64_t tertiary_states(const PhotonFrame& lookup) {
@@ -83,7 +84,7 @@ uint64_t tertiary_states(const PhotonFrame& lookup) {
 /// Lookups of light of these components that no eye path finds: at the first diffuse vertex, because paths
 /// continue for all other light.
 paths::LookupRoutes unreachable_routes(const Task& task, uint32_t components) {
-  constexpr uint32_t k_photon_components = 1u << k_secondary | 1u << k_tertiary | 1u << k_caustic;
+  constexpr uint32_t k_photon_components = k_secondary_bit | k_tertiary_bit | k_caustic_bit;
   paths::LookupRoutes routes = paths::photon_routes(
       task.automaton, task.enabled, task.enabled & k_photon_components, task.directly_visible_by_other);
   routes.parts = 0;
@@ -139,7 +140,7 @@ solvers::Routing PhotonSolver::routing_of(const Task& task) {
   // A gathering path that finds too few photons continues for the light it would have read; so do records'
   // rays.
   const bool goes_on = feeds(task) || prepares_irradiance(task);
-  const uint32_t others = task.own & ~(1u << k_tertiary);
+  const uint32_t others = task.own & ~k_tertiary_bit;
   return {.lookups = routes, .fallback = goes_on ? task.enabled & ~others : 0, .gather = {}};
 }
 
@@ -150,10 +151,9 @@ RadiusLaw PhotonSolver::radius_law(const OptionValues& settings) {
 }
 
 uint32_t PhotonSolver::delegable_components(const Task& task) {
-  constexpr uint32_t k_caustics = 1u << k_caustic;
   const bool computes =
-      (parts_of(task) >> k_caustic_part & 1u) != 0 && (task.directly_visible_by_other & k_caustics) == 0;
-  return computes && task.settings.boolean("photons.efficiency") ? task.own & k_caustics : 0;
+      (parts_of(task) >> k_caustic_part & 1u) != 0 && (task.directly_visible_by_other & k_caustic_bit) == 0;
+  return computes && task.settings.boolean("photons.efficiency") ? task.own & k_caustic_bit : 0;
 }
 
 PhotonSolver::PhotonSolver(gpu::Device& device, gpu::ShaderCompiler& compiler, const Task& task)
@@ -246,7 +246,7 @@ void PhotonSolver::route(const Task& task) {
   };
   here_routes_ = routes(delegated_), delegated_routes_ = routes(delegated_ | delegable_);
   // Paths that find no irradiance continue on their own, too.
-  const uint32_t by_paths = delegated_ | (gathers() && !feeds_ ? 1u << k_tertiary : 0);
+  const uint32_t by_paths = delegated_ | (gathers() && !feeds_ ? k_tertiary_bit : 0);
   const auto unreachable = [&](uint32_t components) {
     return unreachable_routes(task, unreachable_found_ ? components & task.own : 0);
   };
@@ -364,11 +364,10 @@ bool PhotonSolver::make_standing(transport::Wavefront& wavefront, const Picture&
     return true;
   }
   if (irradiance_->complete()) irradiance_->restart();
-  const auto nearest = uint32_t(s.integer("photons.nearest"));
   irradiance_->make(
       wavefront, *standing_, picture.flat,
-      {.nearest = nearest,
-       .widest = k_widest * standing_radius(picture, standing_->figures().paths, 2 * float(nearest)),
+      {.nearest = k_cell_photons,
+       .widest = k_widest * standing_radius(picture, standing_->figures().paths, 2 * float(k_cell_photons)),
        .states = tertiary_states(standing_->lookup()),
        // rounds do not serve records' rays, and continuing paths cannot find point lights in mirrors
        .gathers = feeds_ && hides_,
@@ -486,12 +485,6 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
 std::shared_ptr<const solvers::Report> PhotonSolver::report(const overlay::Canvas&, const Picture& picture,
                                                             bool) {
   return std::make_shared<const solvers::Report>(make_report(state(picture)));
-}
-
-void PhotonSolver::look_up_picture(const overlay::Canvas& canvas, const Picture&) {
-  if (sends_)
-    inspector_.look_up(
-        canvas, [this](gpu::Resources& r) { bind(r); }, k_density_of_photons);
 }
 
 nlohmann::ordered_json PhotonSolver::statistics(const overlay::Canvas& canvas, const Picture& picture) {

@@ -18,9 +18,9 @@ namespace lucerna::photons {
 const solvers::SolverType& type();
 
 /// Components (bits) behind a diffuse surface: secondary and tertiary.
-inline constexpr uint32_t k_deep = 1u << 1 | 1u << 2;
+inline constexpr uint32_t k_deep = paths::k_secondary_bit | paths::k_tertiary_bit;
 /// ... and primary: those that paths trace in drafts before there are photons.
-inline constexpr uint32_t k_drafted = 1u << 0 | k_deep;
+inline constexpr uint32_t k_drafted = paths::k_primary_bit | k_deep;
 
 class PhotonSolver final : public solvers::Solver,
                            public solvers::Kernels,
@@ -65,7 +65,6 @@ class PhotonSolver final : public solvers::Solver,
   std::shared_ptr<const solvers::Report> report(const overlay::Canvas& canvas,
                                                 const solvers::Picture& picture, bool sampled) override;
   nlohmann::ordered_json statistics(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
-  void look_up_picture(const overlay::Canvas& canvas, const solvers::Picture& picture) override;
   std::map<std::string, double> figures() const override;
 
   /// Samples that use the first irradiance map; each further map serves twice as many.

@@ -10,7 +10,6 @@ using solvers::Cancel, solvers::Picture, solvers::Task;
 
 namespace {
 
-constexpr uint32_t k_tertiary = 1u << 2;
 constexpr uint32_t k_trial_paths = 1u << 16, k_trial_round = 0xfffffd00u, k_trial_samples = 2;
 
 /// Components that may be delegated; first none. Not secondary light without tertiary: photons would have to
@@ -19,7 +18,7 @@ std::vector<uint32_t> ways(uint32_t own) {
   const uint32_t deep = own & k_deep;
   if (deep == 0) return {};
   std::vector<uint32_t> all{0, deep};
-  if (deep == k_deep) all.push_back(k_tertiary);
+  if (deep == k_deep) all.push_back(paths::k_tertiary_bit);
   return all;
 }
 
