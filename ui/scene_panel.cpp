@@ -10,12 +10,15 @@
 #include "commands/light_edit.h"
 #include "emitters.h"
 #include "panel_block.h"
+#include "scene/display_name.h"
 #include "scene/lamp.h"
 #include "state.h"
 #include "widgets.h"
 
 namespace lucerna::ui {
 namespace {
+
+using scene::display_name;
 
 /// A selectable row: mark, name (elided), a dim note at the right end. Returns true if it was pressed.
 bool list_row(const char* id, bool chosen, const std::string& name, const std::string& note, ImU32 mark,
@@ -43,9 +46,6 @@ bool list_row(const char* id, bool chosen, const std::string& name, const std::s
   return pressed;
 }
 
-std::string name_or(const std::string& name, const char* kind, size_t index) {
-  return name.empty() ? fmt::format("{} {}", kind, index + 1) : name;
-}
 /// A press on a row selects, or clears the selection.
 void choose(Ui& ui, bool chosen, const char* kind, size_t index) {
   ui.chosen_in_list = true;
@@ -79,10 +79,10 @@ void cameras(Ui& ui) {
   if (list.empty()) quiet_line("The scene has no camera");
   for (size_t i = 0; i < list.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
-    if (list_row("##camera", ui.scene_camera == static_cast<int>(i), name_or(list[i].name, "Camera", i),
+    if (list_row("##camera", ui.scene_camera == static_cast<int>(i), display_name(list[i].name, "Camera", i),
                  i < 9 ? fmt::format("{}", i + 1) : "", 0, 0))
       ui.act("camera.select", i + 1);
-    tooltip(fmt::format("{}: {}.{}", name_or(list[i].name, "Camera", i),
+    tooltip(fmt::format("{}: {}.{}", display_name(list[i].name, "Camera", i),
                         list[i].orthographic ? "orthographic" : "perspective",
                         i < 9 ? fmt::format(" Key {}.", i + 1) : ""));
     ImGui::PopID();
@@ -256,8 +256,9 @@ void light_rows(Ui& ui, bool reveal) {
     const scene::Light light = ui.light(index);
     ImGui::PushID(static_cast<int>(i));
     const bool chosen = ui.selection == Selection{Kind::light, index};
-    if (light_row(ui, chosen, reveal, name_or(light.name, "Light", i), kinds[static_cast<size_t>(light.kind)],
-                  tint_of(light.intensity), light.enabled, "light", i))
+    if (light_row(ui, chosen, reveal, display_name(light.name, "Light", i),
+                  kinds[static_cast<size_t>(light.kind)], tint_of(light.intensity), light.enabled, "light",
+                  i))
       ui.act("light.set", i + 1, named("on", !light.enabled));
     const bool sun = light.kind == scene::LightKind::directional;
     const Slider how = strength_slider(sun ? "W/m\xC2\xB2" : "W/sr");
@@ -278,7 +279,7 @@ void light_rows(Ui& ui, bool reveal) {
     ImGui::PushID(static_cast<int>(lights.size() + index));
     const bool chosen = ui.selection == Selection{Kind::material, index}, on = ui.emits(index);
     const vec3 tint = tint_of(ui.emission(index));
-    if (light_row(ui, chosen, false, name_or(m.name, "Material", index), "surface", tint, on, "material",
+    if (light_row(ui, chosen, false, display_name(m.name, "Material", index), "surface", tint, on, "material",
                   index))
       ui.act("material.set", index + 1, named("on", !on));
     emission_slider(ui, index);
@@ -399,11 +400,11 @@ void materials(Ui& ui, bool reveal) {
                        : m.transmission > 0                                 ? "glass"
                        : m.metallic > 0.5f && !m.metallic_roughness_texture ? "metal"
                                                                             : "";
-    if (list_row("##material", chosen, name_or(m.name, "Material", i), note,
+    if (list_row("##material", chosen, display_name(m.name, "Material", i), note,
                  display_colour(emits ? m.emission / strength_of(m.emission) : vec3(m.base_color)), 0))
       choose(ui, chosen, "material", index);
     tooltip(fmt::format("{}. Press to select the material; F frames its objects.",
-                        name_or(m.name, "Material", i)));
+                        display_name(m.name, "Material", i)));
     if (chosen) {
       ImGui::Indent(px(18));
       ImGui::PushItemWidth(ImGui::CalcItemWidth() - px(18));
@@ -429,7 +430,7 @@ void objects(Ui& ui, bool reveal) {
       const scene::Instance& instance = list[index];
       const bool chosen = ui.selection.kind == Kind::instance && ui.selection.index == index;
       ImGui::PushID(i);
-      if (list_row("##object", chosen, name_or(instance.name, "Object", index), "", 0, 0))
+      if (list_row("##object", chosen, display_name(instance.name, "Object", index), "", 0, 0))
         choose(ui, chosen, "object", index);
       tooltip("Press to select the object; F frames it.");
       ImGui::PopID();

@@ -16,12 +16,6 @@ constexpr uint32_t k_round = 0xfffffffeu;                  // differs from round
 constexpr float k_least_share = 1e-3f;                     // lower end of the ramp
 constexpr size_t k_most_lines = 256;
 
-/// The lamp's name in the window.
-std::string lamp_name(const upload::FlatScene& flat, uint32_t lamp) {
-  const bool named = lamp < flat.lamp_names.size() && !flat.lamp_names[lamp].empty();
-  return named ? flat.lamp_names[lamp] : fmt::format("Light {}", lamp + 1);
-}
-
 /// Position of an entry of the light table, or the direction of its light.
 void place(const upload::FlatScene& flat, uint32_t entry, AimedPair& pair) {
   const vec4* texels = flat.lights.data() + size_t{k_light_texels} * entry;
@@ -33,11 +27,11 @@ void place(const upload::FlatScene& flat, uint32_t entry, AimedPair& pair) {
     case k_light_point:
     case k_light_spot:
       pair.from = vec3(texels[0]);
-      pair.light = lamp_name(flat, flat.entries[entry].index);
+      pair.light = flat.lamp_name(flat.entries[entry].index);
       break;
     case k_light_directional:
       pair.along = vec3(texels[2]);
-      pair.light = lamp_name(flat, flat.entries[entry].index);
+      pair.light = flat.lamp_name(flat.entries[entry].index);
       break;
     default:
       pair.light = "environment";

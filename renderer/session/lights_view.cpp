@@ -76,9 +76,7 @@ std::string cluster_text(const upload::ClusterPlace& place, const upload::FlatSc
     return fmt::format("{} triangles{}", count_text(place.count), name.empty() ? "" : ", " + name);
   }
   if (place.count > 1) return fmt::format("{} lamps", count_text(place.count));
-  if (entry.index < flat.lamp_names.size() && !flat.lamp_names[entry.index].empty())
-    return flat.lamp_names[entry.index];
-  return entry.index == scene::k_none ? "lamp" : fmt::format("lamp {}", entry.index + 1);
+  return flat.lamp_name(entry.index);
 }
 
 bool LightsView::shown(const plan::Settings& settings) {

@@ -58,7 +58,7 @@ struct LightEntry {
 /// brightness: samples are divided by them.
 struct LightDistribution {
   std::vector<LightEntry> entries;         ///< entries of the light table; emissive triangles first
-  std::vector<std::string> lamp_names;     ///< by scene::Scene::lights, names in the scene; may be ""
+  std::vector<std::string> lamp_names;     ///< by scene::Scene::lights: scene::display_name()
   std::vector<vec4> light_alias;           ///< alias table of the entries
   std::vector<float> primitive_light_pmf;  ///< pmf / area [1/m^2]
   std::vector<vec4>
@@ -73,6 +73,8 @@ struct LightDistribution {
   /// textured triangles from 16 points of each.
   std::vector<double> light_power;
   double sky_power = 0;  ///< of an environment without an entry
+  /// Displayed name of a lamp; "lamp" for the dark entry of a scene without lights.
+  std::string lamp_name(uint32_t lamp) const { return lamp < lamp_names.size() ? lamp_names[lamp] : "lamp"; }
 };
 
 /// Emission of lights: flatten_emission().

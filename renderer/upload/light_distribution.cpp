@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "scene/display_name.h"
 #include "scene/lamp.h"
 #include "upload/alias_table.h"
 #include "upload/environment_map.h"
@@ -127,7 +128,8 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   const bool emissive = !choice.entries.empty();
   const double disk = double(k_pi) * flat.core_radius * flat.core_radius;
   add_lamps(scene, disk, choice);
-  for (const scene::Light& lamp : scene.lights) d.lamp_names.push_back(lamp.name);
+  for (size_t i = 0; i < scene.lights.size(); ++i)
+    d.lamp_names.push_back(scene::display_name(scene.lights[i].name, "Light", i));
   const bool lit = environment_shines(scene.environment);
   const bool separate_sun = lit && flat.sun_threshold > 0;
   double environment = 0, sun = 0;
