@@ -65,7 +65,6 @@ class Program {
   void add_small_verbs();
   void add_bench();
   void add_bench_rays();
-  void add_small_benches();
   void add_bench_latency();
   void add_bench_photons();
   void add_bench_interiors();
@@ -80,18 +79,13 @@ class Program {
   double scene_memory_ = double(scene::k_scene_bytes) / k_gib;
 
   CLI::App *render_ = nullptr, *info_ = nullptr, *devices_ = nullptr, *compare_ = nullptr, *bench_ = nullptr,
-           *rays_ = nullptr, *sort_ = nullptr, *lookup_ = nullptr, *interpolation_ = nullptr, *mix_ = nullptr,
-           *latency_ = nullptr, *photons_ = nullptr, *interiors_ = nullptr;
+           *rays_ = nullptr, *latency_ = nullptr, *photons_ = nullptr, *interiors_ = nullptr;
   RenderArguments r;
   std::string info_scene_;
   bool info_json_ = false, devices_json_ = false;
   CompareArguments c;
   BenchArguments bm;
   BenchRaysArguments b;
-  BenchSortArguments bs;
-  BenchMixArguments bx;
-  BenchLookupArguments bl;
-  BenchInterpolationArguments bi;
   BenchLatencyArguments bt;
   BenchPhotonsArguments bp;
   BenchInteriorsArguments bn;
@@ -106,7 +100,6 @@ Program::Program() {
   add_small_verbs();
   add_bench();
   add_bench_rays();
-  add_small_benches();
   add_bench_latency();
   add_bench_photons();
   add_bench_interiors();
@@ -254,58 +247,6 @@ void Program::add_bench_rays() {
   rays_->add_option("--device", b.device, k_device_help);
   rays_->add_flag("--json", b.json, "as JSON");
   add_scene_options(rays_);
-}
-
-void Program::add_small_benches() {
-  const auto measured = [](CLI::App* verb, auto& a, int least_repeats) {
-    verb->add_option("--repeats", a.repeats, "measurements of each figure")
-        ->check(CLI::Range(least_repeats, 1000))
-        ->capture_default_str();
-    verb->add_option("--json", a.json, "file to write the figures to")->check(named());
-    verb->add_option("--device", a.device, k_device_help);
-  };
-  const auto of_scene = [](CLI::App* verb, auto& a) {
-    verb->add_option("SCENE", a.scene, "glTF scene")->required();
-    verb->add_option("--width", a.width, "of the picture")
-        ->check(CLI::Range(16u, 4096u))
-        ->capture_default_str();
-    verb->add_option("--height", a.height, "its height")
-        ->check(CLI::Range(16u, 4096u))
-        ->capture_default_str();
-    verb->add_option("--samples", a.samples, "samples per pixel")
-        ->check(CLI::Range(1u, 1u << 20))
-        ->capture_default_str();
-    verb->add_option("--set", a.set, "KEY=VALUE, as of render")->allow_extra_args(false);
-  };
-  sort_ = bench_->add_subcommand(
-      "sort", "elements per second of prefix sum and radix sort on the device, and of the C++ library's");
-  sort_->add_option("--sizes", bs.sizes, "elements to sort")->check(CLI::Range(1u, 1u << 22));
-  sort_->add_option("--seed", bs.seed, "seed of the keys")->capture_default_str();
-  measured(sort_, bs, 5);
-  lookup_ = bench_->add_subcommand(
-      "lookup", "build and query times of the octree of spheres, compared with a plain grid");
-  lookup_->add_option("--sizes", bl.sizes, "spheres")->check(CLI::Range(1u, 1u << 22));
-  lookup_->add_option("--queries", bl.queries, "points to look up")
-      ->check(CLI::Range(1u, 1u << 22))
-      ->capture_default_str();
-  lookup_->add_option("--seed", bl.seed, "seed of spheres and points")->capture_default_str();
-  measured(lookup_, bl, 1);
-  interpolation_ = bench_->add_subcommand(
-      "interpolation",
-      "lookups per second in the solvers' prepared data of a scene, for each of their lookup methods");
-  of_scene(interpolation_, bi);
-  interpolation_->add_option("--reference", bi.reference, "converged EXR of the same picture: adds errors")
-      ->check(named());
-  measured(interpolation_, bi, 1);
-  add_scene_options(interpolation_);
-  mix_ = bench_->add_subcommand(
-      "mix", "time until another light mix of a scene is shown, and the cost of tracking light groups");
-  of_scene(mix_, bx);
-  measured(mix_, bx, 1);
-  mix_->add_option("--keep", bx.keep, "how groups are tracked, as relight.enabled: compact or on")
-      ->check(CLI::IsMember({"compact", "on"}))
-      ->capture_default_str();
-  add_scene_options(mix_);
 }
 
 void Program::add_bench_latency() {
@@ -466,19 +407,14 @@ int Program::run(int argc, char** argv) {
   }
   if (verbose_) log::set_console_level(log::Level::info);
   scenes_.most_bytes = uint64_t(scene_memory_ * k_gib);
-  r.scenes = b.scenes = bi.scenes = bx.scenes = bm.scenes = bt.load = bn.scenes = scenes_;
-  for (std::string* device : {&r.device, &b.device, &bs.device, &bl.device, &bi.device, &bx.device,
-                              &bm.device, &bt.device, &bp.options.device, &bn.device})
+  r.scenes = b.scenes = bm.scenes = bt.load = bn.scenes = scenes_;
+  for (std::string* device : {&r.device, &b.device, &bm.device, &bt.device, &bp.options.device, &bn.device})
     if (device->empty()) *device = device_;
   if (*render_) return render(r);
   if (*info_) return info(info_scene_, info_json_, scenes_);
   if (*devices_) return devices(devices_json_);
   if (*compare_) return compare(c);
   if (*rays_) return bench_rays(b);
-  if (*sort_) return bench_sort(bs);
-  if (*lookup_) return bench_lookup(bl);
-  if (*interpolation_) return bench_interpolation(bi);
-  if (*mix_) return bench_mix(bx);
   if (*latency_) return bench_latency(bt);
   const auto typed = [&] {
     std::string line;

@@ -43,46 +43,6 @@ struct BenchRaysArguments {
 };
 int bench_rays(const BenchRaysArguments& arguments);
 
-struct BenchSortArguments {
-  std::string device;
-  std::vector<uint32_t> sizes{1 << 10, 1 << 14, 1 << 17, 1 << 20, 1 << 22};
-  int repeats = 7;
-  uint32_t seed = 1;
-  std::string json;  ///< file to write the figures to; empty: none
-};
-int bench_sort(const BenchSortArguments& arguments);
-
-struct BenchLookupArguments {
-  std::string device;
-  std::vector<uint32_t> sizes{10000, 100000, 1000000};
-  uint32_t queries = 1 << 18, seed = 1;
-  int repeats = 5;
-  std::string json;  ///< file to write the figures to; empty: none
-};
-int bench_lookup(const BenchLookupArguments& arguments);
-
-struct BenchInterpolationArguments {
-  std::string device, scene;
-  uint32_t width = 256, height = 256, samples = 1;
-  std::string reference;  ///< converged EXR of the same picture; empty: no errors
-  std::vector<std::string> set;
-  int repeats = 7;
-  std::string json;  ///< file to write the figures to; empty: none
-  scene::LoadOptions scenes;
-};
-int bench_interpolation(const BenchInterpolationArguments& arguments);
-
-struct BenchMixArguments {
-  std::string device, scene;
-  uint32_t width = 960, height = 540, samples = 16;
-  std::vector<std::string> set;
-  std::string keep = "compact";  ///< relight.enabled: compact or on
-  int repeats = 5;
-  std::string json;  ///< file to write the figures to; empty: none
-  scene::LoadOptions scenes;
-};
-int bench_mix(const BenchMixArguments& arguments);
-
 struct BenchLatencyArguments {
   std::vector<std::string> scenes;          ///< files, or names of the program's own
   std::vector<std::string> solvers, edits;  ///< empty: all

@@ -245,8 +245,6 @@ class Renderer {
   }
   /// Statistics of the solvers by name, for --stats.
   nlohmann::ordered_json solver_statistics();
-  /// Looks up the solvers' light at every sampled pixel and discards it, for timing.
-  void look_up_picture();
   /// Session::inspect; shown in later pictures.
   void inspect(std::optional<vec2> at);
 

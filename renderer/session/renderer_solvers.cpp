@@ -99,12 +99,6 @@ nlohmann::ordered_json Renderer::solver_statistics() {
   return all;
 }
 
-void Renderer::look_up_picture() {
-  visit_solvers([](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
-    if (auto* views = solvers::offered<solvers::Views>(solver)) views->look_up_picture(canvas, picture);
-  });
-}
-
 solvers::Provenance Renderer::provenance() const {
   const scene::LightHash hash = scene::light_hash(*world_.lit);
   return {.scene = world_.scene->name,

@@ -152,10 +152,6 @@ class Views {
   virtual void look_at(std::optional<vec2> place) { (void)place; }
   /// Draws the overlays chosen in the settings over the film's picture. The stream has been submitted.
   virtual void draw(const overlay::Canvas& canvas, const Picture& picture) = 0;
-  /// Looks light up at every sampled pixel and discards it, for timing.
-  virtual void look_up_picture(const overlay::Canvas& canvas, const Picture& picture) {
-    (void)canvas, (void)picture;
-  }
 };
 
 class Statistics {

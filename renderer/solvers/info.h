@@ -78,12 +78,6 @@ struct BenchInfo {
   std::string matrix;  ///< JSON
 };
 
-/// Settings of a lookup method that `lucerna bench interpolation` times.
-struct LookupWay {
-  std::string name;
-  std::map<std::string, std::string> set;  ///< settings
-};
-
 struct SolverInfo {
   std::string name;                         ///< value of components.secondary = NAME; prefix of its options
   std::string label;                        ///< panel title: "Cache"
@@ -118,7 +112,6 @@ struct SolverInfo {
   std::vector<std::string> against_noise{}, against_bias{};
   /// Further settings (JSON objects as in a matrix) that `lucerna bench --full` measures.
   std::vector<std::string> bench_settings{};
-  std::vector<LookupWay> lookup_ways{};
 
   bool has_panel() const { return !options.empty() || !views.empty() || !commands.empty(); }
 };

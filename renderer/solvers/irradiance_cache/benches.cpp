@@ -105,13 +105,4 @@ std::vector<std::string> bench_settings() {
   };
 }
 
-/// With and without removal of overlapping records.
-std::vector<solvers::LookupWay> lookup_ways() {
-  const std::map<std::string, std::string> looked_up{{"components.secondary", "cache"},
-                                                     {"components.tertiary", "cache"}};
-  solvers::LookupWay placed{"as they were placed", looked_up}, thinned{"thinned", looked_up};
-  placed.set["cache.thinning"] = "0";
-  return {placed, thinned};
-}
-
 }  // namespace lucerna::irradiance_cache

@@ -87,7 +87,6 @@ const solvers::SolverInfo& info() {
       .against_noise = {"cache.rays", "cache.noise"},
       .against_bias = {"cache.error"},
       .bench_settings = bench_settings(),
-      .lookup_ways = lookup_ways(),
   };
   return all;
 }

@@ -7,6 +7,5 @@ namespace lucerna::irradiance_cache {
 std::vector<OptionInfo> option_rows();
 std::vector<solvers::BenchInfo> bench_rows();
 std::vector<std::string> bench_settings();
-std::vector<solvers::LookupWay> lookup_ways();
 
 }  // namespace lucerna::irradiance_cache

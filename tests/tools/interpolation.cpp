@@ -1,31 +1,49 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "app/bench_timing.h"
-#include "app/verbs.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_text.h"
 #include "session/renderer.h"
+#include "solvers/irradiance_cache/solver.h"
+#include "tools/timing.h"
+#include "tools/tools.h"
 
-namespace lucerna::app {
+namespace lucerna::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Settings of the irradiance cache whose lookups are timed.
+struct Way {
+  std::string name, thinning;  ///< cache.thinning
+};
+
+/// With and without removal of overlapping records.
+const std::array<Way, 2> k_ways{{{"as they were placed", "0"}, {"thinned", "0.6"}}};
+
+/// Looks light up in the cache at every sampled pixel and discards it.
+void look_up_picture(session::Renderer& r) {
+  r.visit_solvers(
+      [](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
+        if (auto* cached = dynamic_cast<irradiance_cache::CacheSolver*>(&solver))
+          cached->look_up_picture(canvas, picture);
+      });
+}
+
 struct Candidate {
-  const solvers::SolverInfo& solver;
-  const solvers::LookupWay& way;
+  const Way& way;
   std::unique_ptr<session::Renderer> renderer;
   Timed timed;
 };
 
 Json figures(const Candidate& c, const Timing& t) {
   session::Renderer& r = *c.renderer;
-  const Json statistics = r.solver_statistics().at(c.solver.name), &overlap = statistics.at("overlap");
+  const Json statistics = r.solver_statistics().at("cache"), &overlap = statistics.at("overlap");
   Json j{{"way", c.way.name},
          {"records", statistics.at("records")},
          {"rays", statistics.at("rays")},
@@ -41,27 +59,28 @@ Json figures(const Candidate& c, const Timing& t) {
 
 }  // namespace
 
-int bench_interpolation(const BenchInterpolationArguments& a) {
+int measure_interpolation(const InterpolationArguments& a) {
   std::vector<Candidate> candidates;
   std::vector<session::SettingChange> own{{"samples", std::to_string(a.samples), "--samples"}};
   for (const std::string& text : a.set) {
     const auto [key, value] = split_change(text, "--set");
     own.push_back({key, value, "--set"});
   }
-  for (const solvers::SolverInfo* solver : solvers::registered())
-    for (const solvers::LookupWay& way : solver->lookup_ways) {
-      auto r = std::make_unique<session::Renderer>(session::RendererOptions{
-          .device = a.device, .validation = false, .shaders = {}, .defines = {}, .scenes = a.scenes});
-      r->set_size(a.width, a.height);
-      std::vector<session::SettingChange> changes = own;
-      for (const auto& [key, value] : way.set) changes.push_back({key, value, way.name});
-      r->load(a.scene, {}, changes);
-      if (!a.reference.empty()) r->set_reference(a.reference);
-      while (!r->done() && r->step()) {
-      }
-      session::Renderer* const renderer = r.get();
-      candidates.push_back({*solver, way, std::move(r), {{}, [renderer] { renderer->look_up_picture(); }}});
+  for (const Way& way : k_ways) {
+    auto r = std::make_unique<session::Renderer>(session::RendererOptions{
+        .device = a.device, .validation = false, .shaders = {}, .defines = {}, .scenes = a.scenes});
+    r->set_size(a.width, a.height);
+    std::vector<session::SettingChange> changes = own;
+    changes.push_back({"components.secondary", "cache", way.name});
+    changes.push_back({"components.tertiary", "cache", way.name});
+    changes.push_back({"cache.thinning", way.thinning, way.name});
+    r->load(a.scene, {}, changes);
+    if (!a.reference.empty()) r->set_reference(a.reference);
+    while (!r->done() && r->step()) {
     }
+    session::Renderer* const renderer = r.get();
+    candidates.push_back({way, std::move(r), {{}, [renderer] { look_up_picture(*renderer); }}});
+  }
   std::vector<Timed> timed;
   for (const Candidate& c : candidates) timed.push_back(c.timed);
   const std::vector<Timing> times = take_turns(timed, a.repeats);
@@ -94,4 +113,4 @@ int bench_interpolation(const BenchInterpolationArguments& a) {
   return 0;
 }
 
-}  // namespace lucerna::app
+}  // namespace lucerna::tools

@@ -7,21 +7,21 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "app/bench_timing.h"
-#include "app/verbs.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_text.h"
 #include "base/timer.h"
 #include "session/renderer.h"
 #include "session/session.h"
+#include "tools/timing.h"
+#include "tools/tools.h"
 
-namespace lucerna::app {
+namespace lucerna::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::unique_ptr<session::Renderer> load(const BenchMixArguments& a, const std::string& enabled) {
+std::unique_ptr<session::Renderer> load(const MixArguments& a, const std::string& enabled) {
   auto r = std::make_unique<session::Renderer>(session::RendererOptions{.device = a.device,
                                                                         .validation = false,
                                                                         .shaders = {},
@@ -74,7 +74,7 @@ Timing drag_session(session::Session& s, const std::vector<std::string>& groups,
 }
 
 /// A session that renders the scene, with samples in all pixels.
-std::unique_ptr<session::Session> start_session(const BenchMixArguments& a) {
+std::unique_ptr<session::Session> start_session(const MixArguments& a) {
   auto s = std::make_unique<session::Session>(
       session::Options{.device = a.device, .validation = false, .shaders = {}, .scenes = a.scenes});
   s->set_size(a.width, a.height);
@@ -101,7 +101,7 @@ void finish(session::Renderer& r) {
 
 }  // namespace
 
-int bench_mix(const BenchMixArguments& a) {
+int measure_mix(const MixArguments& a) {
   const auto separate = load(a, a.keep), together = load(a, "off");
   if (!separate->relight().separate)
     throw_error(a.scene, "its light groups cannot be tracked: {}", separate->relight().why_not);
@@ -179,4 +179,4 @@ int bench_mix(const BenchMixArguments& a) {
   return 0;
 }
 
-}  // namespace lucerna::app
+}  // namespace lucerna::tools

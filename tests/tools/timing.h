@@ -1,5 +1,5 @@
 #pragma once
-// Repeated timings for the benches of single kernels.
+// Repeated timings of single parts.
 #include <algorithm>
 #include <functional>
 #include <string>
@@ -7,7 +7,7 @@
 
 #include "base/timer.h"
 
-namespace lucerna::app {
+namespace lucerna::tools {
 
 /// Seconds of several repeats.
 struct Timing {
@@ -43,4 +43,4 @@ inline std::vector<Timing> take_turns(const std::vector<Timed>& candidates, int 
   return timings;
 }
 
-}  // namespace lucerna::app
+}  // namespace lucerna::tools

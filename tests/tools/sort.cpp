@@ -5,14 +5,14 @@
 #include <numeric>
 #include <random>
 
-#include "app/bench_timing.h"
-#include "app/verbs.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_text.h"
 #include "sort/radix_sort.h"
+#include "tools/timing.h"
+#include "tools/tools.h"
 
-namespace lucerna::app {
+namespace lucerna::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -56,7 +56,7 @@ struct Bench {
                 stream.run();
               }}});
     if (out.read_all<uint32_t>()[size - 1] != host[size - 1])
-      throw Error("bench sort", "device and host disagree on a prefix sum");
+      throw Error("sort", "device and host disagree on a prefix sum");
   }
 
   template <class Entry, class Key>
@@ -89,7 +89,7 @@ struct Bench {
               }}});
     const auto got = result->read_all<Entry>();
     for (uint32_t i = 0; i < size; ++i)
-      if (got[i].value != stable[i].value) throw Error("bench sort", "device and host disagree on a sort");
+      if (got[i].value != stable[i].value) throw Error("sort", "device and host disagree on a sort");
   }
 };
 
@@ -110,7 +110,7 @@ std::string to_text(const std::vector<Row>& rows, const std::string& device, int
 
 }  // namespace
 
-int bench_sort(const BenchSortArguments& a) {
+int measure_sort(const SortArguments& a) {
   gpu::Device device({a.device, false});
   gpu::ShaderCompiler compiler;
   gpu::Stream stream(device);
@@ -138,4 +138,4 @@ int bench_sort(const BenchSortArguments& a) {
   return 0;
 }
 
-}  // namespace lucerna::app
+}  // namespace lucerna::tools

@@ -6,15 +6,15 @@
 #include <nlohmann/json.hpp>
 #include <random>
 
-#include "app/bench_timing.h"
-#include "app/verbs.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "base/json_text.h"
 #include "base/math.h"
 #include "solvers/lookup/octree.h"
+#include "tools/timing.h"
+#include "tools/tools.h"
 
-namespace lucerna::app {
+namespace lucerna::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -98,7 +98,7 @@ struct Candidate {
                 .leaf_scale = scale,
                 .copies = way.copies,
                 .single_reference = way.single}),
-        gather(device, compiler, "bench/gather.comp",
+        gather(device, compiler, LUCERNA_SOURCE_DIR "/tests/tools/gather.comp",
                {{"LUCERNA_NEIGHBOURS", std::to_string(way.neighbours)},
                 {"LUCERNA_COPIES", way.copies ? "1" : "0"}}) {}
   std::string name;
@@ -110,7 +110,7 @@ struct Candidate {
 
 class Bench {
  public:
-  Bench(gpu::Device& device, const BenchLookupArguments& a) : device_(device), stream_(device), a_(a) {}
+  Bench(gpu::Device& device, const LookupArguments& a) : device_(device), stream_(device), a_(a) {}
 
   void run(const std::string& kind, uint32_t n) {
     std::mt19937 random(a_.seed);
@@ -172,7 +172,7 @@ class Bench {
     std::printf("%s", to_text(rows).c_str());
     std::fflush(stdout);
     for (const Row& row : rows)
-      if (!row.same) throw Error("bench lookup", row.way + " disagrees with the octree");
+      if (!row.same) throw Error("lookup", row.way + " disagrees with the octree");
   }
 
   Json to_json() const {
@@ -231,13 +231,13 @@ class Bench {
   gpu::Device& device_;
   gpu::ShaderCompiler compiler_;
   gpu::Stream stream_;
-  const BenchLookupArguments& a_;
+  const LookupArguments& a_;
   std::vector<Row> rows_;
 };
 
 }  // namespace
 
-int bench_lookup(const BenchLookupArguments& a) {
+int measure_lookup(const LookupArguments& a) {
   gpu::Device device({a.device, false});
   std::printf("%u queries, median of %d (range), on %s\n", a.queries, a.repeats, device.info().name.c_str());
   Bench bench(device, a);
@@ -247,4 +247,4 @@ int bench_lookup(const BenchLookupArguments& a) {
   return 0;
 }
 
-}  // namespace lucerna::app
+}  // namespace lucerna::tools
