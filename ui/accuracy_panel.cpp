@@ -335,7 +335,7 @@ void line_names(const Ui& ui, const Accuracy& a, const ImVec2& lo, float right) 
 }
 
 void body(Ui& ui, const Area& area, const Accuracy& a) {
-  const double seconds = ui.snapshot->seconds;
+  const double seconds = ui.open.snapshot->seconds;
   const double target = ui.target();
   const std::optional<stats::Band> band = ui.forecast();
   const PlotRange range =
@@ -409,30 +409,30 @@ void draw_early(ImDrawList* list, const Area& inside, const session::Snapshot& s
 }  // namespace
 
 double Ui::target() const {
-  const bool adaptive = setting("sampling.mode") == "adaptive";
-  return adaptive ? setting_real("sampling.target_error") : what_if;
+  const bool adaptive = open.setting("sampling.mode") == "adaptive";
+  return adaptive ? open.setting_real("sampling.target_error") : what_if;
 }
 
 std::optional<stats::Band> Ui::forecast() {
-  if (!snapshot || !snapshot->accuracy) return std::nullopt;
-  const Accuracy& a = *snapshot->accuracy;
+  if (!open.snapshot || !open.snapshot->accuracy) return std::nullopt;
+  const Accuracy& a = *open.snapshot->accuracy;
   const double wanted = target();
   if (a.adaptive && wanted == a.target) return a.forecast;
-  if (forecast_.of != snapshot->accuracy || forecast_.target != wanted)
-    forecast_ = {snapshot->accuracy, wanted, session::seconds_to(a, wanted)};
+  if (forecast_.of != open.snapshot->accuracy || forecast_.target != wanted)
+    forecast_ = {open.snapshot->accuracy, wanted, session::seconds_to(a, wanted)};
   return forecast_.band;
 }
 
 void draw_accuracy(Ui& ui, const Area& area) {
   begin_panel("##accuracy", area, colour::panel, false);
   const float left = panel_heading("ACCURACY", area);
-  const Accuracy* a = ui.snapshot ? ui.snapshot->accuracy.get() : nullptr;
+  const Accuracy* a = ui.open.snapshot ? ui.open.snapshot->accuracy.get() : nullptr;
   ImDrawList* list = ImGui::GetWindowDrawList();
-  if (a && ui.scene) {
+  if (a && ui.open.scene) {
     const float right = area.hi.x - px(16), room = right - left - px(16);
-    std::vector<std::string> texts = target_texts(*a, ui.target(), ui.forecast(), ui.snapshot->seconds);
+    std::vector<std::string> texts = target_texts(*a, ui.target(), ui.forecast(), ui.open.snapshot->seconds);
     // The displayed picture's error first, if there is room for both.
-    if (const std::vector<std::string> shown = shown_texts(*ui.snapshot); !shown.empty())
+    if (const std::vector<std::string> shown = shown_texts(*ui.open.snapshot); !shown.empty())
       texts.insert(texts.begin(), fmt::format("Displayed: {}  ·  samples: {}", shown.front(), texts.front()));
     for (const std::string& text : texts) {
       if (text_width(text, theme().fonts.small) > room) continue;
@@ -443,10 +443,10 @@ void draw_accuracy(Ui& ui, const Area& area) {
   }
   if (ui.shown.bottom_open) {
     const Area inside{{area.lo.x, area.lo.y + px(k_folded_bottom)}, area.hi};
-    if (a && ui.scene && !a->ledger.entries().empty())
+    if (a && ui.open.scene && !a->ledger.entries().empty())
       body(ui, inside, *a);
-    else if (ui.snapshot && ui.scene)
-      draw_early(list, inside, *ui.snapshot, ui.target());
+    else if (ui.open.snapshot && ui.open.scene)
+      draw_early(list, inside, *ui.open.snapshot, ui.target());
   }
   ImGui::End();
 }

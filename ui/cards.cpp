@@ -17,9 +17,9 @@ namespace {
 void draw_note(Ui& ui, const Area& area, const Area& legend) {
   if (ui.note.text.empty()) return;
   // Above the other cards at the bottom.
-  const bool beside =
-      (ui.snapshot && (!ui.snapshot->activity.empty() || !paused_text(*ui.snapshot).empty())) ||
-      ui.busy_seconds() > 0;
+  const bool beside = (ui.open.snapshot &&
+                       (!ui.open.snapshot->activity.empty() || !paused_text(*ui.open.snapshot).empty())) ||
+                      ui.busy_seconds() > 0;
   const float w = std::min(text_width(ui.note.text) + px(32), area.width() - px(24));
   const std::vector<std::string> lines = wrapped(ui.note.text, w - px(24));
   const float line = px(20), h = line * static_cast<float>(lines.size()) + px(12);
@@ -77,7 +77,7 @@ void welcome_card(Ui& ui, const Area& area) {
 /// right.
 void busy_card(Ui& ui, const Area& area) {
   const double seconds = ui.busy_seconds();
-  if (seconds <= 0 || (ui.snapshot && !ui.snapshot->activity.empty())) return;
+  if (seconds <= 0 || (ui.open.snapshot && !ui.open.snapshot->activity.empty())) return;
   const float w = std::min(px(320), area.width() - px(24)), h = px(44);
   // On the right: legends are on the left.
   const ImVec2 lo(area.hi.x - w - px(12), area.hi.y - h - px(12)), hi(lo.x + w, lo.y + h);
@@ -101,7 +101,7 @@ void busy_card(Ui& ui, const Area& area) {
 
 /// Says at the lower right that rendering is paused, while the picture has no light of the present state.
 void paused_card(Ui& ui, const Area& area) {
-  const std::string text = ui.snapshot ? paused_text(*ui.snapshot) : "";
+  const std::string text = ui.open.snapshot ? paused_text(*ui.open.snapshot) : "";
   if (text.empty() || ui.busy_seconds() > 0) return;
   const float w = std::min(text_width(text) + px(24), area.width() - px(24)), h = px(32);
   const ImVec2 hi(area.hi.x - px(12), area.hi.y - px(12)), lo(hi.x - w, hi.y - h);
@@ -110,17 +110,17 @@ void paused_card(Ui& ui, const Area& area) {
 
 /// The current activity, at the lower left, with a Cancel button.
 void activity_card(Ui& ui, const Area& area) {
-  if (!ui.snapshot || ui.snapshot->activity.empty()) return;
-  const bool cancels = ui.loading();
+  if (!ui.open.snapshot || ui.open.snapshot->activity.empty()) return;
+  const bool cancels = ui.open.loading();
   const float w = std::min(px(360), area.width() - px(24)), h = px(cancels ? 60.0f : 36.0f);
-  const bool empty = ui.snapshot->rgba.empty();
+  const bool empty = ui.open.snapshot->rgba.empty();
   const ImVec2 lo(empty ? std::floor(0.5f * (area.lo.x + area.hi.x - w)) : area.lo.x + px(12),
                   empty ? std::floor(area.lo.y + 0.42f * area.height()) : area.hi.y - h - px(12));
   const ImVec2 hi(lo.x + w, lo.y + h);
   ImDrawList* list = card(lo, hi);
   const float text_right = hi.x - px(cancels ? 96.0f : 12.0f);
   draw_text(list, {lo.x + px(12), lo.y}, {text_right, lo.y + px(cancels ? 44.0f : 36.0f)},
-            elided(ui.snapshot->activity, text_right - lo.x - px(12)), colour::text);
+            elided(ui.open.snapshot->activity, text_right - lo.x - px(12)), colour::text);
   if (!cancels) return;
   ImGui::SetCursorScreenPos({hi.x - px(84), lo.y + px(10)});
   if (button("##cancel", "Cancel", false, px(72))) ui.act("scene.cancel");
@@ -129,7 +129,7 @@ void activity_card(Ui& ui, const Area& area) {
   list->AddRectFilled({track_lo, y}, {track_hi, y + px(3)}, colour::field, px(1));
   list->AddRectFilled(
       {track_lo, y},
-      {track_lo + (track_hi - track_lo) * std::clamp(ui.snapshot->progress, 0.0f, 1.0f), y + px(3)},
+      {track_lo + (track_hi - track_lo) * std::clamp(ui.open.snapshot->progress, 0.0f, 1.0f), y + px(3)},
       colour::accent, px(1));
 }
 
@@ -162,7 +162,7 @@ void error_strip(Ui& ui, const Area& area) {
 }  // namespace
 
 void draw_empty_state(Ui& ui, const Area& area) {
-  if (ui.snapshot && !ui.snapshot->activity.empty()) return;
+  if (ui.open.snapshot && !ui.open.snapshot->activity.empty()) return;
   ImDrawList* list = ImGui::GetWindowDrawList();
   const float x = 0.5f * (area.lo.x + area.hi.x), y = std::floor(area.lo.y + 0.42f * area.height());
   draw_text(list, {area.lo.x, y - px(16)}, {area.hi.x, y + px(16)}, "Drop a scene here", colour::text,

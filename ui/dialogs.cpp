@@ -169,7 +169,7 @@ namespace {
 void solver_keys(Ui& ui) {
   std::vector<const solvers::SolverInfo*> used;
   for (const solvers::SolverInfo* solver : solvers::registered())
-    if (ui.uses(*solver)) used.insert(ui.side == solver->name ? used.begin() : used.end(), solver);
+    if (ui.open.uses(*solver)) used.insert(ui.side == solver->name ? used.begin() : used.end(), solver);
   std::set<char> taken;
   const auto pressed = [&](char shortcut) {  // a letter is GLFW's name of its key
     return shortcut && ui.pressed(shortcut) && taken.insert(shortcut).second;
@@ -180,10 +180,10 @@ void solver_keys(Ui& ui) {
     for (const solvers::CommandInfo& command : solver->commands)
       if (pressed(command.shortcut)) ui.act(solver->name + "." + command.name);
   }
-  if (!ui.scene) return;
+  if (!ui.open.scene) return;
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const solvers::ViewInfo& view : solver->views)
-      if (!ui.uses(*solver) && pressed(view.shortcut))
+      if (!ui.open.uses(*solver) && pressed(view.shortcut))
         ui.notice(fmt::format("{}: no component is computed by {}. Choose it in the Light panel.", view.label,
                               solver->title));
 }
@@ -204,7 +204,7 @@ void handle_keys(Ui& ui) {
   for (const auto& [key, mods] : ui.keys)
     if (key == GLFW_KEY_Z && mods & GLFW_MOD_CONTROL) {
       const bool again = mods & GLFW_MOD_SHIFT;
-      if (again ? ui.can_redo() : ui.can_undo()) ui.act(again ? "redo" : "undo");
+      if (again ? ui.history.can_redo() : ui.history.can_undo()) ui.act(again ? "redo" : "undo");
     }
   if (ui.pressed(GLFW_KEY_F1)) ui.act("window.keys");
   if (ui.pressed(GLFW_KEY_TAB)) ui.act("window.panels", !ui.layout.panels), ui.wake(3);
@@ -213,28 +213,29 @@ void handle_keys(Ui& ui) {
       ui.welcome = false;
     else if (ui.dropper)
       ui.act("exposure.dropper", false);
-    else if (ui.loading())
+    else if (ui.open.loading())
       ui.act("scene.cancel");
     else if (!ui.errors.empty())
       ui.act("dismiss");
-    else if (ui.selection.kind != Kind::none)
+    else if (ui.camera.selection.kind != Kind::none)
       ui.act("select.none");
   }
-  if (!ui.snapshot) return;
-  if (ui.pressed(GLFW_KEY_F) && ui.view) ui.act("camera.frame");
-  if (ui.pressed(GLFW_KEY_H) && ui.view) ui.act("camera.walking", !ui.walking);
-  if (ui.pressed(GLFW_KEY_B, GLFW_MOD_CONTROL) && ui.view) keep_view(ui);
-  if (ui.pressed(GLFW_KEY_B) && ui.view) ui.act("exposure.dropper", !ui.dropper);
+  if (!ui.open.snapshot) return;
+  if (ui.pressed(GLFW_KEY_F) && ui.camera.view) ui.act("camera.frame");
+  if (ui.pressed(GLFW_KEY_H) && ui.camera.view) ui.act("camera.walking", !ui.camera.walking);
+  if (ui.pressed(GLFW_KEY_B, GLFW_MOD_CONTROL) && ui.camera.view) keep_view(ui);
+  if (ui.pressed(GLFW_KEY_B) && ui.camera.view) ui.act("exposure.dropper", !ui.dropper);
   if (ui.pressed(GLFW_KEY_R)) ui.act("render.restart");
   if (ui.pressed(GLFW_KEY_L)) ui.act("view.lamps", !ui.light_marks);
   if (ui.pressed(GLFW_KEY_T)) ui.toggle("overlay.tiles");
   if (ui.pressed(GLFW_KEY_U))
-    ui.act("set", "preview.filter", ui.setting("preview.filter") == "off" ? "auto" : "off");
+    ui.act("set", "preview.filter", ui.open.setting("preview.filter") == "off" ? "auto" : "off");
   solver_keys(ui);
   if (ui.pressed(GLFW_KEY_K)) ui.act("window.side", ui.next_side());
-  if (ui.pressed(GLFW_KEY_SPACE)) ui.act(ui.snapshot->paused ? "render.resume" : "render.pause");
+  if (ui.pressed(GLFW_KEY_SPACE)) ui.act(ui.open.snapshot->paused ? "render.resume" : "render.pause");
   for (int n = 0; n < 9; ++n)
-    if (ui.pressed(GLFW_KEY_1 + n) && ui.scene && n < static_cast<int>(ui.scene->cameras.size()) && ui.view)
+    if (ui.pressed(GLFW_KEY_1 + n) && ui.open.scene && n < static_cast<int>(ui.open.scene->cameras.size()) &&
+        ui.camera.view)
       ui.act("camera.select", n + 1);
 }
 

@@ -36,11 +36,12 @@ const std::vector<uint32_t>& emitters(const Ui& ui) {
   static uint64_t of = 0;
   static std::vector<bool> used;
   static std::vector<uint32_t> list;
-  if (of != ui.view_scene || used.size() != ui.scene->materials.size())
-    used = used_materials(*ui.scene), of = ui.view_scene;
+  if (of != ui.camera.view_scene || used.size() != ui.open.scene->materials.size())
+    used = used_materials(*ui.open.scene), of = ui.camera.view_scene;
   list.clear();
   for (uint32_t i = 0; i < used.size(); ++i)
-    if (used[i] && strength_of(ui.emission(i)) > 0 && !ui.scene->materials[i].unlit) list.push_back(i);
+    if (used[i] && strength_of(ui.open.emission(i)) > 0 && !ui.open.scene->materials[i].unlit)
+      list.push_back(i);
   return list;
 }
 
@@ -49,12 +50,12 @@ const std::vector<EmittingSurface>& emitting_surfaces(const Ui& ui) {
   static std::vector<uint32_t> materials;
   static std::vector<EmittingSurface> list;
   const std::vector<uint32_t>& now = emitters(ui);
-  if (of == ui.view_scene && materials == now) return list;
-  of = ui.view_scene, materials = now;
+  if (of == ui.camera.view_scene && materials == now) return list;
+  of = ui.camera.view_scene, materials = now;
   list.clear();
-  for (const scene::Instance& instance : ui.scene->instances) {
-    if (instance.mesh >= ui.scene->meshes.size()) continue;
-    for (const scene::Primitive& p : ui.scene->meshes[instance.mesh].primitives)
+  for (const scene::Instance& instance : ui.open.scene->instances) {
+    if (instance.mesh >= ui.open.scene->meshes.size()) continue;
+    for (const scene::Primitive& p : ui.open.scene->meshes[instance.mesh].primitives)
       if (std::binary_search(now.begin(), now.end(), p.material)) {
         const EmittingSurface surface = measured(p, instance.to_world);
         if (surface.area > 0) list.push_back(surface);

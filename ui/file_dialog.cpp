@@ -174,8 +174,8 @@ void places(Ui& ui, Dialog& dialog, std::string& chosen) {
   const char* home = std::getenv("HOME");
   place("##home", "Home", home ? home : "");
   place("##working", "Working folder", fs::current_path(error));
-  if (ui.scene && !ui.scene->file.empty())
-    place("##of_scene", "The scene's folder", folder_of(ui.scene->file));
+  if (ui.open.scene && !ui.open.scene->file.empty())
+    place("##of_scene", "The scene's folder", folder_of(ui.open.scene->file));
   place("##root", "Computer", "/");
   if (!opens || ui.recent.empty()) return;
   gap(6);
@@ -374,19 +374,20 @@ void Ui::start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver
   std::error_code error;
   if (purpose == Dialog::Purpose::open) {
     // The program's scenes are shown while no other scene is open.
-    const fs::path here = scene && !scene->file.empty() ? folder_of(scene->file) : fs::current_path(error);
+    const fs::path here =
+        open.scene && !open.scene->file.empty() ? folder_of(open.scene->file) : fs::current_path(error);
     if (fs::is_directory(here, error)) dialog.path = as_typed(here);
     dialog.pictures =
-        !gallery().empty() && (!scene || scene->file.empty() ||
+        !gallery().empty() && (!open.scene || open.scene->file.empty() ||
                                std::any_of(gallery().begin(), gallery().end(), [&](const GalleryScene& own) {
-                                 return fs::equivalent(own.file, scene->file, error);
+                                 return fs::equivalent(own.file, open.scene->file, error);
                                }));
   } else if (purpose == Dialog::Purpose::reference || purpose == Dialog::Purpose::solver_load) {
     dialog.path = fs::current_path(error).string() + "/";
   } else if (purpose == Dialog::Purpose::script) {
-    dialog.path = (scene ? scene->name : "session") + ".lucerna";
-  } else if (scene) {
-    dialog.path = scene->name + question(dialog).endings[0];
+    dialog.path = (open.scene ? open.scene->name : "session") + ".lucerna";
+  } else if (open.scene) {
+    dialog.path = open.scene->name + question(dialog).endings[0];
   }
   wake(4);
 }

@@ -23,8 +23,8 @@ constexpr float k_aim_of_extent = 0.25f;
 
 LampHandle aim_of(Ui& ui, uint32_t index, const scene::Light& light) {
   LampHandle aim{.light = index, .part = LampHandle::Part::aim, .point = light.position, .at = {}};
-  float far = k_aim_of_extent * ui.view->extent;
-  if (const session::Probe* rays = ui.probe())
+  float far = k_aim_of_extent * ui.camera.view->extent;
+  if (const session::Probe* rays = ui.camera.probe())
     if (const auto hit = rays->nearest(light.position, light.direction)) far = hit->distance;
   aim.point += far * light.direction;
   return aim;
@@ -34,11 +34,11 @@ LampHandle aim_of(Ui& ui, uint32_t index, const scene::Light& light) {
 /// material that lie on one another have one mark.
 std::vector<LampHandle> without_overlap(const Ui& ui, const Area& shown, std::vector<LampHandle> list) {
   const auto is_selected = [&](const LampHandle& h) {
-    return ui.selection ==
+    return ui.camera.selection ==
            Selection{h.part == LampHandle::Part::surface ? Kind::material : Kind::light, h.light};
   };
   // The nearest to the eye come first.
-  const vec3 eye = commands::eye_of(ui.snapshot->camera);
+  const vec3 eye = commands::eye_of(ui.open.snapshot->camera);
   std::stable_sort(list.begin(), list.end(), [&](const LampHandle& a, const LampHandle& b) {
     return glm::distance(a.point, eye) < glm::distance(b.point, eye);
   });
@@ -69,13 +69,13 @@ bool project(const scene::Camera& camera, const Area& shown, const vec3& point, 
 
 std::vector<LampHandle> lamp_handles(Ui& ui, const Area& shown) {
   std::vector<LampHandle> list;
-  if (!ui.scene || !ui.snapshot || !ui.view) return list;
+  if (!ui.open.scene || !ui.open.snapshot || !ui.camera.view) return list;
   const auto add = [&](LampHandle handle) {
-    if (project(ui.snapshot->camera, shown, handle.point, handle.at)) list.push_back(handle);
+    if (project(ui.open.snapshot->camera, shown, handle.point, handle.at)) list.push_back(handle);
   };
-  for (uint32_t i = 0; i < ui.scene->lights.size(); ++i) {
-    const bool selected = ui.selection == Selection{Kind::light, i};
-    const scene::Light light = ui.light(i);
+  for (uint32_t i = 0; i < ui.open.scene->lights.size(); ++i) {
+    const bool selected = ui.camera.selection == Selection{Kind::light, i};
+    const scene::Light light = ui.open.light(i);
     if ((!ui.light_marks && !selected) || light.kind == scene::LightKind::directional) continue;
     if (selected && light.kind == scene::LightKind::spot) add(aim_of(ui, i, light));
     add({.light = i, .part = LampHandle::Part::place, .point = light.position, .at = {}});
@@ -110,7 +110,7 @@ void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle
     ImVec2 end;
     if (lamp != handles.end())
       end = lamp->mark;
-    else if (!project(ui.snapshot->camera, shown, ui.light(aim.light).position, end))
+    else if (!project(ui.open.snapshot->camera, shown, ui.open.light(aim.light).position, end))
       return;
     list->AddLine(end, aim.mark, IM_COL32(0, 0, 0, 120), px(3));
     list->AddLine(end, aim.mark, colour::accent, std::max(1.0f, px(1)));
@@ -124,7 +124,8 @@ void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle
   }
   for (const LampHandle& handle : handles) {
     const bool surface = handle.part == LampHandle::Part::surface;
-    const bool chosen = ui.selection == Selection{surface ? Kind::material : Kind::light, handle.light};
+    const bool chosen =
+        ui.camera.selection == Selection{surface ? Kind::material : Kind::light, handle.light};
     const ImU32 ink = chosen || is_hot(handle) ? colour::accent : colour::text;
     const float r = px(is_hot(handle) ? 6.5f : 5);
     if (surface) {
@@ -134,7 +135,8 @@ void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle
       };
       square(r + px(1.5f), [&](auto lo, auto hi) { list->AddRectFilled(lo, hi, IM_COL32(0, 0, 0, 110)); });
       square(r, [&](auto lo, auto hi) { list->AddRect(lo, hi, ink, 0, 0, px(1.5f)); });
-      if (ui.emits(handle.light)) square(px(2), [&](auto lo, auto hi) { list->AddRectFilled(lo, hi, ink); });
+      if (ui.open.emits(handle.light))
+        square(px(2), [&](auto lo, auto hi) { list->AddRectFilled(lo, hi, ink); });
       continue;
     }
     if (handle.part == LampHandle::Part::aim) {
@@ -151,34 +153,34 @@ void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle
     }
     list->AddCircleFilled(handle.mark, r + px(1.5f), IM_COL32(0, 0, 0, 110), 20);
     list->AddCircle(handle.mark, r, ink, 20, px(1.5f));
-    if (ui.light(handle.light).enabled) list->AddCircleFilled(handle.mark, px(2), ink, 12);
+    if (ui.open.light(handle.light).enabled) list->AddCircleFilled(handle.mark, px(2), ink, 12);
   }
   list->PopClipRect();
 }
 
 void drag_lamp(Ui& ui, const Area& shown) {
   const LampHandle& handle = *ui.drag.lamp;
-  if (!ui.scene || !ui.view || handle.light >= ui.scene->lights.size()) return;
+  if (!ui.open.scene || !ui.camera.view || handle.light >= ui.open.scene->lights.size()) return;
   const ImGuiIO& io = ImGui::GetIO();
   if (handle.part == LampHandle::Part::aim) {
     const vec2 at((io.MousePos.x - shown.lo.x) / std::max(1.0f, shown.width()),
                   (io.MousePos.y - shown.lo.y) / std::max(1.0f, shown.height()));
-    const session::Probe* rays = ui.probe();
+    const session::Probe* rays = ui.camera.probe();
     if (!rays) return;
-    const session::PickRay ray = session::pick_ray(ui.view->camera, at.x, at.y, ui.aspect);
+    const session::PickRay ray = session::pick_ray(ui.camera.view->camera, at.x, at.y, ui.camera.aspect);
     const auto hit = rays->nearest(ray.origin, ray.direction);
-    const vec3 from = ui.light(handle.light).position;
+    const vec3 from = ui.open.light(handle.light).position;
     // Without a surface there, at the previous distance.
     const vec3 to =
         hit ? hit->position : ray.origin + glm::distance(ray.origin, handle.point) * ray.direction;
-    if (glm::distance(from, to) > 1e-4f * ui.view->extent)
+    if (glm::distance(from, to) > 1e-4f * ui.camera.view->extent)
       ui.act("light.set", handle.light + 1, named("direction", to - from));
     return;
   }
   const vec2 pixels(io.MousePos.x - io.MouseClickedPos[0].x, io.MousePos.y - io.MouseClickedPos[0].y);
   ui.act("light.set", handle.light + 1,
          named("position",
-               commands::dragged(ui.view->camera, handle.point, pixels, shown.height(), io.KeyShift)));
+               commands::dragged(ui.camera.view->camera, handle.point, pixels, shown.height(), io.KeyShift)));
 }
 
 }  // namespace lucerna::ui

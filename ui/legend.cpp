@@ -258,13 +258,13 @@ std::vector<solvers::Legend> window_legends(const session::Legend& layer, bool l
 }
 
 Area draw_legend(Ui& ui, const Area& frame) {
-  const session::Snapshot* s = ui.snapshot.get();
+  const session::Snapshot* s = ui.open.snapshot.get();
   if (!s || !s->activity.empty() || !ui.has_picture()) return {};
   std::vector<Block> blocks;
   // The coarse first image has neither samples to be counted nor tiles; solvers draw over it too.
   if (!s->coarse && s->legend.layer >= shared::k_layer_samples) blocks.push_back(heat_block(s->legend));
   const std::vector<solvers::Legend> own =
-      window_legends(s->legend, ui.light_marks, ui.setting_on("overlay.former") && shows_former(*s));
+      window_legends(s->legend, ui.light_marks, ui.open.setting_on("overlay.former") && shows_former(*s));
   const auto add = [&](const solvers::Legend& legend) {
     blocks.push_back({legend.title, legend.note, body_height(legend),
                       [&legend](ImDrawList* list, const ImVec2& at) { draw_body(list, at, legend); }});

@@ -41,9 +41,9 @@ void component_row(Ui& ui, int c, float width) {
   const auto index = static_cast<size_t>(c);
   const std::string name = session::k_component_names[index];
   const std::string key = "components." + name;
-  const session::ComponentStatus* status = ui.snapshot ? &ui.snapshot->components[index] : nullptr;
-  const bool off = ui.setting(key) == "off";
-  const bool shown = ui.setting_on("show." + name);
+  const session::ComponentStatus* status = ui.open.snapshot ? &ui.open.snapshot->components[index] : nullptr;
+  const bool off = ui.open.setting(key) == "off";
+  const bool shown = ui.open.setting_on("show." + name);
   const ImU32 ink =
       off || !shown ? colour::with_alpha(colour::component[index], 0.4f) : colour::component[index];
 
@@ -65,9 +65,9 @@ void component_row(Ui& ui, int c, float width) {
       fmt::format("{} the {} layer in the displayed sum. Keeps all samples; the computation does not change.",
                   shown ? "Hides" : "Shows", name));
   ImGui::SetCursorScreenPos({at.x + width - px(22), at.y});
-  if (sign_button("##solo", Sign::solo, ui.solo() == c, colour::accent))
-    ui.act("view.solo", ui.solo() == c ? "none" : name.c_str());
-  tooltip(ui.solo() == c
+  if (sign_button("##solo", Sign::solo, ui.open.solo() == c, colour::accent))
+    ui.act("view.solo", ui.open.solo() == c ? "none" : name.c_str());
+  tooltip(ui.open.solo() == c
               ? "Shows the previous layers again."
               : fmt::format("Shows the {} layer only; press again for the previous layers.", name));
 
@@ -78,14 +78,15 @@ void component_row(Ui& ui, int c, float width) {
   float solver_width = px(76);
   if (option) {
     // Two joined names are long: they take the place of the time.
-    const std::string& chosen_name = ui.setting(key);
+    const std::string& chosen_name = ui.open.setting(key);
     const float beside = chosen_name.find('+') == std::string::npos ? px(154) : px(102);
     for (const std::string& solver : option->choices)
       if (solver == chosen_name || solver.find('+') == std::string::npos)
         solver_width = std::max(solver_width, text_width(solver) + px(36));
     solver_width = std::min(solver_width, std::max(px(76), width - beside));
-    int chosen = static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.setting(key)) -
-                                  option->choices.begin());
+    int chosen =
+        static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.open.setting(key)) -
+                         option->choices.begin());
     std::vector<std::string> helps;
     for (const std::string& solver : option->choices) helps.push_back(solver_help(c, solver));
     const std::string help =
@@ -95,9 +96,10 @@ void component_row(Ui& ui, int c, float width) {
     tooltip(help);
   }
   const float right = at.x + width;
-  const bool known = status && !off && ui.snapshot->samples > 0;
-  const double error = known && ui.snapshot->accuracy ? ui.snapshot->accuracy->error()[index + 1] : 0;
-  const double noise_share = error > 0 ? ui.snapshot->accuracy->ledger.entries().back().share(c) : 0;
+  const bool known = status && !off && ui.open.snapshot->samples > 0;
+  const double error =
+      known && ui.open.snapshot->accuracy ? ui.open.snapshot->accuracy->error()[index + 1] : 0;
+  const double noise_share = error > 0 ? ui.open.snapshot->accuracy->ledger.entries().back().share(c) : 0;
   // The share is beside the name; error and time beside the solver.
   if (width > px(200))
     draw_text(list, {at.x + px(100), at.y}, {at.x + width - px(56), at.y + px(22)},
@@ -128,9 +130,9 @@ void component_row(Ui& ui, int c, float width) {
 }
 
 void components(Ui& ui, float width) {
-  const std::string &primary = ui.setting("components.primary"),
-                    &secondary = ui.setting("components.secondary"),
-                    &tertiary = ui.setting("components.tertiary");
+  const std::string &primary = ui.open.setting("components.primary"),
+                    &secondary = ui.open.setting("components.secondary"),
+                    &tertiary = ui.open.setting("components.tertiary");
   for (int c = 0; c < session::k_components; ++c) {
     component_row(ui, c, width);
     if (c == 0 && plan::primary_by_paths(primary, secondary, tertiary)) {
@@ -143,8 +145,8 @@ void components(Ui& ui, float width) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImDrawList* list = ImGui::GetWindowDrawList();
   double total = 0, luminance = 0;
-  if (ui.snapshot && ui.snapshot->samples > 0)
-    for (const session::ComponentStatus& status : ui.snapshot->components)
+  if (ui.open.snapshot && ui.open.snapshot->samples > 0)
+    for (const session::ComponentStatus& status : ui.open.snapshot->components)
       total += status.ms_per_sample, luminance += status.mean_luminance;
   draw_text(list, {at.x + px(18), at.y}, {at.x + width, at.y + px(20)}, "Time per sample", colour::text_dim);
   draw_text(list, at, {at.x + width, at.y + px(20)}, total > 0 ? ms_text(total) : "\xE2\x80\x93",
@@ -154,7 +156,7 @@ void components(Ui& ui, float width) {
   if (total > 0)
     for (size_t c = 0; c < session::k_components; ++c)
       parts.push_back(
-          {static_cast<float>(ui.snapshot->components[c].ms_per_sample / total), colour::component[c]});
+          {static_cast<float>(ui.open.snapshot->components[c].ms_per_sample / total), colour::component[c]});
   stacked_bar(parts, 6, width - px(18));
   tooltip(
       "Device time per sample of a pixel, divided among the components: amber primary, teal secondary, "
@@ -187,8 +189,8 @@ void render_rows(Ui& ui) {
     if (!placed_elsewhere(option)) option_control(ui, option.key, option_label(option));
   gap(4);
   const float width = ImGui::CalcItemWidth(), half = std::floor(0.5f * (width - px(8)));
-  const bool paused = ui.snapshot && ui.snapshot->paused;
-  ImGui::BeginDisabled(!ui.snapshot);
+  const bool paused = ui.open.snapshot && ui.open.snapshot->paused;
+  ImGui::BeginDisabled(!ui.open.snapshot);
   if (button("##pause", paused ? "Resume" : "Pause", paused, half))
     ui.act(paused ? "render.resume" : "render.pause");
   tooltip("Pauses sampling; Resume continues with the present samples. Space.");
@@ -212,19 +214,19 @@ void option_control(Ui& ui, const std::string& key, const std::string& name) {
   switch (option->type) {
     case OptionType::choice: {
       int chosen =
-          static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.setting(key)) -
+          static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.open.setting(key)) -
                            option->choices.begin());
       if (choice("##choice", name, option->choices, chosen))
         ui.act("set", key, option->choices[static_cast<size_t>(chosen)]);
       break;
     }
     case OptionType::boolean:
-      if (button("##boolean", name, ui.setting_on(key), ImGui::CalcItemWidth())) ui.toggle(key);
+      if (button("##boolean", name, ui.open.setting_on(key), ImGui::CalcItemWidth())) ui.toggle(key);
       break;
     case OptionType::integer:
     case OptionType::real: {
       const bool whole = option->type == OptionType::integer;
-      auto value = static_cast<float>(ui.setting_real(key));
+      auto value = static_cast<float>(ui.open.setting_real(key));
       Slider how{.lo = static_cast<float>(option->lo),
                  .hi = static_cast<float>(option->hi),
                  .decimals = whole ? 0 : decimals_of(*option),
@@ -260,11 +262,11 @@ void draw_light_panel(Ui& ui, const Area& area) {
   }
   begin_panel("##light", area, colour::panel, true);
   std::string note;
-  if (ui.solo() >= 0)
-    note = fmt::format("solo {}", session::k_component_names[static_cast<size_t>(ui.solo())]);
+  if (ui.open.solo() >= 0)
+    note = fmt::format("solo {}", session::k_component_names[static_cast<size_t>(ui.open.solo())]);
   panel_block(ui, "Light", true, note, 4, [&] { components(ui, ImGui::CalcItemWidth()); });
-  if (ui.scene)
-    panel_block(ui, "Light mix", false, ui.setting("relight.mix").empty() ? "" : "mixed", 10, [&] {
+  if (ui.open.scene)
+    panel_block(ui, "Light mix", false, ui.open.setting("relight.mix").empty() ? "" : "mixed", 10, [&] {
       ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(2)});
       draw_mix(ui);
       ImGui::PopStyleVar();

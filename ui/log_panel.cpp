@@ -45,7 +45,7 @@ int edit_console(ImGuiInputTextCallbackData* data) {
     return 0;
   }
   const std::string typed(data->Buf, static_cast<size_t>(data->CursorPos));
-  const std::vector<std::string> words = ui.registry.complete(typed);
+  const std::vector<std::string> words = ui.work.registry.complete(typed);
   if (words.empty()) return 0;
   std::string common = words[0];
   for (const std::string& word : words) {
@@ -64,15 +64,15 @@ int edit_console(ImGuiInputTextCallbackData* data) {
 std::string console_hint(const Ui& ui) {
   const std::string& typed = ui.console.text;
   if (typed.empty()) return "";
-  const std::vector<std::string> words = ui.registry.complete(typed);
+  const std::vector<std::string> words = ui.work.registry.complete(typed);
   const std::string last = typed.substr(commands::last_word(typed));
   std::string hint;
   if (!words.empty() && !(words.size() == 1 && words[0] == last)) {
     for (size_t i = 0; i < std::min<size_t>(words.size(), 12); ++i) hint += (i ? "   " : "") + words[i];
     return hint + (words.size() > 12 ? "   \xE2\x80\xA6" : "");
   }
-  if (const commands::Command* c = ui.registry.find(typed.substr(0, typed.find(' '))))
-    return ui.registry.usage(*c).substr(c->name.size());
+  if (const commands::Command* c = ui.work.registry.find(typed.substr(0, typed.find(' '))))
+    return ui.work.registry.usage(*c).substr(c->name.size());
   return "";
 }
 

@@ -96,8 +96,8 @@ void solver_files(Ui& ui) {
   const bool picture = ui.has_picture();
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     if (!solver->file) continue;
-    const bool used = ui.uses(*solver) && picture;
-    const solvers::Report* report = ui.report(*solver);
+    const bool used = ui.open.uses(*solver) && picture;
+    const solvers::Report* report = ui.open.report(*solver);
     const bool complete = used && report && report->ready;
     const std::string unused = fmt::format("No component is computed by {}.", solver->name);
     const std::string name = uncapitalised(solver->label);
@@ -142,7 +142,7 @@ void file_menu(Ui& ui) {
   if (entry("Screenshot", "F12", "Saves the window with its panels as a PNG in the working folder."))
     ui.act("screenshot");
   divide();
-  const session::Accuracy* accuracy = ui.snapshot ? ui.snapshot->accuracy.get() : nullptr;
+  const session::Accuracy* accuracy = ui.open.snapshot ? ui.open.snapshot->accuracy.get() : nullptr;
   const bool reference = accuracy && !accuracy->reference.empty();
   if (entry("Load reference\xE2\x80\xA6", nullptr,
             "Loads a converged EXR of this view and size, rendered with another seed. The Accuracy plot then "
@@ -165,15 +165,17 @@ void file_menu(Ui& ui) {
 
 void edit_menu(Ui& ui) {
   if (!begin_menu("Edit")) return;
-  if (entry("Undo", "Ctrl+Z", ui.can_undo() ? ("Undoes: " + ui.undo_text()).c_str() : "Nothing to undo.",
-            false, ui.can_undo()))
+  if (entry("Undo", "Ctrl+Z",
+            ui.history.can_undo() ? ("Undoes: " + ui.history.undo_text()).c_str() : "Nothing to undo.", false,
+            ui.history.can_undo()))
     ui.act("undo");
   if (entry("Redo", "Ctrl+Shift+Z",
-            ui.can_redo() ? ("Redoes: " + ui.redo_text()).c_str() : "Nothing to redo.", false, ui.can_redo()))
+            ui.history.can_redo() ? ("Redoes: " + ui.history.redo_text()).c_str() : "Nothing to redo.", false,
+            ui.history.can_redo()))
     ui.act("redo");
   divide();
   if (entry("Deselect", nullptr, "Clears the selection. A click in the picture selects an object.", false,
-            ui.selection.kind != Kind::none))
+            ui.camera.selection.kind != Kind::none))
     ui.act("select.none");
   end_menu();
 }
@@ -188,7 +190,7 @@ void solver_views(Ui& ui, const solvers::SolverInfo& solver) {
       // One entry per value; the key cycles through them, from the first.
       for (size_t k = 1; k < option->choices.size(); ++k) {
         const std::string& value = option->choices[k];
-        const bool on = ui.setting(option->key) == value;
+        const bool on = ui.open.setting(option->key) == value;
         if (entry(fmt::format("{}: {}", name, value).c_str(), k == 1 ? key_name(view.shortcut) : nullptr,
                   option->help.c_str(), on))
           ui.act("set", option->key, on ? option->choices.front() : value);
@@ -209,7 +211,7 @@ void solver_views(Ui& ui, const solvers::SolverInfo& solver) {
       if (!on || !last || !by) continue;
       for (const std::string& choice : by->choices)
         if (entry(fmt::format("   {} {}", uncapitalised(option_label(*by)), choice).c_str(), nullptr,
-                  by->help.c_str(), ui.setting(key) == choice))
+                  by->help.c_str(), ui.open.setting(key) == choice))
           ui.act("set", key, choice);
     }
   }
@@ -259,21 +261,21 @@ void view_menu(Ui& ui) {
           ui.light_marks))
     ui.act("view.lamps", !ui.light_marks);
   if (const OptionInfo* tiles = plan::find_option("overlay.tiles");
-      entry("Tiles", "T", tiles->help.c_str(), ui.setting_on(tiles->key)))
+      entry("Tiles", "T", tiles->help.c_str(), ui.open.setting_on(tiles->key)))
     ui.toggle(tiles->key);
   for (const solvers::ViewInfo& view : plan::views())
     if (entry(view.label.c_str(), nullptr, plan::find_option(view.option)->help.c_str(), ui.view_on(view)))
       ui.turn_view(view);
   if (const OptionInfo* former = plan::find_option("overlay.former");
-      entry("Light from before the edit", nullptr, former->help.c_str(), ui.setting_on(former->key)))
+      entry("Light from before the edit", nullptr, former->help.c_str(), ui.open.setting_on(former->key)))
     ui.toggle(former->key);
   if (entry("Unfiltered samples", "U",
             "Shows samples only: no filter for noise, and no light from before an edit.",
-            ui.setting("preview.filter") == "off"))
-    ui.act("set", "preview.filter", ui.setting("preview.filter") == "off" ? "auto" : "off");
+            ui.open.setting("preview.filter") == "off"))
+    ui.act("set", "preview.filter", ui.open.setting("preview.filter") == "off" ? "auto" : "off");
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     if (solver->views.empty()) continue;
-    const bool used = ui.uses(*solver);
+    const bool used = ui.open.uses(*solver);
     ImGui::PushID(solver->name.c_str());
     if (begin_submenu((title_of(*solver) + ": views").c_str(),
                       fmt::format("No component is computed by {}.", solver->title).c_str(), used)) {
@@ -298,20 +300,21 @@ void view_menu(Ui& ui) {
 
 void camera_menu(Ui& ui) {
   if (!begin_menu("Camera")) return;
-  const bool view = ui.view.has_value();
+  const bool view = ui.camera.view.has_value();
   if (entry("Frame selection", "F",
             "Moves the camera so that the selection, or otherwise the whole scene, fills the picture. The "
             "camera stays in front of walls.",
             false, view))
     ui.act("camera.frame");
-  if (entry("Walk along the floor", "H", "W A S D walk at eye height instead of flying.", ui.walking, view))
-    ui.act("camera.walking", !ui.walking);
+  if (entry("Walk along the floor", "H", "W A S D walk at eye height instead of flying.", ui.camera.walking,
+            view))
+    ui.act("camera.walking", !ui.camera.walking);
   divide();
   if (entry("Bookmark this view", "Ctrl+B", "Saves the view for this scene, also for later runs.", false,
             view))
     keep_view(ui);
   int row = 0;
-  for (const auto& [name, line] : ui.bookmarks_here()) {
+  for (const auto& [name, line] : ui.camera.bookmarks_of(ui.open.scene.get())) {
     ImGui::PushID(row++);
     if (entry(elided(name, px(180)).c_str(), nullptr, (name + ": restores this view.").c_str()))
       ui.act("camera.go", name);
@@ -329,21 +332,23 @@ void camera_menu(Ui& ui) {
 
 void render_menu(Ui& ui) {
   if (!begin_menu("Render")) return;
-  const bool paused = ui.snapshot && ui.snapshot->paused;
+  const bool paused = ui.open.snapshot && ui.open.snapshot->paused;
   if (entry(paused ? "Resume" : "Pause", "Space",
-            "Pauses sampling; Resume continues with the present samples.", false, ui.snapshot != nullptr))
+            "Pauses sampling; Resume continues with the present samples.", false,
+            ui.open.snapshot != nullptr))
     ui.act(paused ? "render.resume" : "render.pause");
-  if (entry("Restart", "R", "Discards all samples and restarts the picture.", false, ui.snapshot != nullptr))
+  if (entry("Restart", "R", "Discards all samples and restarts the picture.", false,
+            ui.open.snapshot != nullptr))
     ui.act("render.restart");
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const solvers::CommandInfo& command : solver->commands)
       if (entry(fmt::format("{}: {}", solver->label, uncapitalised(command.label)).c_str(),
-                key_name(command.shortcut), command.help.c_str(), false, ui.uses(*solver)))
+                key_name(command.shortcut), command.help.c_str(), false, ui.open.uses(*solver)))
         ui.act(solver->name + "." + command.name);
   if (entry("Reload shaders", "F5", "Compiles the shaders again; if that fails the present ones stay."))
     ui.act("shaders.reload");
   divide();
-  if (entry("Cancel loading", "Esc", "Cancels the load; the present scene stays.", false, ui.loading()))
+  if (entry("Cancel loading", "Esc", "Cancels the load; the present scene stays.", false, ui.open.loading()))
     ui.act("scene.cancel");
   end_menu();
 }
@@ -417,12 +422,12 @@ void draw_menu_bar(Ui& ui, const Area& area) {
 
   // The rest is drawn over the whole bar; after its menus ImGui clips to the area below them.
   ImGui::PushClipRect(area.lo, area.hi, false);
-  const session::Snapshot* s = ui.snapshot.get();
+  const session::Snapshot* s = ui.open.snapshot.get();
   // The scene's name is above the picture, or behind the menus if they extend further.
   const float left =
       std::max(menus_end + px(8), area.lo.x + px((ui.shown.left_open ? ui.shown.left : 0) + 8));
   float right = area.hi.x - px(16), state_left = right;
-  if (s && ui.scene && s->max_samples > 0) {
+  if (s && ui.open.scene && s->max_samples > 0) {
     const std::array<std::string, 3> states = state_texts(*s);
     // The numbers stay in place: the field is as wide as its longest text.
     const std::array<std::string, 3> longest = state_texts([&] {
@@ -479,14 +484,14 @@ void draw_menu_bar(Ui& ui, const Area& area) {
       right -= text_width(device) + px(24);
     }
   }
-  if (ui.scene) {
-    const std::string name = elided(ui.scene->name, std::max(0.0f, right - left), theme().fonts.strong);
+  if (ui.open.scene) {
+    const std::string name = elided(ui.open.scene->name, std::max(0.0f, right - left), theme().fonts.strong);
     draw_text(list, {left, area.lo.y}, {right, area.hi.y}, name, colour::text, Align::left,
               theme().fonts.strong);
   }
   // Progress of the picture as a thin line under its state.
   list->AddRectFilled({area.lo.x, area.hi.y - 1}, area.hi, colour::hairline);
-  if (s && ui.scene && s->max_samples > 0 && !s->finished) {
+  if (s && ui.open.scene && s->max_samples > 0 && !s->finished) {
     const float done = done_part(*s);
     list->AddRectFilled({state_left, area.hi.y - px(2)},
                         {state_left + done * (area.hi.x - px(16) - state_left), area.hi.y},

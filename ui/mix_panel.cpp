@@ -86,7 +86,7 @@ void group_row(Ui& ui, const scene::LightGroup& group, const scene::GroupMix& mi
 
 /// Named mixes, and a slider between two of them.
 void preset_rows(Ui& ui) {
-  const scene::MixPresets presets = ui.mix_presets();
+  const scene::MixPresets presets = ui.open.mix_presets();
   std::vector<std::string> names;
   for (const auto& [name, mix] : presets) names.push_back(name);
   const float width = ImGui::CalcItemWidth();
@@ -94,7 +94,7 @@ void preset_rows(Ui& ui) {
   int row = 0;
   for (const auto& [name, mix] : presets) {
     ImGui::PushID(row++);
-    const bool chosen = scene::mix_text(mix) == scene::mix_text(ui.light_mix());
+    const bool chosen = scene::mix_text(mix) == scene::mix_text(ui.open.light_mix());
     if (button("##preset", elided(name, width - px(52)), chosen, width - px(28)))
       ui.act("mix.preset.load", name);
     tooltip(fmt::format("{}: loads this mix.", name));
@@ -139,10 +139,10 @@ void preset_rows(Ui& ui) {
 }  // namespace
 
 void draw_mix(Ui& ui) {
-  const scene::LightGroups& groups = ui.light_groups();
-  const scene::LightMix mix = ui.light_mix();
+  const scene::LightGroups& groups = ui.open.light_groups();
+  const scene::LightMix mix = ui.open.light_mix();
   const std::vector<vec3> weights = scene::mix_weights(mix, groups);
-  const std::string how = ui.setting("relight.enabled");
+  const std::string how = ui.open.setting("relight.enabled");
   const bool keeps = how != "off", by_component = how == "on";
   const float both = ImGui::CalcItemWidth() - px(6), first = std::floor(0.56f * both);
   if (button("##apart", "Track light groups", keeps, first))
@@ -156,7 +156,7 @@ void draw_mix(Ui& ui) {
   tooltip(
       "Stores each group's light by component. Takes 200 bytes per pixel and group, and more time. Without "
       "it the picture of a mix is exact, but its components are estimates. A change restarts the picture.");
-  const std::string why = ui.snapshot ? ui.snapshot->lights_together : "";
+  const std::string why = ui.open.snapshot ? ui.open.snapshot->lights_together : "";
   if (!why.empty()) {
     label("A new mix restarts the picture", colour::text_faint, nullptr, ImGui::CalcItemWidth());
     tooltip("Light groups are not tracked: " + why + ".");

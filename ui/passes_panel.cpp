@@ -167,8 +167,8 @@ void draw_passes(Ui& ui, const Area& area) {
   begin_panel("##passes", area, colour::panel, false);
   const float left = panel_heading("PASSES", area);
   ImDrawList* list = ImGui::GetWindowDrawList();
-  const Snapshot* s = ui.snapshot.get();
-  if (s && ui.scene && s->mrays_per_second > 0) {
+  const Snapshot* s = ui.open.snapshot.get();
+  if (s && ui.open.scene && s->mrays_per_second > 0) {
     const ImVec2 lo(left + px(8), area.lo.y), hi(area.hi.x - px(16), area.lo.y + px(k_folded_bottom));
     if (hi.x > lo.x) {
       draw_text(list, lo, hi,

@@ -77,7 +77,7 @@ Json state_of(const Ui& ui) {
                       {"bottom", ui.layout.bottom_arranged}};
   json["welcomed"] = ui.welcomed;
   auto& bookmarks = json["bookmarks"] = Json::object();
-  for (const auto& [scene, views] : ui.bookmarks)
+  for (const auto& [scene, views] : ui.camera.bookmarks)
     if (!views.empty()) bookmarks[scene] = views;
   json["sections"] = Json(ui.sections);
   if (ui.sections.empty()) json["sections"] = Json::object();
@@ -86,7 +86,7 @@ Json state_of(const Ui& ui) {
 
 struct Lists {
   Files recent;
-  std::map<std::string, commands::Workspace::Bookmarks> bookmarks;
+  std::map<std::string, commands::Navigation::Bookmarks> bookmarks;
 };
 
 /// Values of another type are ignored: the file of another program or of an older version.
@@ -108,7 +108,7 @@ Lists lists_of(const Json& json) {
   return lists;
 }
 
-void take(const Lists& lists, Ui& ui) { ui.recent = lists.recent, ui.bookmarks = lists.bookmarks; }
+void take(const Lists& lists, Ui& ui) { ui.recent = lists.recent, ui.camera.bookmarks = lists.bookmarks; }
 
 void take_panels(const Json& json, Ui& ui) {
   try {

@@ -82,7 +82,7 @@ Runner::Runner(Ui& ui, const std::vector<std::string>& lines, const std::string&
   add_commands();
   if (lines.empty()) return;
   const auto call = std::make_shared<const Call>(Call{.file = one_form(name), .by = {}, .own = true});
-  for (Step& step : parse_script(ui_.registry, lines, name)) steps_.push_back(std::move(step));
+  for (Step& step : parse_script(ui_.work.registry, lines, name)) steps_.push_back(std::move(step));
   if (!stay) steps_.push_back({"quit", name + ": end"});
   for (Step& step : steps_) step.call = call;
 }
@@ -94,7 +94,7 @@ void Runner::add_commands() {
 }
 
 void Runner::add_script_commands() {
-  auto& registry = ui_.registry;
+  auto& registry = ui_.work.registry;
   registry.add(
       {.name = "quit",
        .help = "Ends the program. In a script: after all commands are done; without a status with 1 after an "
@@ -109,10 +109,11 @@ void Runner::add_script_commands() {
            [this](const Arguments& a) {
              ui_.wake();
              // Errors of the last command are read one frame after it is done.
-             const bool settled = ui_.snapshot ? ui_.up_to_date() : ui_.session.commands() == 0;
+             const bool settled =
+                 ui_.open.snapshot ? ui_.open.up_to_date() : ui_.work.session.commands() == 0;
              settled_ = settled ? settled_ + 1 : 0;
              if (settled_ < 2) return false;
-             const bool complains = ui_.error_count > root(*steps_.front().call).errors;
+             const bool complains = ui_.work.error_count > root(*steps_.front().call).errors;
              ui_.status = a.has("status") ? static_cast<int>(a.integer("status")) : complains ? 1 : 0;
              return true;
            },
@@ -153,7 +154,7 @@ std::function<bool(const commands::Arguments&)> Runner::drawn() {
 }
 
 void Runner::add_mouse_commands() {
-  auto& registry = ui_.registry;
+  auto& registry = ui_.work.registry;
   registry.add({.name = "drop",
                 .help = "Acts as if the file were dropped on the window.",
                 .parameters = {{.name = "file", .type = Type::file}},
@@ -188,7 +189,7 @@ void Runner::add_mouse_commands() {
 }
 
 void Runner::add_key_commands() {
-  auto& registry = ui_.registry;
+  auto& registry = ui_.work.registry;
   registry.add({.name = "key",
                 .help = "In a script: presses a key, such as f, f12, tab, ctrl+z.",
                 .parameters = {{.name = "name"}},
@@ -228,7 +229,7 @@ void Runner::advance() {
         if (carry_out(step)) return false;
         const commands::Arguments& a = current_.arguments;
         const double limit = a.has("limit") ? a.real("limit") : k_longest_wait;
-        if (ui_.now - began_ > limit && !measure_ && current_.command->name != "wait")
+        if (ui_.work.now - began_ > limit && !measure_ && current_.command->name != "wait")
           throw_error(step.where, "{}: gave up after {:.0f} s", current_.command->name, limit);
         return false;
       } catch (const std::exception& error) {
@@ -244,19 +245,19 @@ void Runner::advance() {
 }
 
 bool Runner::waits_for_earlier(const Step& step) const {
-  const commands::Command* next = ui_.registry.parse(step.line, step.where).command;
+  const commands::Command* next = ui_.work.registry.parse(step.line, step.where).command;
   if (!next) return false;
-  if (next->needs_outcome && ui_.snapshot && !ui_.up_to_date() && !ui_.loading()) return true;
+  if (next->needs_outcome && ui_.open.snapshot && !ui_.open.up_to_date() && !ui_.open.loading()) return true;
   // The panels' own commands need no picture.
-  return ui_.resizing && !next->name.starts_with("window.") && !next->name.starts_with("view.");
+  return ui_.camera.resizing && !next->name.starts_with("window.") && !next->name.starts_with("view.");
 }
 
 bool Runner::carry_out(const Step& step) {
   if (!current_.command) {
-    began_ = ui_.now, frames_ = 0;
+    began_ = ui_.work.now, frames_ = 0;
     in_script_ = true;
     try {
-      current_ = ui_.run(step.line, 0, step.where);
+      current_ = ui_.work.run(step.line, 0, step.where);
     } catch (...) {
       in_script_ = false;
       throw;
@@ -288,9 +289,9 @@ void Runner::run_script(const std::string& file) {
   const std::string form = one_form(file);
   for (const Call* call = by.get(); call; call = call->by.get())
     if (call->file == form) throw Error(file, "is already running: a script cannot run itself");
-  const auto call =
-      std::make_shared<const Call>(Call{.file = form, .by = by, .own = false, .errors = ui_.error_count});
-  auto steps = parse_script(ui_.registry, read_script(file), file);
+  const auto call = std::make_shared<const Call>(
+      Call{.file = form, .by = by, .own = false, .errors = ui_.work.error_count});
+  auto steps = parse_script(ui_.work.registry, read_script(file), file);
   for (Step& step : steps) step.call = call;
   // After the running step, which is at the front.
   steps_.insert(steps_.begin() + (steps_.empty() ? 0 : 1), steps.begin(), steps.end());
@@ -300,46 +301,46 @@ void Runner::run_script(const std::string& file) {
 void Runner::console(const std::string& line) {
   ui_.print(log::Level::info, "\xE2\x80\xBA " + line);
   try {
-    const commands::Line parsed = ui_.registry.parse(line);
+    const commands::Line parsed = ui_.work.registry.parse(line);
     if (!parsed.command) return;
     if (parsed.command->name == "help")
       ui_.print(log::Level::info,
-                ui_.manual(parsed.arguments.has("command") ? parsed.arguments.text("command") : ""));
+                ui_.work.manual(parsed.arguments.has("command") ? parsed.arguments.text("command") : ""));
     else
-      ui_.run(line);
+      ui_.work.run(line);
   } catch (const std::exception& error) {
     ui_.print(log::Level::error, error.what());
   }
 }
 
 void Runner::measure(double seconds) {
-  if (!ui_.view) throw Error("", "there is no picture yet; wait_scene first");
+  if (!ui_.camera.view) throw Error("", "there is no picture yet; wait_scene first");
   measure_.emplace();
-  measure_->start = ui_.now, measure_->end = ui_.now + seconds,
-  measure_->next_move = ui_.now + 0.5 * k_between_moves;
+  measure_->start = ui_.work.now, measure_->end = ui_.work.now + seconds,
+  measure_->next_move = ui_.work.now + 0.5 * k_between_moves;
 }
 
 bool Runner::measured() {
   if (!measure_) return true;
   Measure& m = *measure_;
   const bool answered = m.moved_at < 0;
-  if (ui_.now >= m.next_move && answered && ui_.now < m.end) {
+  if (ui_.work.now >= m.next_move && answered && ui_.work.now < m.end) {
     ui_.act("camera.orbit", m.moves % 2 ? -0.1 : 0.1, 0);
-    m.target = ui_.view->camera;
-    m.moved_at = ui_.now;
-    m.next_move = ui_.now + k_between_moves;
+    m.target = ui_.camera.view->camera;
+    m.moved_at = ui_.work.now;
+    m.next_move = ui_.work.now + k_between_moves;
     ++m.moves;
   }
   // Waits for the response to the last move, for a limited time.
-  if (ui_.now < m.end || (!answered && ui_.now < m.end + 10)) return false;
+  if (ui_.work.now < m.end || (!answered && ui_.work.now < m.end + 10)) return false;
   std::fputs(
       fmt::format("{{\"measure\": {{\"seconds\": {:.2f}, \"frames\": {}, \"frame_ms_p50\": {:.2f}, "
                   "\"frame_ms_p95\": {:.2f}, \"frame_ms_max\": {:.2f}, "
                   "\"coarse_ms_median\": {:.1f}, \"coarse_ms_max\": {:.1f}, \"moves\": {}, \"answered\": {}, "
                   "\"picture\": [{}, {}]}}}}\n",
-                  ui_.now - m.start, m.frames.size(), percentile(m.frames, 0.5), percentile(m.frames, 0.95),
-                  percentile(m.frames, 1), percentile(m.coarse, 0.5), percentile(m.coarse, 1), m.moves,
-                  m.coarse.size(), ui_.texture_width, ui_.texture_height)
+                  ui_.work.now - m.start, m.frames.size(), percentile(m.frames, 0.5),
+                  percentile(m.frames, 0.95), percentile(m.frames, 1), percentile(m.coarse, 0.5),
+                  percentile(m.coarse, 1), m.moves, m.coarse.size(), ui_.texture_width, ui_.texture_height)
           .c_str(),
       stdout);
   std::fflush(stdout);
@@ -354,7 +355,7 @@ void Runner::presented(double interval_ms) {
   // Before the first frame the window may have slept without anything to draw.
   if (std::exchange(m.begun, true)) m.frames.push_back(interval_ms);
   // The first picture on the screen with the new camera.
-  if (m.moved_at >= 0 && ui_.snapshot && commands::same_view(ui_.snapshot->camera, m.target)) {
+  if (m.moved_at >= 0 && ui_.open.snapshot && commands::same_view(ui_.open.snapshot->camera, m.target)) {
     m.coarse.push_back(1e3 * (ui_.time() - m.moved_at));
     m.moved_at = -1;
   }

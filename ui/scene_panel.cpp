@@ -75,21 +75,21 @@ void show_row(float y) {
 }
 
 void cameras(Ui& ui) {
-  const auto& list = ui.scene->cameras;
+  const auto& list = ui.open.scene->cameras;
   if (list.empty()) quiet_line("The scene has no camera");
   for (size_t i = 0; i < list.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
-    if (list_row("##camera", ui.scene_camera == static_cast<int>(i), display_name(list[i].name, "Camera", i),
-                 i < 9 ? fmt::format("{}", i + 1) : "", 0, 0))
+    if (list_row("##camera", ui.camera.scene_camera == static_cast<int>(i),
+                 display_name(list[i].name, "Camera", i), i < 9 ? fmt::format("{}", i + 1) : "", 0, 0))
       ui.act("camera.select", i + 1);
     tooltip(fmt::format("{}: {}.{}", display_name(list[i].name, "Camera", i),
                         list[i].orthographic ? "orthographic" : "perspective",
                         i < 9 ? fmt::format(" Key {}.", i + 1) : ""));
     ImGui::PopID();
   }
-  if (!ui.view) return;
+  if (!ui.camera.view) return;
   gap(4);
-  const Viewpoint& view = *ui.view;
+  const Viewpoint& view = *ui.camera.view;
   if (view.camera.orthographic) {
     float height = 2 * view.camera.ymag;
     if (slider("##height", "Height", height,
@@ -98,13 +98,13 @@ void cameras(Ui& ui) {
     tooltip("Height of an orthographic camera's view.");
   } else {
     // The command takes the angle, which has the same meaning in a window of any shape.
-    float lens = commands::focal_length_mm(view.camera.yfov, ui.aspect);
+    float lens = commands::focal_length_mm(view.camera.yfov, ui.camera.aspect);
     if (slider("##lens", "Lens", lens, {.lo = 8, .hi = 200, .log = true, .decimals = 1, .unit = "mm"}))
-      ui.act("camera.fov", commands::yfov_from_focal_length(lens, ui.aspect) * 180 / k_pi);
+      ui.act("camera.fov", commands::yfov_from_focal_length(lens, ui.camera.aspect) * 180 / k_pi);
     tooltip(fmt::format("Focal length for a frame 36 mm wide; the vertical field of view is {:.1f}\xC2\xB0.",
                         view.camera.yfov * 180 / k_pi));
   }
-  float speed = ui.speed;
+  float speed = ui.camera.speed;
   if (slider("##speed", "Fly speed", speed,
              {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m/s"}))
     ui.act("camera.speed", speed);
@@ -112,11 +112,11 @@ void cameras(Ui& ui) {
       "Speed of flight with W A S D Q E while the pointer is over the picture; Shift flies four times as "
       "fast.");
   if (!view.camera.orthographic) {
-    if (button("##walk", "Walk along the floor", ui.walking, ImGui::CalcItemWidth()))
-      ui.act("camera.walking", !ui.walking);
+    if (button("##walk", "Walk along the floor", ui.camera.walking, ImGui::CalcItemWidth()))
+      ui.act("camera.walking", !ui.camera.walking);
     tooltip("W A S D walk at eye height, also on stairs. H.");
-    float height = ui.eye_height;
-    if (ui.walking) {
+    float height = ui.camera.eye_height;
+    if (ui.camera.walking) {
       if (slider("##eye_height", "Eye height", height,
                  {.lo = 0.1f, .hi = 10, .log = true, .decimals = 2, .unit = "m"}))
         ui.act("camera.eye_height", height);
@@ -130,7 +130,7 @@ void cameras(Ui& ui) {
             "Position of the camera: x, y (up), z in metres.");
   std::string forgotten;
   int row = 0;
-  for (const auto& [name, place] : ui.bookmarks_here()) {
+  for (const auto& [name, place] : ui.camera.bookmarks_of(ui.open.scene.get())) {
     ImGui::PushID(row++);
     const ImVec2 at = ImGui::GetCursorScreenPos();
     if (list_row("##bookmark", false, name, "bookmark", 0, 28)) ui.act("camera.go", name);
@@ -180,8 +180,8 @@ void light_details(Ui& ui, size_t i, const scene::Light& light) {
             {.lo = 1e-3f, .hi = 1e6f, .log = true, .decimals = 2, .unit = "W", .bar = false, .travel = 0.2f}))
       ui.act("light.set", i + 1, named("power", power));
     tooltip("Total power of the lamp, in its strongest channel.");
-    const vec3 middle = ui.core.empty() ? vec3(0) : ui.core.centre();
-    const float radius = std::max(ui.core.empty() ? 1.0f : ui.core.radius(), 1e-2f);
+    const vec3 middle = ui.camera.core.empty() ? vec3(0) : ui.camera.core.centre();
+    const float radius = std::max(ui.camera.core.empty() ? 1.0f : ui.camera.core.radius(), 1e-2f);
     const float reach = 4 * radius + glm::length(middle);
     vec3 position = light.position;
     if (slider_row("##position", "Position", position,
@@ -238,8 +238,8 @@ constexpr const char* k_radiance_unit = "W/m\xC2\xB2sr";
 
 void emission_slider(Ui& ui, uint32_t index) {
   const Slider how = strength_slider(k_radiance_unit);
-  float shown = std::max(strength_of(ui.emission(index)), how.lo);
-  ImGui::BeginDisabled(!ui.emits(index));
+  float shown = std::max(strength_of(ui.open.emission(index)), how.lo);
+  ImGui::BeginDisabled(!ui.open.emits(index));
   if (slider("##strength", "Radiance", shown, how))
     ui.act("material.set", index + 1, named("strength", shown));
   ImGui::EndDisabled();
@@ -247,15 +247,15 @@ void emission_slider(Ui& ui, uint32_t index) {
 }
 
 void light_rows(Ui& ui, bool reveal) {
-  const auto& lights = ui.scene->lights;
+  const auto& lights = ui.open.scene->lights;
   const std::vector<uint32_t> glowing = emitters(ui);
   if (lights.empty() && glowing.empty()) quiet_line("No lights");
   static const char* kinds[] = {"point", "spot", "sun"};
   for (size_t i = 0; i < lights.size(); ++i) {
     const auto index = static_cast<uint32_t>(i);
-    const scene::Light light = ui.light(index);
+    const scene::Light light = ui.open.light(index);
     ImGui::PushID(static_cast<int>(i));
-    const bool chosen = ui.selection == Selection{Kind::light, index};
+    const bool chosen = ui.camera.selection == Selection{Kind::light, index};
     if (light_row(ui, chosen, reveal, display_name(light.name, "Light", i),
                   kinds[static_cast<size_t>(light.kind)], tint_of(light.intensity), light.enabled, "light",
                   i))
@@ -275,10 +275,10 @@ void light_rows(Ui& ui, bool reveal) {
   }
   // Emissive surfaces are lights too; in many interiors the only ones.
   for (const uint32_t index : glowing) {
-    const scene::Material m = ui.material(index);
+    const scene::Material m = ui.open.material(index);
     ImGui::PushID(static_cast<int>(lights.size() + index));
-    const bool chosen = ui.selection == Selection{Kind::material, index}, on = ui.emits(index);
-    const vec3 tint = tint_of(ui.emission(index));
+    const bool chosen = ui.camera.selection == Selection{Kind::material, index}, on = ui.open.emits(index);
+    const vec3 tint = tint_of(ui.open.emission(index));
     if (light_row(ui, chosen, false, display_name(m.name, "Material", index), "surface", tint, on, "material",
                   index))
       ui.act("material.set", index + 1, named("on", !on));
@@ -292,7 +292,7 @@ void light_rows(Ui& ui, bool reveal) {
 }
 
 void environment(Ui& ui) {
-  const scene::Environment& e = ui.scene->environment;
+  const scene::Environment& e = ui.open.scene->environment;
   const bool image = e.image != scene::k_none;
   const bool dark = !image && strength_of(e.radiance) <= 0;
   value_row(
@@ -304,7 +304,7 @@ void environment(Ui& ui) {
           " Drop an .exr or .hdr file on the window to replace it.");
   gap(4);
   ImGui::BeginDisabled(dark);
-  float shown = std::max(ui.environment_scale(), 1e-3f);
+  float shown = std::max(ui.open.environment_scale(), 1e-3f);
   if (slider("##scale", "Strength", shown,
              {.lo = 1e-3f,
               .hi = 1000,
@@ -316,14 +316,14 @@ void environment(Ui& ui) {
     ui.act("environment.set", named("scale", shown));
   tooltip("Multiplies the radiance of the environment.");
   ImGui::BeginDisabled(!image);
-  float turn = std::remainder(ui.environment_rotation(), 360.0f);
+  float turn = std::remainder(ui.open.environment_rotation(), 360.0f);
   if (slider("##rotation", "Rotation", turn, {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0"}))
     ui.act("environment.set", named("rotation", turn));
   tooltip("Rotates the image counter-clockwise, seen from above. Ctrl + drag in the picture rotates it too.");
   ImGui::EndDisabled();
   ImGui::EndDisabled();
   option_control(ui, "film.background", "Background");
-  if (!ui.environment_file().empty()) {
+  if (!ui.open.environment_file().empty()) {
     if (button("##own", "Restore scene environment", false, ImGui::CalcItemWidth()))
       ui.act("environment.own");
     tooltip("Uses the environment from the scene file.");
@@ -347,9 +347,9 @@ void material_details(Ui& ui, uint32_t index, const scene::Material& m) {
              {.decimals = 3}))
     set(named("metallic", metallic));
   tooltip("0 is a dielectric such as paint, stone or wood; 1 is metal.");
-  if (!m.unlit && strength_of(ui.emission(index)) > 0) {
+  if (!m.unlit && strength_of(ui.open.emission(index)) > 0) {
     emission_slider(ui, index);
-    colour_rows(ui, "material.set", index + 1, "emission_color", tint_of(ui.emission(index)),
+    colour_rows(ui, "material.set", index + 1, "emission_color", tint_of(ui.open.emission(index)),
                 m.emission_texture ? "\xC3\x97 texture" : "");
     if (button("##dark", "Remove emission", false, ImGui::CalcItemWidth())) set(named("strength", 0));
     tooltip("Makes the surface non-emissive. Can be undone.");
@@ -388,11 +388,11 @@ void material_details(Ui& ui, uint32_t index, const scene::Material& m) {
 }
 
 void materials(Ui& ui, bool reveal) {
-  const auto& list = ui.scene->materials;
+  const auto& list = ui.open.scene->materials;
   for (size_t i = 0; i < list.size(); ++i) {
     const auto index = static_cast<uint32_t>(i);
-    const scene::Material m = ui.material(index);
-    const bool chosen = ui.selection == Selection{Kind::material, index};
+    const scene::Material m = ui.open.material(index);
+    const bool chosen = ui.camera.selection == Selection{Kind::material, index};
     if (chosen && reveal) show_row(ImGui::GetCursorScreenPos().y);
     ImGui::PushID(static_cast<int>(i));
     const bool emits = strength_of(m.emission) > 0;
@@ -408,7 +408,7 @@ void materials(Ui& ui, bool reveal) {
     if (chosen) {
       ImGui::Indent(px(18));
       ImGui::PushItemWidth(ImGui::CalcItemWidth() - px(18));
-      material_details(ui, index, ui.material(index));
+      material_details(ui, index, ui.open.material(index));
       ImGui::PopItemWidth();
       ImGui::Unindent(px(18));
       gap(4);
@@ -418,9 +418,9 @@ void materials(Ui& ui, bool reveal) {
 }
 
 void objects(Ui& ui, bool reveal) {
-  const auto& list = ui.scene->instances;
-  if (reveal && ui.selection.kind == Kind::instance)
-    show_row(ImGui::GetCursorScreenPos().y + px(24) * static_cast<float>(ui.selection.index));
+  const auto& list = ui.open.scene->instances;
+  if (reveal && ui.camera.selection.kind == Kind::instance)
+    show_row(ImGui::GetCursorScreenPos().y + px(24) * static_cast<float>(ui.camera.selection.index));
   // Long lists draw only the visible rows.
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(list.size()), px(24));
@@ -428,7 +428,7 @@ void objects(Ui& ui, bool reveal) {
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
       const auto index = static_cast<uint32_t>(i);
       const scene::Instance& instance = list[index];
-      const bool chosen = ui.selection.kind == Kind::instance && ui.selection.index == index;
+      const bool chosen = ui.camera.selection.kind == Kind::instance && ui.camera.selection.index == index;
       ImGui::PushID(i);
       if (list_row("##object", chosen, display_name(instance.name, "Object", index), "", 0, 0))
         choose(ui, chosen, "object", index);
@@ -443,7 +443,7 @@ void draw_scene_panel(Ui& ui, const Area& area) {
   if (!ui.shown.right_open) return;
   begin_panel("##scene", area, colour::panel, true);
   if (std::exchange(ui.scene_panel_to_top, false)) ImGui::SetScrollY(0);
-  if (!ui.scene) {
+  if (!ui.open.scene) {
     bool open = true;
     section("Scene", open);
     begin_padded();
@@ -462,14 +462,14 @@ void draw_scene_panel(Ui& ui, const Area& area) {
   };
   // A selection made elsewhere, for example by a click in the picture, is scrolled into view.
   const bool reveal = ui.reveals();
-  if (reveal && ui.selection.kind == Kind::instance) ui.sections["Objects"] = true;
-  if (reveal && ui.selection.kind == Kind::material) ui.sections["Materials"] = true;
-  if (reveal && ui.selection.kind == Kind::light) ui.sections["Lights"] = true;
-  block("Camera", ui.scene->cameras.size(), true, [&] { cameras(ui); });
-  block("Lights", ui.scene->lights.size() + emitters(ui).size(), true, [&] { light_rows(ui, reveal); });
+  if (reveal && ui.camera.selection.kind == Kind::instance) ui.sections["Objects"] = true;
+  if (reveal && ui.camera.selection.kind == Kind::material) ui.sections["Materials"] = true;
+  if (reveal && ui.camera.selection.kind == Kind::light) ui.sections["Lights"] = true;
+  block("Camera", ui.open.scene->cameras.size(), true, [&] { cameras(ui); });
+  block("Lights", ui.open.scene->lights.size() + emitters(ui).size(), true, [&] { light_rows(ui, reveal); });
   block("Environment", 0, true, [&] { environment(ui); });
-  block("Materials", ui.scene->materials.size(), true, [&] { materials(ui, reveal); });
-  block("Objects", ui.scene->instances.size(), false, [&] { objects(ui, reveal); });
+  block("Materials", ui.open.scene->materials.size(), true, [&] { materials(ui, reveal); });
+  block("Objects", ui.open.scene->instances.size(), false, [&] { objects(ui, reveal); });
   hairline();
   ImGui::End();
 }

@@ -55,7 +55,7 @@ class Items {
       const std::string& value = option->choices[i];
       if (i > 0) ImGui::SameLine(0, px(4));
       if (button(("##" + choice.key + value).c_str(), i < labels.size() ? labels[i] : value,
-                 ui_.setting(choice.key) == value, each))
+                 ui_.open.setting(choice.key) == value, each))
         ui_.act("set", choice.key, value);
       tooltip(choice.help.empty() ? option->help : option->help + " " + choice.help);
     }
@@ -368,13 +368,13 @@ Area draw_side_tabs(Ui& ui, const Area& area) {
 void draw_solver_panel(Ui& ui, const SolverInfo& solver, const Area& area) {
   if (!ui.shown.right_open) return;
   begin_panel(("##solver_" + solver.name).c_str(), area, colour::panel, true);
-  const bool used = ui.uses(solver);
-  const Report* report = used && ui.scene ? ui.report(solver) : nullptr;
+  const bool used = ui.open.uses(solver);
+  const Report* report = used && ui.open.scene ? ui.open.report(solver) : nullptr;
   if (!used) {
     block(ui, solver.label, "", [&] { unused(ui, solver); });
   } else if (!report) {
     block(ui, solver.label, "", [&] {
-      paragraph(ui.scene ? "It has not been used yet." : "No scene is open.", colour::text_faint);
+      paragraph(ui.open.scene ? "It has not been used yet." : "No scene is open.", colour::text_faint);
     });
   } else {
     Items draw(ui, solver);

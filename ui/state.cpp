@@ -39,13 +39,31 @@ std::vector<LogLine> LogInbox::take() {
 
 double Ui::time() { return clock().seconds(); }
 
-Ui::Ui(session::Session& s) : Workspace(s) { add_window_commands(*this); }
+Ui::Ui(session::Session& session) : work(session, events()) { add_window_commands(*this); }
+
+commands::WorkspaceEvents Ui::events() {
+  return {
+      .scene_changed = [this] { scene_changed(); },
+      .measured =
+          [this](const std::string& text) {
+            notice(text + ". Ctrl+Z undoes it.", 8);
+            print(log::Level::info, text);
+          },
+      .size_refused =
+          [this](uint32_t width, uint32_t height) {
+            if (picture_size) picture_size.emplace(width, height);
+          },
+      .written = [this](const std::string& name) { notice("Saved " + name, 6); },
+      .set_with = [this](const std::string& key, const std::string& value) { return set_with(key, value); },
+      .exposes_at_load = [this] { return !scripted; },
+  };
+}
 
 void Ui::act_line(const std::string& line) {
   // A change at the moment of a press belongs to the drag that begins there.
   if (gesture == 0 && ImGui::GetActiveID() != 0) follow_gesture();
   try {
-    run(line, gesture);
+    work.run(line, gesture);
   } catch (const std::exception& error) {
     log::error("{}", error.what());
   }
@@ -60,64 +78,57 @@ void Ui::follow_gesture() {
 }
 
 bool Ui::reveals() {
-  if (std::exchange(revealed_, selection) == selection) return false;
+  if (std::exchange(revealed_, camera.selection) == camera.selection) return false;
   return !std::exchange(chosen_in_list, false);
 }
 
-void Ui::place(const Viewpoint& to) { act_line(place_line(to)); }
+void Ui::place(const Viewpoint& to) { act_line(commands::Navigation::place_line(to)); }
 
 void Ui::place_by_wheel(const Viewpoint& to) {
-  if (now - wheeled_ > 0.8) wheel_gesture_ = ++gestures_;
-  wheeled_ = now;
+  if (work.now - wheeled_ > 0.8) wheel_gesture_ = ++gestures_;
+  wheeled_ = work.now;
   const uint64_t held = std::exchange(gesture, wheel_gesture_);
   place(to);
   gesture = held;
 }
 
 void Ui::notice(const std::string& text, double seconds) {
-  note.text = text, note.until = now + seconds;
+  note.text = text, note.until = work.now + seconds;
   wake(3);
 }
 
 void Ui::say_blocked() {
-  if (now - blocked_said_ < 20) return;
-  blocked_said_ = now;
+  if (work.now - blocked_said_ < 20) return;
+  blocked_said_ = work.now;
   notice("A surface is in the way. Hold Alt to pass through it.", 4);
-}
-
-void Ui::measured(const std::string& text) {
-  notice(text + ". Ctrl+Z undoes it.", 8);
-  print(log::Level::info, text);
 }
 
 std::vector<std::pair<std::string, std::string>> Ui::set_with(const std::string& key,
                                                               const std::string& value) {
   // The target's line stays in place when the sampling mode changes.
   if (key == "sampling.target_error") what_if_asked = false;
-  if (key != "sampling.mode" || value == setting(key)) return {};
+  if (key != "sampling.mode" || value == open.setting(key)) return {};
   if (value == "uniform") {
-    what_if = setting_real("sampling.target_error"), what_if_asked = false;
+    what_if = open.setting_real("sampling.target_error"), what_if_asked = false;
   } else if (std::exchange(what_if_asked, false)) {
     return {{"sampling.target_error", fmt::format("{:.4g}", what_if)}};
   }
   return {};
 }
 
-void Ui::written(const std::string& name) { notice("Saved " + name, 6); }
-
 double Ui::busy_seconds() const {
-  const double seconds = busy.command != 0 ? now - busy.since : 0;
+  const double seconds = busy.command != 0 ? work.now - busy.since : 0;
   return seconds > 0.5 ? seconds : 0;
 }
 
 void Ui::follow_busy() {
-  const uint64_t given = session.commands(), done = session.commands_done();
+  const uint64_t given = work.session.commands(), done = work.session.commands_done();
   const bool all_done = done >= given;
-  const uint64_t shown_up_to = snapshot ? snapshot->commands : 0;
+  const uint64_t shown_up_to = open.snapshot ? open.snapshot->commands : 0;
   const uint64_t current = !all_done ? done + 1 : shown_up_to < given ? given : 0;
   if (current == busy.command && all_done == busy.done) return;
-  busy.command = current, busy.done = all_done, busy.since = now;
-  busy.text = current == 0 || all_done ? "" : line_of(current);
+  busy.command = current, busy.done = all_done, busy.since = work.now;
+  busy.text = current == 0 || all_done ? "" : history.line_of(current);
   if (busy.text.starts_with("inspect.")) busy.text.clear();  // follows the pointer; no one has typed it
 }
 
@@ -125,10 +136,10 @@ void Ui::scene_changed() {
   flight = {};
   errors.clear();
   scene_panel_to_top = true;
-  if (!scene->unknown_extensions.empty())
-    notice(fmt::format("Not supported and ignored: {}", fmt::join(scene->unknown_extensions, ", ")), 12);
-  if (scene->file.empty()) return;
-  const std::string file = absolute_path(scene->file).string();
+  if (!open.scene->unknown_extensions.empty())
+    notice(fmt::format("Not supported and ignored: {}", fmt::join(open.scene->unknown_extensions, ", ")), 12);
+  if (open.scene->file.empty()) return;
+  const std::string file = absolute_path(open.scene->file).string();
   std::erase(recent, file);
   recent.insert(recent.begin(), file);
   if (recent.size() > k_recent_files) recent.resize(k_recent_files);
@@ -137,7 +148,7 @@ void Ui::scene_changed() {
 std::string Ui::next_side() const {
   std::vector<std::string> sides;
   for (const solvers::SolverInfo* solver : solvers::registered())
-    if (solver->has_panel() && uses(*solver)) sides.push_back(solver->name);
+    if (solver->has_panel() && open.uses(*solver)) sides.push_back(solver->name);
   // Without a solver in use a panel shows how to use one.
   for (const solvers::SolverInfo* solver : solvers::registered())
     if (solver->has_panel() && sides.empty()) sides.push_back(solver->name);
@@ -149,7 +160,7 @@ std::string Ui::next_side() const {
 }
 
 bool Ui::view_on(const solvers::ViewInfo& view) const {
-  const std::string& value = setting(view.option);
+  const std::string& value = open.setting(view.option);
   return value != "false" && value != "off";
 }
 
@@ -159,7 +170,7 @@ void Ui::turn_view(const solvers::ViewInfo& view) {
   if (option->type != OptionType::choice) return toggle(view.option);
   const std::vector<std::string>& ring = view.ring.empty() ? option->choices : view.ring;
   // A value outside the ring counts as on: off is next.
-  const auto at = std::find(ring.begin(), ring.end(), setting(view.option));
+  const auto at = std::find(ring.begin(), ring.end(), open.setting(view.option));
   act("set", view.option, at == ring.end() || at + 1 == ring.end() ? ring.front() : *(at + 1));
 }
 
@@ -168,7 +179,7 @@ bool Ui::inspects_pointer() const {
     if (view.inspects_pointer && view_on(view)) return true;
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const solvers::ViewInfo& view : solver->views)
-      if (view.inspects_pointer && view_on(view) && uses(*solver)) return true;
+      if (view.inspects_pointer && view_on(view) && open.uses(*solver)) return true;
   return false;
 }
 
@@ -201,7 +212,7 @@ void Ui::drop(const std::string& file) {
 }
 
 void Ui::print(log::Level level, const std::string& text) {
-  log.push_back({level, now, text});
+  log.push_back({level, work.now, text});
   wake();
 }
 

@@ -71,9 +71,17 @@ struct Console {
   bool active = false;
 };
 
-/// The workspace and the window's state.
-struct Ui : commands::Workspace {
-  explicit Ui(session::Session& s);
+/// The window's state over a workspace.
+struct Ui {
+  explicit Ui(session::Session& session);
+  Ui(const Ui&) = delete;
+  Ui& operator=(const Ui&) = delete;
+
+  commands::Workspace work;
+  // Its parts.
+  commands::OpenScene& open = work.open;
+  commands::Navigation& camera = work.camera;
+  const commands::History& history = work.history;
 
   static double time();  ///< seconds since the window opened
 
@@ -85,7 +93,7 @@ struct Ui : commands::Workspace {
   }
   void act_line(const std::string& line);
   /// Toggles a boolean setting.
-  void toggle(const std::string& key) { act("set", key, setting_on(key) ? "false" : "true"); }
+  void toggle(const std::string& key) { act("set", key, open.setting_on(key) ? "false" : "true"); }
   uint64_t gesture = 0;  ///< of the control that is held now; 0: none
   /// Determines the held control; call once per frame.
   void follow_gesture();
@@ -228,20 +236,15 @@ struct Ui : commands::Workspace {
   void start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver = nullptr);
   void fail(const std::string& message);                  ///< to the strip
   void print(log::Level level, const std::string& text);  ///< to the log panel alone
-  bool has_picture() const { return snapshot && !snapshot->rgba.empty(); }
-
- protected:
-  void scene_changed() override;
-  void measured(const std::string& text) override;
-  void size_refused(uint32_t width, uint32_t height) override {
-    if (picture_size) picture_size.emplace(width, height);
-  }
-  void written(const std::string& name) override;
-  std::vector<std::pair<std::string, std::string>> set_with(const std::string& key,
-                                                            const std::string& value) override;
-  bool exposes_at_load() const override { return !scripted; }
+  bool has_picture() const { return open.snapshot && !open.snapshot->rgba.empty(); }
 
  private:
+  /// What the window does about changes of the workspace.
+  commands::WorkspaceEvents events();
+  void scene_changed();
+  /// Settings that change together with one.
+  std::vector<std::pair<std::string, std::string>> set_with(const std::string& key, const std::string& value);
+
   Selection revealed_;
   unsigned held_ = 0;  ///< id of the control that is held
   bool flying_ = false;

@@ -28,7 +28,7 @@ class Viewer {
       : options_(options),
         ui_(session),
         runner_(ui_, options.script, options.script_name, options.stay),  // before a window is opened
-        settings_(checked(ui_.registry, options.set)),
+        settings_(checked(ui_.work.registry, options.set)),
         window_(options.width, options.height, options.hidden, options.scale) {
     ui_.scripted = !options.script.empty();
     if (remembers()) {
@@ -42,14 +42,14 @@ class Viewer {
     for (const std::string& line : settings_) ui_.act_line(line);
   }
 
-  ~Viewer() { ui_.session.on_publish({}); }
+  ~Viewer() { ui_.work.session.on_publish({}); }
 
   int run() {
     const auto interrupted = [&] { return options_.interrupted && options_.interrupted(); };
     while (!window_.closing() && !ui_.status && !interrupted()) {
       pause_until_needed();
       collect();
-      if (memory_) memory_->follow(ui_.now);
+      if (memory_) memory_->follow(ui_.work.now);
       runner_.advance();
       inject();
       if (ui_.status) break;
@@ -83,7 +83,7 @@ class Viewer {
       sleep = 0.02;
     else if (size_changed_at_ >= 0)
       sleep = k_settle;
-    else if (ui_.busy.command != 0 || ui_.now < ui_.note.until || ui_.measuring())
+    else if (ui_.busy.command != 0 || ui_.work.now < ui_.note.until || ui_.work.exposure.measuring())
       sleep = 0.1;
     if (window_.wait(sleep)) ui_.wake(3), hovering_since_ = ui_.time();
   }
@@ -91,33 +91,33 @@ class Viewer {
   /// Reads external input: snapshots, log lines, dropped files.
   void collect() {
     // Errors first: the workspace queries whether there were any.
-    ui_.now = ui_.time();
+    ui_.work.now = ui_.time();
     for (LogLine& line : inbox_.take()) {
-      if (line.level == log::Level::error) ui_.fail(line.text), ++ui_.error_count;
+      if (line.level == log::Level::error) ui_.fail(line.text), ++ui_.work.error_count;
       ui_.log.push_back(std::move(line));
       if (ui_.log.size() > k_log_lines) ui_.log.pop_front();
       ui_.wake(2);
     }
-    const auto snapshot = ui_.snapshot;
-    const auto scene = ui_.scene;
-    ui_.refresh(ui_.time());
-    ui_.resizing = ui_.frames_to_settle > 0 || size_changed_at_ >= 0;
-    if (snapshot != ui_.snapshot) {
+    const auto snapshot = ui_.open.snapshot;
+    const auto scene = ui_.open.scene;
+    ui_.work.refresh(ui_.time());
+    ui_.camera.resizing = ui_.frames_to_settle > 0 || size_changed_at_ >= 0;
+    if (snapshot != ui_.open.snapshot) {
       ui_.wake(1);
-      fresh_picture_ = ui_.snapshot != nullptr;
-      if (ui_.snapshot) ui_.runs.follow(*ui_.snapshot, ui_.scene);
+      fresh_picture_ = ui_.open.snapshot != nullptr;
+      if (ui_.open.snapshot) ui_.runs.follow(*ui_.open.snapshot, ui_.open.scene);
     }
-    if (scene != ui_.scene) {
+    if (scene != ui_.open.scene) {
       ui_.wake(1);
-      window_.set_title(ui_.scene ? ui_.scene->name + " \xE2\x80\x93 Lucerna" : "Lucerna");
+      window_.set_title(ui_.open.scene ? ui_.open.scene->name + " \xE2\x80\x93 Lucerna" : "Lucerna");
       hold_selection();
     }
     for (const std::string& file : window_.dropped()) ui_.drop(file);
     ui_.follow_busy();
     if (ui_.busy_seconds() > 0) ui_.wake(1);
-    if (!ui_.note.text.empty() && ui_.now >= ui_.note.until) ui_.note.text.clear(), ui_.wake(2);
+    if (!ui_.note.text.empty() && ui_.work.now >= ui_.note.until) ui_.note.text.clear(), ui_.wake(2);
     // Tooltips and the text cursor need a frame after the pointer has stopped.
-    if (ui_.now - hovering_since_ < 0.7 || ImGui::GetIO().WantTextInput) ui_.wake(1);
+    if (ui_.work.now - hovering_since_ < 0.7 || ImGui::GetIO().WantTextInput) ui_.wake(1);
     if (runner_.measuring() || ui_.moving) ui_.wake(1);
   }
 
@@ -139,20 +139,21 @@ class Viewer {
 
   /// A selection survives edits, but not the removal of its object.
   void hold_selection() {
-    const auto& s = ui_.selection;
-    const size_t count = !ui_.scene                 ? 0
-                         : s.kind == Kind::material ? ui_.scene->materials.size()
-                         : s.kind == Kind::instance ? ui_.scene->instances.size()
-                         : s.kind == Kind::light    ? ui_.scene->lights.size()
+    const auto& s = ui_.camera.selection;
+    const size_t count = !ui_.open.scene            ? 0
+                         : s.kind == Kind::material ? ui_.open.scene->materials.size()
+                         : s.kind == Kind::instance ? ui_.open.scene->instances.size()
+                         : s.kind == Kind::light    ? ui_.open.scene->lights.size()
                                                     : 0;
-    if (s.index >= count) ui_.selection = {};
+    if (s.index >= count) ui_.camera.selection = {};
   }
 
   void draw() {
-    if (std::exchange(fresh_picture_, false) && !ui_.snapshot->rgba.empty()) {
-      ui_.texture = window_.upload(ui_.snapshot->rgba, ui_.snapshot->scale * ui_.snapshot->width,
-                                   ui_.snapshot->scale * ui_.snapshot->height);
-      ui_.texture_width = ui_.snapshot->width, ui_.texture_height = ui_.snapshot->height;
+    if (std::exchange(fresh_picture_, false) && !ui_.open.snapshot->rgba.empty()) {
+      ui_.texture =
+          window_.upload(ui_.open.snapshot->rgba, ui_.open.snapshot->scale * ui_.open.snapshot->width,
+                         ui_.open.snapshot->scale * ui_.open.snapshot->height);
+      ui_.texture_width = ui_.open.snapshot->width, ui_.texture_height = ui_.open.snapshot->height;
     }
     --ui_.frames_wanted;
     ui_.moving = false;
@@ -169,14 +170,14 @@ class Viewer {
     if (!ui_.shot.file.empty()) {
       ui_.wake(2);
       // Waits until the picture shows earlier commands, unless a scene is loading.
-      const bool waits = ui_.snapshot && ui_.snapshot->activity.empty() && !ui_.up_to_date();
+      const bool waits = ui_.open.snapshot && ui_.open.snapshot->activity.empty() && !ui_.open.up_to_date();
       if (!waits && ui_.shot.settle-- <= 0) screenshot(std::exchange(ui_.shot.file, {}));
     }
     window_.present();
     const double now = ui_.time();
     runner_.presented(1e3 * (now - last_present_));
     last_present_ = now;
-    last_draw_ = ui_.now;
+    last_draw_ = ui_.work.now;
     send();
   }
 
@@ -190,11 +191,11 @@ class Viewer {
                                              divided(ui_.picture.height(), ratio.y)};
     const std::pair<uint32_t, uint32_t> size = ui_.picture_size.value_or(room);
     if (std::exchange(sent_scale_, ui_.picture_divisor) != ui_.picture_divisor)
-      ui_.session.set_window_scale(static_cast<uint32_t>(ui_.picture_divisor));
+      ui_.work.session.set_window_scale(static_cast<uint32_t>(ui_.picture_divisor));
     const bool first = wanted_size_.first == 0;
-    if (size != wanted_size_) wanted_size_ = size, size_changed_at_ = ui_.now;
-    if (size_changed_at_ >= 0 && (ui_.now - size_changed_at_ >= k_settle || first || ui_.picture_size)) {
-      ui_.set_size(wanted_size_.first, wanted_size_.second);
+    if (size != wanted_size_) wanted_size_ = size, size_changed_at_ = ui_.work.now;
+    if (size_changed_at_ >= 0 && (ui_.work.now - size_changed_at_ >= k_settle || first || ui_.picture_size)) {
+      ui_.camera.set_size(wanted_size_.first, wanted_size_.second);
       size_changed_at_ = -1;
     } else if (size_changed_at_ >= 0) {
       ui_.wake(1);

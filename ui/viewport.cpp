@@ -40,7 +40,7 @@ void layer_buttons(Ui& ui, float room) {
   const OptionInfo* option = plan::find_option("film.layer");
   if (!option) return;
   const std::vector<std::string>& layers = option->choices;
-  const std::string& current = ui.setting("film.layer");
+  const std::string& current = ui.open.setting("film.layer");
   const float between = px(4);
   float list_width = px(96);
   const auto width_of = [&](const std::string& layer) { return text_width(capitalised(layer)) + px(18); };
@@ -92,13 +92,13 @@ bool dragging() {
 
 /// Marks the selected object by the corners of its box, which hide little of it.
 void draw_brackets(const Ui& ui, const Area& shown) {
-  if (ui.selection.kind != Kind::instance || !ui.scene || !ui.snapshot) return;
-  const scene::Instance& instance = ui.scene->instances[ui.selection.index];
-  if (instance.mesh >= ui.scene->meshes.size()) return;
+  if (ui.camera.selection.kind != Kind::instance || !ui.open.scene || !ui.open.snapshot) return;
+  const scene::Instance& instance = ui.open.scene->instances[ui.camera.selection.index];
+  if (instance.mesh >= ui.open.scene->meshes.size()) return;
   // Bounds in the object's space, cached for the selection.
   static std::pair<std::pair<uint64_t, uint32_t>, Box> known{{0, 0}, {}};
-  const scene::Mesh& mesh = ui.scene->meshes[instance.mesh];
-  if (const std::pair key{ui.view_scene, ui.selection.index}; known.first != key) {
+  const scene::Mesh& mesh = ui.open.scene->meshes[instance.mesh];
+  if (const std::pair key{ui.camera.view_scene, ui.camera.selection.index}; known.first != key) {
     known = {key, {}};
     for (const scene::Primitive& p : mesh.primitives)
       for (const vec3& v : p.positions) known.second.grow(v);
@@ -115,8 +115,8 @@ void draw_brackets(const Ui& ui, const Area& shown) {
     for (int axis = 1; axis < 8; axis *= 2) {
       const vec3 a = corner(from), b = glm::mix(a, corner(from ^ axis), 0.18f);
       ImVec2 p, q;
-      if (!project(ui.snapshot->camera, shown, vec3(instance.to_world * vec4(a, 1)), p) ||
-          !project(ui.snapshot->camera, shown, vec3(instance.to_world * vec4(b, 1)), q))
+      if (!project(ui.open.snapshot->camera, shown, vec3(instance.to_world * vec4(a, 1)), p) ||
+          !project(ui.open.snapshot->camera, shown, vec3(instance.to_world * vec4(b, 1)), q))
         continue;
       list->AddLine(p, q, IM_COL32(0, 0, 0, 120), px(3));
       list->AddLine(p, q, colour::accent, std::max(1.0f, px(1)));
@@ -126,12 +126,12 @@ void draw_brackets(const Ui& ui, const Area& shown) {
 
 /// The point of the scene under the pointer, if any.
 std::optional<vec3> under_pointer(Ui& ui, const Area& shown) {
-  const session::Probe* rays = ui.probe();
+  const session::Probe* rays = ui.camera.probe();
   const ImVec2 at = ImGui::GetIO().MousePos;
   const float x = (at.x - shown.lo.x) / std::max(1.0f, shown.width());
   const float y = (at.y - shown.lo.y) / std::max(1.0f, shown.height());
-  if (!rays || !ui.view || x < 0 || x > 1 || y < 0 || y > 1) return std::nullopt;
-  const session::PickRay ray = session::pick_ray(ui.view->camera, x, y, ui.aspect);
+  if (!rays || !ui.camera.view || x < 0 || x > 1 || y < 0 || y > 1) return std::nullopt;
+  const session::PickRay ray = session::pick_ray(ui.camera.view->camera, x, y, ui.camera.aspect);
   const auto hit = rays->nearest(ray.origin, ray.direction);
   if (!hit) return std::nullopt;
   return hit->position;
@@ -139,18 +139,20 @@ std::optional<vec3> under_pointer(Ui& ui, const Area& shown) {
 
 /// The sun that a drag rotates if there is no environment image: the first one that is on.
 std::optional<uint32_t> first_sun(const Ui& ui) {
-  for (uint32_t i = 0; ui.scene && i < ui.scene->lights.size(); ++i)
-    if (ui.scene->lights[i].kind == scene::LightKind::directional && ui.light(i).enabled) return i;
+  for (uint32_t i = 0; ui.open.scene && i < ui.open.scene->lights.size(); ++i)
+    if (ui.open.scene->lights[i].kind == scene::LightKind::directional && ui.open.light(i).enabled) return i;
   return std::nullopt;
 }
 bool has_environment_image(const Ui& ui) {
-  return ui.scene && (ui.scene->environment.image != scene::k_none || !ui.environment_file().empty());
+  return ui.open.scene &&
+         (ui.open.scene->environment.image != scene::k_none || !ui.open.environment_file().empty());
 }
 
 /// Rotates the sky with the pointer: points at infinity stay under it.
 void turn_sky(Ui& ui, float pixels, float width) {
-  const scene::Camera& camera = ui.view->camera;
-  const float across = camera.orthographic ? k_pi : 2 * std::atan(std::tan(0.5f * camera.yfov) * ui.aspect);
+  const scene::Camera& camera = ui.camera.view->camera;
+  const float across =
+      camera.orthographic ? k_pi : 2 * std::atan(std::tan(0.5f * camera.yfov) * ui.camera.aspect);
   const float degrees = pixels * across / std::max(1.0f, width) * 180 / k_pi;
   // To the right is clockwise seen from above: along the compass, against the image's rotation.
   if (has_environment_image(ui))
@@ -168,20 +170,20 @@ void begin_drag(Ui& ui, const Area& shown) {
   if (!ui.dropper && !ImGui::GetIO().KeyCtrl && ImGui::GetIO().MouseDown[0])
     ui.drag.lamp = lamp_handle_at(ui, shown, ImGui::GetIO().MousePos);
   if (ui.drag.lamp && ui.drag.lamp->part == LampHandle::Part::surface) ui.drag.lamp.reset();
-  ui.drag.azimuth = ui.environment_rotation();
+  ui.drag.azimuth = ui.open.environment_rotation();
   if (const auto sun = first_sun(ui); sun && !has_environment_image(ui))
-    ui.drag.azimuth = commands::bearing_of(ui.light(*sun).direction).azimuth;
+    ui.drag.azimuth = commands::bearing_of(ui.open.light(*sun).direction).azimuth;
 }
 
 /// Moves to a view unless a surface is in the way.
 void go(Ui& ui, const Viewpoint& to, bool through, bool by_wheel) {
   Viewpoint view = to;
-  const vec3 from = commands::eye_of(ui.view->camera), step = commands::eye_of(to.camera) - from;
+  const vec3 from = commands::eye_of(ui.camera.view->camera), step = commands::eye_of(to.camera) - from;
   if (!through && !to.camera.orthographic && glm::length(step) > 0) {
     bool blocked = false;
     // Closer than a walker, for close-ups of small objects.
     const float clear = 0.25f * commands::clearance(to.extent);
-    const vec3 end = commands::step_straight(ui.look(), from, step, clear, &blocked);
+    const vec3 end = commands::step_straight(ui.camera.look(), from, step, clear, &blocked);
     if (blocked) {
       ui.say_blocked();
       if (!by_wheel) return;
@@ -196,19 +198,20 @@ void go(Ui& ui, const Viewpoint& to, bool through, bool by_wheel) {
 
 /// Flies or walks by `metres` to the right, upwards and forwards.
 void advance_view(Ui& ui, const vec3& metres, bool through) {
-  Viewpoint view = *ui.view;
+  Viewpoint view = *ui.camera.view;
   bool blocked = false;
-  if (ui.walking && !view.camera.orthographic) {
-    if (metres.y != 0) ui.act("camera.eye_height", std::clamp(ui.eye_height + metres.y, 0.05f, 100.0f));
+  if (ui.camera.walking && !view.camera.orthographic) {
+    if (metres.y != 0)
+      ui.act("camera.eye_height", std::clamp(ui.camera.eye_height + metres.y, 0.05f, 100.0f));
     if (metres.x == 0 && metres.z == 0) return;
-    view = *ui.view;
-    blocked = commands::walk(view, ui.look(), {metres.x, metres.z}, ui.eye_height, through);
+    view = *ui.camera.view;
+    blocked = commands::walk(view, ui.camera.look(), {metres.x, metres.z}, ui.camera.eye_height, through);
   } else if (through || view.camera.orthographic) {
     commands::fly(view, metres);
   } else {
     const vec3 step = metres.x * commands::right_of(view.camera) + metres.y * commands::up_of(view.camera) +
                       metres.z * commands::forward_of(view.camera);
-    view.camera.to_world[3] = vec4(commands::step_among(ui.look(), commands::eye_of(view.camera), step,
+    view.camera.to_world[3] = vec4(commands::step_among(ui.camera.look(), commands::eye_of(view.camera), step,
                                                         commands::clearance(view.extent), &blocked),
                                    1);
   }
@@ -219,7 +222,7 @@ void advance_view(Ui& ui, const vec3& metres, bool through) {
 /// Keys and mouse over the picture.
 void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
   ImGuiIO& io = ImGui::GetIO();
-  if (!ui.view) return;
+  if (!ui.camera.view) return;
   const float height = std::max(1.0f, shown.height());
   const vec2 drag(io.MouseDelta.x, io.MouseDelta.y);
   const bool typing = io.WantTextInput ||
@@ -242,7 +245,7 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
   const bool flying = wish != vec3(0);
   if (flying || ui.flight.moving()) {
     const float seconds = std::min(io.DeltaTime, 0.1f);
-    const vec3 metres = advance(ui.flight, wish, ui.speed * (io.KeyShift ? 4.0f : 1.0f), seconds);
+    const vec3 metres = advance(ui.flight, wish, ui.camera.speed * (io.KeyShift ? 4.0f : 1.0f), seconds);
     if (flying) ui.follow_gesture();  // the first move belongs to the flight already
     advance_view(ui, metres, through);
     ui.moving = true;
@@ -251,9 +254,9 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
   if (active && (drag.x != 0 || drag.y != 0) && (flying || dragging())) {
     // Half a turn across the height of the picture.
     const vec2 angles = -drag * (k_pi / height);
-    Viewpoint view = *ui.view;
+    Viewpoint view = *ui.camera.view;
     if (io.MouseDown[0] && ui.drag.lamp) {
-      if (ui.selection != Selection{Kind::light, ui.drag.lamp->light})
+      if (ui.camera.selection != Selection{Kind::light, ui.drag.lamp->light})
         ui.act("select", "light", ui.drag.lamp->light + 1);
       drag_lamp(ui, shown);
     } else if (io.MouseDown[0] && io.KeyCtrl) {
@@ -274,10 +277,10 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
   }
   if (hovered && io.MouseWheel != 0) {
     if (flying) {
-      ui.act("camera.speed", std::clamp(ui.speed * std::pow(1.2f, io.MouseWheel), 0.01f, 1000.0f));
+      ui.act("camera.speed", std::clamp(ui.camera.speed * std::pow(1.2f, io.MouseWheel), 0.01f, 1000.0f));
       return;
     }
-    Viewpoint view = *ui.view;
+    Viewpoint view = *ui.camera.view;
     if (const auto point = under_pointer(ui, shown))
       commands::dolly_towards(view, *point, io.MouseWheel);
     else
@@ -312,12 +315,12 @@ std::string help_of(Ui& ui, const LampHandle& handle) {
     case LampHandle::Part::surface:
       return fmt::format(
           "{}. Emissive surface: click to select its material, which can be edited under Lights.",
-          ui.material(handle.light).name);
+          ui.open.material(handle.light).name);
     case LampHandle::Part::place:
       break;
   }
   return fmt::format("{}. Drag to move it parallel to the picture, with Shift vertically.",
-                     ui.scene->lights[handle.light].name);
+                     ui.open.scene->lights[handle.light].name);
 }
 
 constexpr double k_rest = 0.15;  // seconds
@@ -328,8 +331,8 @@ void inspect_at_rest(Ui& ui, const Area& shown, bool active) {
   static ImVec2 last;
   static double since = 0;
   const ImVec2 at = ImGui::GetIO().MousePos;
-  if (at.x != last.x || at.y != last.y) last = at, since = ui.now, ui.script_asked = false;
-  if (std::exchange(ui.inspections_known, ui.inspections) != ui.inspections) {
+  if (at.x != last.x || at.y != last.y) last = at, since = ui.work.now, ui.script_asked = false;
+  if (std::exchange(ui.inspections_known, ui.work.inspections) != ui.work.inspections) {
     ui.script_asked = true;
     ui.asked.reset();
   }
@@ -338,9 +341,9 @@ void inspect_at_rest(Ui& ui, const Area& shown, bool active) {
                    (at.y - shown.lo.y) / std::max(1.0f, shown.height()));
   const bool inside = place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
   // During a load the renderer refuses inspections.
-  const bool still = !(active && dragging()) && !ui.flight.moving() && !ui.loading();
+  const bool still = !(active && dragging()) && !ui.flight.moving() && !ui.open.loading();
   if (ui.inspects_pointer() && ui.picture_hovered && inside && still) {
-    if (active || ui.asked == place || ui.now - since < k_rest) return;
+    if (active || ui.asked == place || ui.work.now - since < k_rest) return;
     ui.asked = place;
     ++ui.inspections_known;
     ui.act("inspect.at", place.x, place.y);
@@ -353,9 +356,9 @@ void inspect_at_rest(Ui& ui, const Area& shown, bool active) {
 }  // namespace
 
 void keep_view(Ui& ui) {
-  const commands::Workspace::Bookmarks before = ui.bookmarks_here();
+  const commands::Navigation::Bookmarks before = ui.camera.bookmarks_of(ui.open.scene.get());
   ui.act("camera.bookmark");
-  for (const auto& [name, line] : ui.bookmarks_here())
+  for (const auto& [name, line] : ui.camera.bookmarks_of(ui.open.scene.get()))
     if (!before.contains(name)) ui.notice(fmt::format("Saved as '{}' in the Camera menu.", name), 4);
 }
 
@@ -375,7 +378,7 @@ void draw_toolbar(Ui& ui, const Area& area) {
     std::vector<std::string> names;
     for (const std::string& name : tone->choices) names.push_back(name == "agx" ? "AgX" : capitalised(name));
     int chosen = static_cast<int>(
-        std::find(tone->choices.begin(), tone->choices.end(), ui.setting("film.tone_curve")) -
+        std::find(tone->choices.begin(), tone->choices.end(), ui.open.setting("film.tone_curve")) -
         tone->choices.begin());
     if (choice("##tone", "", names, chosen, tone_width))
       ui.act("set", "film.tone_curve", tone->choices[static_cast<size_t>(chosen)]);
@@ -385,7 +388,7 @@ void draw_toolbar(Ui& ui, const Area& area) {
   if (const OptionInfo* ev = plan::find_option("film.ev")) {
     right -= ev_width;
     ImGui::SetCursorScreenPos({right, y});
-    auto value = static_cast<float>(ui.setting_real("film.ev"));
+    auto value = static_cast<float>(ui.open.setting_real("film.ev"));
     // Dragging covers the usual range of exposures; typing reaches the rest.
     const Slider how{.lo = std::max(-10.0f, static_cast<float>(ev->lo)),
                      .hi = std::min(10.0f, static_cast<float>(ev->hi)),
@@ -407,7 +410,8 @@ void draw_toolbar(Ui& ui, const Area& area) {
     tooltip("The next click in the picture sets the exposure so that the clicked point is middle grey. B.");
     right -= px(4) + tiles_width;
     ImGui::SetCursorScreenPos({right, y});
-    if (button("##tiles", "Tiles", ui.setting_on("overlay.tiles"), tiles_width)) ui.toggle("overlay.tiles");
+    if (button("##tiles", "Tiles", ui.open.setting_on("overlay.tiles"), tiles_width))
+      ui.toggle("overlay.tiles");
     tooltip(plan::find_option("overlay.tiles")->help + " T.");
   }
   right -= px(8);

@@ -28,8 +28,8 @@ std::vector<std::string> section_names(const Ui& ui) {
   };
   for (const solvers::SolverInfo* solver : solvers::registered())
     if (solver->has_panel()) add(solver->label);
-  if (ui.snapshot)
-    for (const auto& report : ui.snapshot->reports)
+  if (ui.open.snapshot)
+    for (const auto& report : ui.open.snapshot->reports)
       for (const solvers::PanelSection& section : report->sections) add(section.title);
   return names;
 }
@@ -63,16 +63,16 @@ struct Add {
   Ui& ui;
   void operator()(std::string name, std::string help, std::vector<Parameter> parameters,
                   std::function<void(const Arguments&)> run, bool recorded = true) const {
-    ui.registry.add({.name = std::move(name),
-                     .help = std::move(help),
-                     .parameters = std::move(parameters),
-                     .run =
-                         [&ui = ui, run = std::move(run)](const Arguments& a) {
-                           run(a);
-                           ui.frames_to_settle = 2, ui.resizing = true;
-                           ui.wake(3);
-                         },
-                     .recorded = recorded});
+    ui.work.registry.add({.name = std::move(name),
+                          .help = std::move(help),
+                          .parameters = std::move(parameters),
+                          .run =
+                              [&ui = ui, run = std::move(run)](const Arguments& a) {
+                                run(a);
+                                ui.frames_to_settle = 2, ui.camera.resizing = true;
+                                ui.wake(3);
+                              },
+                          .recorded = recorded});
   }
 };
 
@@ -163,7 +163,7 @@ void add_picture_commands(Ui& ui, const Add& add) {
         if (a.integer("width") == 0 || a.integer("height") == 0) return;
         ui.picture_size.emplace(static_cast<uint32_t>(a.integer("width")),
                                 static_cast<uint32_t>(a.integer("height")));
-        ui.set_size(ui.picture_size->first, ui.picture_size->second);
+        ui.camera.set_size(ui.picture_size->first, ui.picture_size->second);
       });
   add("view.selection", "Marks the selected object in the picture.", {on()},
       [&ui](const Arguments& a) { ui.brackets = a.boolean("on"); });

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/error.h"
+#include "commands/command_list.h"
 #include "commands/workspace.h"
 #include "session/pick.h"
 
@@ -59,73 +60,52 @@ uint32_t find_item(const List& list, const std::string& which, const char* kind)
   throw Error("", fmt::format("the scene has no {} '{}'{}", kind, which, suggestion(which, names_of(list))));
 }
 
-}  // namespace
-
-void Workspace::needs_view() const {
-  if (!view) throw Error("", "there is no picture yet; wait_scene first");
+int camera_index(const OpenScene& open, const Navigation& camera, const std::string& which) {
+  open.needs_scene(), camera.needs_view();
+  return static_cast<int>(find_item(open.scene->cameras, which, "camera"));
 }
 
-int Workspace::camera_index(const std::string& which) const {
-  needs_scene(), needs_view();
-  return static_cast<int>(find_item(scene->cameras, which, "camera"));
+Selection selection_of(const OpenScene& open, const std::string& kind, const std::string& which) {
+  open.needs_scene();
+  if (kind == "material") return {Kind::material, find_item(open.scene->materials, which, "material")};
+  if (kind == "light") return {Kind::light, find_item(open.scene->lights, which, "light")};
+  return {Kind::instance, find_item(open.scene->instances, which, "object")};
 }
 
-Selection Workspace::selection_of(const std::string& kind, const std::string& which) const {
-  needs_scene();
-  if (kind == "material") return {Kind::material, find_item(scene->materials, which, "material")};
-  if (kind == "light") return {Kind::light, find_item(scene->lights, which, "light")};
-  return {Kind::instance, find_item(scene->instances, which, "object")};
+/// Commands that move the camera.
+class Motions {
+ public:
+  Motions(Registry& registry, const OpenScene& open, Navigation& camera)
+      : registry_(registry), open_(open), camera_(camera) {}
+  void add_motions();
+  void add_lenses();
+
+ private:
+  /// `act` has the viewpoint that the camera starts from.
+  void add(std::string name, std::string help, std::vector<Parameter> parameters,
+           std::function<void(Viewpoint&, const Arguments&)> act);
+  Registry& registry_;
+  const OpenScene& open_;
+  Navigation& camera_;
+};
+
+void Motions::add(std::string name, std::string help, std::vector<Parameter> parameters,
+                  std::function<void(Viewpoint&, const Arguments&)> act) {
+  registry_.add({.name = std::move(name),
+                 .help = std::move(help),
+                 .parameters = std::move(parameters),
+                 .run =
+                     [&camera = camera_, act = std::move(act)](const Arguments& a) {
+                       camera.needs_view();
+                       Viewpoint moving = *camera.view;
+                       act(moving, a);
+                       camera.take_view(moving);
+                     },
+                 .moves = true});
 }
 
-std::string Workspace::place_line(const Viewpoint& v) {
-  const vec3 eye = eye_of(v.camera), target = pivot_of(v), up = up_of(v.camera);
-  std::string line =
-      fmt::format("camera.place {} {} {}", vector_text(eye), vector_text(target), vector_text(up));
-  if (v.camera.orthographic) line += " height=" + number_text(2 * v.camera.ymag);
-  return line;
-}
-
-void Workspace::add_motion(std::string name, std::string help, std::vector<Parameter> parameters,
-                           std::function<void(Viewpoint&, const Arguments&)> act) {
-  registry.add({.name = std::move(name),
-                .help = std::move(help),
-                .parameters = std::move(parameters),
-                .run =
-                    [this, act = std::move(act)](const Arguments& a) {
-                      needs_view();
-                      Viewpoint moving = *view;
-                      act(moving, a);
-                      take_view(moving);
-                    },
-                .moves = true});
-}
-
-void Workspace::add_camera_commands() {
-  add_motion_commands();
-  add_lens_commands();
-  registry.add({.name = "camera.speed",
-                .help = "Sets the speed of flight.",
-                .parameters = {real("speed", "", "m/s", 1e-3, 1e4)},
-                .run = [this](const Arguments& a) { speed = a.number("speed"); }});
-  registry.add({.name = "camera.select",
-                .help = "Switches to a camera of the scene.",
-                .parameters = {{.name = "camera",
-                                .help = "its name, or its number from 1",
-                                .names =
-                                    [this](const std::vector<std::string>&) {
-                                      return scene ? names_of(scene->cameras) : std::vector<std::string>{};
-                                    }}},
-                .run =
-                    [this](const Arguments& a) {
-                      const int index = camera_index(a.text("camera"));
-                      take_view(make_viewpoint(scene->cameras[static_cast<size_t>(index)], core), index);
-                    },
-                .moves = true});
-}
-
-void Workspace::add_motion_commands() {
-  add_motion(
-      "camera.orbit", "Turns the eye about what it looks at, or about any point.",
+void Motions::add_motions() {
+  add("camera.orbit", "Turns the eye about what it looks at, or about any point.",
       {real("right", "counter-clockwise seen from above", "radians"), real("up", "raises the eye", "radians"),
        optional(vector("about", "a point of the scene", "m"))},
       [](Viewpoint& v, const Arguments& a) {
@@ -135,87 +115,116 @@ void Workspace::add_motion_commands() {
         else
           orbit(v, angles);
       });
-  add_motion("camera.look", "Turns the view about the eye.",
-             {real("left", "to the left", "radians"), real("up", "upwards", "radians")},
-             [](Viewpoint& v, const Arguments& a) {
-               commands::look(v, {a.number("left"), a.number("up")});
-             });
-  add_motion("camera.pan", "Moves sideways, as a drag across the picture does.",
-             {real("right", "the picture moves to the right", "picture heights"),
-              real("down", "the picture moves down", "picture heights")},
-             [](Viewpoint& v, const Arguments& a) {
-               pan(v, {a.number("right"), a.number("down")}, 1);
-             });
-  add_motion("camera.dolly", "Comes closer by a tenth of the distance a step.",
-             {real("steps", "negative: goes away", "steps", -1000, 1000)},
-             [](Viewpoint& v, const Arguments& a) { dolly(v, a.number("steps")); });
-  add_motion("camera.fly", "Moves along the camera's own axes.",
-             {real("right", "", "m"), real("up", "", "m"), real("forward", "", "m")},
-             [](Viewpoint& v, const Arguments& a) {
-               fly(v, {a.number("right"), a.number("up"), a.number("forward")});
-             });
-  add_motion("camera.place",
-             "Puts the camera at a place, looking at a point that it then orbits about. With fov it is a "
-             "perspective camera, with height an orthographic one.",
-             {vector("eye", "where it stands, from the scene's origin (lucerna info)", "m"),
-              vector("target", "what it looks at", "m"), vector("up", "what is upwards in the picture", ""),
-              optional(fov()), optional(height())},
-             [this](Viewpoint& v, const Arguments& a) {
-               if (!place(v, a.vector("eye"), a.vector("target"), a.vector("up")))
-                 throw Error("", "eye and target must differ, and up must not point from one to the other");
-               if (a.has("fov") && a.has("height"))
-                 throw Error("", "fov and height exclude each other: give one");
-               if (a.has("fov")) {
-                 v.camera.orthographic = false;
-                 set_fov(v.camera, a.real("fov"));
-               }
-               if (a.has("height")) {
-                 if (!std::exchange(v.camera.orthographic, true)) v.camera.ymag = 1, v.camera.xmag = aspect;
-                 set_height(v.camera, a.number("height"));
-               }
-             });
-  add_motion(
-      "camera.frame",
+  add("camera.look", "Turns the view about the eye.",
+      {real("left", "to the left", "radians"), real("up", "upwards", "radians")},
+      [](Viewpoint& v, const Arguments& a) {
+        commands::look(v, {a.number("left"), a.number("up")});
+      });
+  add("camera.pan", "Moves sideways, as a drag across the picture does.",
+      {real("right", "the picture moves to the right", "picture heights"),
+       real("down", "the picture moves down", "picture heights")},
+      [](Viewpoint& v, const Arguments& a) {
+        pan(v, {a.number("right"), a.number("down")}, 1);
+      });
+  add("camera.dolly", "Comes closer by a tenth of the distance a step.",
+      {real("steps", "negative: goes away", "steps", -1000, 1000)},
+      [](Viewpoint& v, const Arguments& a) { dolly(v, a.number("steps")); });
+  add("camera.fly", "Moves along the camera's own axes.",
+      {real("right", "", "m"), real("up", "", "m"), real("forward", "", "m")},
+      [](Viewpoint& v, const Arguments& a) {
+        fly(v, {a.number("right"), a.number("up"), a.number("forward")});
+      });
+  add("camera.place",
+      "Puts the camera at a place, looking at a point that it then orbits about. With fov it is a "
+      "perspective camera, with height an orthographic one.",
+      {vector("eye", "where it stands, from the scene's origin (lucerna info)", "m"),
+       vector("target", "what it looks at", "m"), vector("up", "what is upwards in the picture", ""),
+       optional(fov()), optional(height())},
+      [&camera = camera_](Viewpoint& v, const Arguments& a) {
+        if (!place(v, a.vector("eye"), a.vector("target"), a.vector("up")))
+          throw Error("", "eye and target must differ, and up must not point from one to the other");
+        if (a.has("fov") && a.has("height")) throw Error("", "fov and height exclude each other: give one");
+        if (a.has("fov")) {
+          v.camera.orthographic = false;
+          set_fov(v.camera, a.real("fov"));
+        }
+        if (a.has("height")) {
+          if (!std::exchange(v.camera.orthographic, true)) v.camera.ymag = 1, v.camera.xmag = camera.aspect;
+          set_height(v.camera, a.number("height"));
+        }
+      });
+  add("camera.frame",
       "Moves so that the selection, or else the whole scene, fills the picture; not into or behind a wall.",
-      {}, [this](Viewpoint& v, const Arguments&) {
-        probe(true);
-        if (selection.kind != Kind::none)
-          frame_clear(v, selection_bounds(), aspect, look_past_selection());
-        else if (!v.camera.orthographic && enclosed(look(), eye_of(v.camera), v.extent))
-          frame_inside(v, selection_bounds(), aspect, look());
+      {}, [&camera = camera_, &open = open_](Viewpoint& v, const Arguments&) {
+        camera.probe(true);
+        const Box bounds = selection_bounds(open.scene.get(), camera.selection, camera.core);
+        if (camera.selection.kind != Kind::none)
+          frame_clear(v, bounds, camera.aspect, camera.look_past_selection());
+        else if (!v.camera.orthographic && enclosed(camera.look(), eye_of(v.camera), v.extent))
+          frame_inside(v, bounds, camera.aspect, camera.look());
         else
-          frame(v, selection_bounds(), aspect);
+          frame(v, bounds, camera.aspect);
       });
 }
 
-void Workspace::add_lens_commands() {
-  add_motion("camera.fov", "Sets the field of view of a perspective camera.", {fov()},
-             [](Viewpoint& v, const Arguments& a) { set_fov(v.camera, a.real("fov")); });
-  add_motion("camera.height", "Sets what an orthographic camera sees.", {height()},
-             [](Viewpoint& v, const Arguments& a) { set_height(v.camera, a.number("height")); });
-  add_motion("camera.lens", "Sets the field of view by a focal length, for a frame 36 mm wide.",
-             {real("length", "focal length", "mm", 1, 2000)}, [this](Viewpoint& v, const Arguments& a) {
-               set_fov(v.camera, k_degrees * yfov_from_focal_length(a.number("length"), aspect));
-             });
+void Motions::add_lenses() {
+  add("camera.fov", "Sets the field of view of a perspective camera.", {fov()},
+      [](Viewpoint& v, const Arguments& a) { set_fov(v.camera, a.real("fov")); });
+  add("camera.height", "Sets what an orthographic camera sees.", {height()},
+      [](Viewpoint& v, const Arguments& a) { set_height(v.camera, a.number("height")); });
+  add("camera.lens", "Sets the field of view by a focal length, for a frame 36 mm wide.",
+      {real("length", "focal length", "mm", 1, 2000)}, [&camera = camera_](Viewpoint& v, const Arguments& a) {
+        set_fov(v.camera, k_degrees * yfov_from_focal_length(a.number("length"), camera.aspect));
+      });
 }
 
-void Workspace::add_selection_commands() {
+}  // namespace
+
+void add_camera_commands(Registry& registry, const OpenScene& open, Navigation& camera) {
+  Motions motions(registry, open, camera);
+  motions.add_motions();
+  motions.add_lenses();
+  registry.add({.name = "camera.speed",
+                .help = "Sets the speed of flight.",
+                .parameters = {real("speed", "", "m/s", 1e-3, 1e4)},
+                .run = [&camera](const Arguments& a) { camera.speed = a.number("speed"); }});
   registry.add(
+      {.name = "camera.select",
+       .help = "Switches to a camera of the scene.",
+       .parameters = {{.name = "camera",
+                       .help = "its name, or its number from 1",
+                       .names =
+                           [&open](const std::vector<std::string>&) {
+                             return open.scene ? names_of(open.scene->cameras) : std::vector<std::string>{};
+                           }}},
+       .run =
+           [&open, &camera](const Arguments& a) {
+             const int index = camera_index(open, camera, a.text("camera"));
+             camera.take_view(make_viewpoint(open.scene->cameras[static_cast<size_t>(index)], camera.core),
+                              index);
+           },
+       .moves = true});
+}
+
+void add_selection_commands(Workspace& work) {
+  work.registry.add(
       {.name = "select",
        .help = "Selects an object, material or light of the scene.",
        .parameters = {{.name = "kind", .type = Type::choice, .choices = {"object", "material", "light"}},
                       {.name = "item",
                        .help = "its name, or its number from 1",
                        .names =
-                           [this](const std::vector<std::string>& before) {
+                           [&open = work.open](const std::vector<std::string>& before) {
                              std::vector<std::string> none;
-                             if (!scene || before.empty()) return none;
-                             if (before[0] == "material") return names_of(scene->materials);
-                             return before[0] == "light" ? names_of(scene->lights)
-                                                         : names_of(scene->instances);
+                             if (!open.scene || before.empty()) return none;
+                             if (before[0] == "material") return names_of(open.scene->materials);
+                             return before[0] == "light" ? names_of(open.scene->lights)
+                                                         : names_of(open.scene->instances);
                            }}},
-       .run = [this](const Arguments& a) { selection = selection_of(a.text("kind"), a.text("item")); }});
-  registry.add(
+       .run = [&work](const Arguments& a) {
+         work.camera.selection = selection_of(work.open, a.text("kind"), a.text("item"));
+       }});
+  work.registry.add(
       {.name = "pick",
        .help = "Selects the object at a point of the picture, or its material if the object is selected "
                "already; clears "
@@ -223,23 +232,24 @@ void Workspace::add_selection_commands() {
        .parameters = {{.name = "right", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture widths"},
                       {.name = "down", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture heights"}},
        .run =
-           [this](const Arguments& a) {
-             needs_scene(), needs_view();
-             const auto hit =
-                 session::pick(*scene, view->camera, a.number("right"), a.number("down"), aspect);
+           [&work](const Arguments& a) {
+             const Navigation& camera = work.camera;
+             work.open.needs_scene(), camera.needs_view();
+             const auto hit = session::pick(*work.open.scene, camera.view->camera, a.number("right"),
+                                            a.number("down"), camera.aspect);
              if (!hit) {
-               if (selection.kind != Kind::none) run("select.none");
+               if (camera.selection.kind != Kind::none) work.run("select.none");
                return;
              }
-             const bool again = selection == Selection{Kind::instance, hit->instance};
-             run(again ? line("select material", hit->material + 1)
-                       : line("select object", hit->instance + 1));
+             const bool again = camera.selection == Selection{Kind::instance, hit->instance};
+             work.run(again ? line("select material", hit->material + 1)
+                            : line("select object", hit->instance + 1));
            },
        .recorded = false});
-  registry.add({.name = "select.none",
-                .help = "Clears the selection.",
-                .parameters = {},
-                .run = [this](const Arguments&) { selection = {}; }});
+  work.registry.add({.name = "select.none",
+                     .help = "Clears the selection.",
+                     .parameters = {},
+                     .run = [&work](const Arguments&) { work.camera.selection = {}; }});
 }
 
 }  // namespace lucerna::commands

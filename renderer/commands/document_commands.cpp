@@ -5,6 +5,7 @@
 #include "base/blackbody.h"
 #include "base/color.h"
 #include "base/error.h"
+#include "commands/command_list.h"
 #include "commands/light_edit.h"
 #include "commands/workspace.h"
 #include "scene/lamp.h"
@@ -171,71 +172,36 @@ void shine(const Arguments& a, scene::Light& light) {
 
 }  // namespace
 
-void Workspace::needs_scene() const {
-  if (!scene) throw Error("", "no scene is open");
-  if (loading()) throw Error("", "a scene is being loaded; wait until it is shown (in a script: wait_scene)");
+void add_history_commands(Workspace& work) {
+  work.registry.add({.name = "undo",
+                     .help = "Undoes the last change of a setting, a light, the environment or the display.",
+                     .parameters = {},
+                     .run = [&work](const Arguments&) { work.history.undo(); },
+                     .needs_outcome = true});
+  work.registry.add({.name = "redo",
+                     .help = "Redoes the last undone change.",
+                     .parameters = {},
+                     .run = [&work](const Arguments&) { work.history.redo(); },
+                     .needs_outcome = true});
 }
 
 namespace {
 
-/// The `kind` ("light") with that name, or with that number from 1.
-uint32_t index_of(const char* kind, const std::string& which, const std::vector<std::string>& names) {
-  const auto found = std::find(names.begin(), names.end(), which);
-  if (found != names.end()) return static_cast<uint32_t>(found - names.begin());
-  double number = 0;
-  if (read_number(which, number)) {
-    if (number >= 1 && number <= static_cast<double>(names.size()) && number == std::floor(number))
-      return static_cast<uint32_t>(number) - 1;
-    throw Error("", fmt::format("there is no {} {}; the scene has {}", kind, which, names.size()));
-  }
-  throw Error("", fmt::format("the scene has no {} '{}'{}", kind, which, suggestion(which, names)));
+/// Sets a setting by the running command, with those that change in the same step, also for a scene that is
+/// being loaded. Throws Error.
+void give(Workspace& work, const std::string& key, const std::string& value) {
+  if (key == "camera" && work.camera.view && !work.open.loading() && work.open.setting(key) != value)
+    throw Error("", "the camera to start with; camera.select takes another one now");
+  if (key == "film.ev") work.exposure.note_given();
+  if (work.events.set_with)
+    for (const auto& [other, to] : work.events.set_with(key, value)) work.open.set_by_name(other, to);
+  work.open.set_by_name(key, value);
 }
 
 }  // namespace
 
-uint32_t Workspace::light_index(const std::string& which) const {
-  needs_scene();
-  std::vector<std::string> names;
-  for (const scene::Light& light : scene->lights) names.push_back(light.name);
-  return index_of("light", which, names);
-}
-
-uint32_t Workspace::material_index(const std::string& which) const {
-  needs_scene();
-  std::vector<std::string> names;
-  for (const scene::Material& material : scene->materials) names.push_back(material.name);
-  return index_of("material", which, names);
-}
-
-void Workspace::add_document_commands() {
-  add_setting_commands();
-  add_light_commands();
-  add_environment_commands();
-  add_material_commands();
-  add_shown_commands();
-  registry.add({.name = "undo",
-                .help = "Undoes the last change of a setting, a light, the environment or the display.",
-                .parameters = {},
-                .run = [this](const Arguments&) { undo(); },
-                .needs_outcome = true});
-  registry.add({.name = "redo",
-                .help = "Redoes the last undone change.",
-                .parameters = {},
-                .run = [this](const Arguments&) { redo(); },
-                .needs_outcome = true});
-}
-
-void Workspace::give(const std::string& key, const std::string& value) {
-  if (key == "camera" && view && !loading() && setting(key) != value)
-    throw Error("", "the camera to start with; camera.select takes another one now");
-  if (key == "film.ev") exposure_given_ = true;
-  std::vector<std::pair<std::string, std::string>> changes = set_with(key, value);
-  changes.emplace_back(key, value);
-  for (const auto& [changed, to] : changes) edit().settings[changed] = to, touched_.push_back(changed);
-}
-
-void Workspace::add_setting_commands() {
-  registry.add(
+void add_setting_commands(Workspace& work) {
+  work.registry.add(
       {.name = "set",
        .help = "Changes a setting; 'help settings' lists them. A line KEY VALUE or KEY=VALUE does the same.",
        .parameters = {{.name = "key",
@@ -248,9 +214,9 @@ void Workspace::add_setting_commands() {
              known_option(a.text("key"));
              plan::Settings().set(a.text("key"), a.text("value"), "");
            },
-       .run = [this](const Arguments& a) { give(a.text("key"), a.text("value")); },
+       .run = [&work](const Arguments& a) { give(work, a.text("key"), a.text("value")); },
        .undoable = true});
-  registry.add(
+  work.registry.add(
       {.name = "reset",
        .help = "Resets a setting to its default.",
        .parameters = {{.name = "key",
@@ -258,17 +224,18 @@ void Workspace::add_setting_commands() {
                        .which = true,
                        .names = [](const std::vector<std::string>&) { return setting_keys(); }}},
        .check = [](const Arguments& a) { known_option(a.text("key")); },
-       .run = [this](const Arguments& a) { give(a.text("key"), known_option(a.text("key")).fallback); },
+       .run =
+           [&work](const Arguments& a) { give(work, a.text("key"), known_option(a.text("key")).fallback); },
        .undoable = true});
   for (const OptionInfo& option : plan::options())
-    registry.add_prefix(option.key, "set " + quote(option.key));
+    work.registry.add_prefix(option.key, "set " + quote(option.key));
 }
 
-void Workspace::add_light_commands() {
-  const auto light_names = [this](const std::vector<std::string>&) {
+void add_light_commands(Registry& registry, OpenScene& open) {
+  const auto light_names = [&open](const std::vector<std::string>&) {
     std::vector<std::string> names;
-    if (scene)
-      for (const scene::Light& light : scene->lights)
+    if (open.scene)
+      for (const scene::Light& light : open.scene->lights)
         if (!light.name.empty()) names.push_back(light.name);
     return names;
   };
@@ -286,10 +253,10 @@ void Workspace::add_light_commands() {
                       exclude(a, "direction", "azimuth"), exclude(a, "direction", "elevation");
                     },
                 .run =
-                    [this](const Arguments& a) {
-                      const uint32_t index = light_index(a.text("light"));
-                      Document::Light& edited = edit().lights[index];
-                      scene::Light light = scene->lights[index];
+                    [&open](const Arguments& a) {
+                      const uint32_t index = open.light_index(a.text("light"));
+                      Document::Light& edited = open.edit().lights[index];
+                      scene::Light light = open.scene->lights[index];
                       edited.put(light);
                       check_kind(a, light);
                       aim(a, light);
@@ -299,7 +266,7 @@ void Workspace::add_light_commands() {
                 .undoable = true});
 }
 
-void Workspace::add_environment_commands() {
+void add_environment_commands(Registry& registry, OpenScene& open) {
   registry.add({.name = "environment.set",
                 .help = "Changes the environment. Omitted values stay unchanged.",
                 .parameters = {{.name = "scale",
@@ -316,19 +283,19 @@ void Workspace::add_environment_commands() {
                                 .unit = "degrees",
                                 .optional = true}},
                 .run =
-                    [this](const Arguments& a) {
-                      needs_scene();
-                      if (a.has("scale")) edit().environment_scale = a.number("scale");
-                      if (a.has("rotation")) edit().environment_rotation = a.number("rotation");
+                    [&open](const Arguments& a) {
+                      open.needs_scene();
+                      if (a.has("scale")) open.edit().environment_scale = a.number("scale");
+                      if (a.has("rotation")) open.edit().environment_rotation = a.number("rotation");
                     },
                 .undoable = true});
 }
 
-void Workspace::add_material_commands() {
-  const auto material_names = [this](const std::vector<std::string>&) {
+void add_material_commands(Registry& registry, OpenScene& open) {
+  const auto material_names = [&open](const std::vector<std::string>&) {
     std::vector<std::string> names;
-    if (scene)
-      for (const scene::Material& material : scene->materials)
+    if (open.scene)
+      for (const scene::Material& material : open.scene->materials)
         if (!material.name.empty()) names.push_back(material.name);
     return names;
   };
@@ -376,8 +343,8 @@ void Workspace::add_material_commands() {
              exclude(a, "emission_color", "kelvin");
            },
        .run =
-           [this](const Arguments& a) {
-             Document::Material& m = edit().materials[material_index(a.text("material"))];
+           [&open](const Arguments& a) {
+             Document::Material& m = open.edit().materials[open.material_index(a.text("material"))];
              if (a.has("color")) m.color = a.vector("color");
              if (a.has("roughness")) m.roughness = a.number("roughness");
              if (a.has("metallic")) m.metallic = a.number("metallic");
@@ -392,7 +359,7 @@ void Workspace::add_material_commands() {
        .undoable = true});
 }
 
-void Workspace::add_shown_commands() {
+void add_shown_commands(Registry& registry, OpenScene& open) {
   std::vector<std::string> components(session::k_component_names.begin(), session::k_component_names.end());
   const auto show_key = [](size_t c) { return std::string("show.") + session::k_component_names[c]; };
   registry.add(
@@ -401,11 +368,9 @@ void Workspace::add_shown_commands() {
        .parameters = {{.name = "component", .type = Type::choice, .choices = components, .which = true},
                       {.name = "on", .type = Type::boolean}},
        .run =
-           [this](const Arguments& a) {
-             Document& d = edit();
-             d.solo = -1;
-             d.settings["show." + a.text("component")] = a.text("on");
-             touched_.push_back("show." + a.text("component"));
+           [&open](const Arguments& a) {
+             open.edit().solo = -1;
+             open.set_by_name("show." + a.text("component"), a.text("on"));
            },
        .undoable = true});
   components.push_back("none");
@@ -413,8 +378,8 @@ void Workspace::add_shown_commands() {
                 .help = "Shows one component alone; none: restores the former ones.",
                 .parameters = {{.name = "component", .type = Type::choice, .choices = components}},
                 .run =
-                    [this, components, show_key](const Arguments& a) {
-                      Document& d = edit();
+                    [&open, components, show_key](const Arguments& a) {
+                      Document& d = open.edit();
                       const auto found = std::find(components.begin(), components.end(), a.text("component"));
                       const int chosen =
                           a.text("component") == "none" ? -1 : static_cast<int>(found - components.begin());

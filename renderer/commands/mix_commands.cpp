@@ -7,7 +7,8 @@
 #include "base/color.h"
 #include "base/error.h"
 #include "base/log.h"
-#include "commands/workspace.h"
+#include "commands/command_list.h"
+#include "commands/open_scene.h"
 
 namespace lucerna::commands {
 namespace {
@@ -62,53 +63,18 @@ std::string refusal(const scene::Scene& scene, const scene::LightGroups& groups,
   return "";
 }
 
-}  // namespace
-
-const scene::LightGroups& Workspace::light_groups() {
-  const std::string& text = setting("relight.groups");
-  if (groups_of_ == scene && text == groups_by_) return groups_;
-  std::vector<scene::LightGroupRule> rules;
-  try {
-    rules = scene::parse_group_rules(text);
-  } catch (const Error&) {  // the session says so
-  }
-  if (!scene)
-    groups_ = {};
-  else if (groups_of_)
-    groups_ = scene::group_lights(*scene, rules, *groups_of_, groups_);
-  else
-    groups_ = scene::group_lights(*scene, rules);
-  groups_of_ = scene, groups_by_ = text;
-  return groups_;
-}
-
-scene::LightMix Workspace::light_mix() const {
-  try {
-    return scene::parse_mix(setting("relight.mix"));
-  } catch (const Error&) {
-    return {};
-  }
-}
-
-scene::MixPresets Workspace::mix_presets() const {
-  try {
-    return scene::parse_presets(setting("relight.presets"));
-  } catch (const Error&) {
-    return {};
-  }
-}
-
-std::string Workspace::group_named(const std::string& which) {
-  needs_scene();
+/// Throws Error with the list of names if there is no such group.
+std::string group_named(OpenScene& open, const std::string& which) {
+  open.needs_scene();
   std::vector<std::string> names;
-  for (const scene::LightGroup& group : light_groups().groups) names.push_back(group.name);
+  for (const scene::LightGroup& group : open.light_groups().groups) names.push_back(group.name);
   if (std::find(names.begin(), names.end(), which) != names.end()) return which;
   throw Error("", fmt::format("the scene has no group of lights '{}'{}; there are: {}", which,
                               suggestion(which, names), fmt::join(names, ", ")));
 }
 
-const scene::LightMix& Workspace::preset_named(const scene::MixPresets& presets,
-                                               const std::string& name) const {
+/// Likewise of a preset.
+const scene::LightMix& preset_named(const scene::MixPresets& presets, const std::string& name) {
   if (const auto found = presets.find(name); found != presets.end()) return found->second;
   std::vector<std::string> names;
   for (const auto& [known, mix] : presets) names.push_back(known);
@@ -117,25 +83,27 @@ const scene::LightMix& Workspace::preset_named(const scene::MixPresets& presets,
                                               suggestion(name, names), fmt::join(names, ", ")));
 }
 
-void Workspace::warn_of_groups(const std::string& name, const scene::LightMix& mix) {
-  const std::vector<std::string> gone = scene::unknown_groups(mix, light_groups());
+/// Reports groups of the preset that the scene does not have.
+void warn_of_groups(OpenScene& open, const std::string& name, const scene::LightMix& mix) {
+  const std::vector<std::string> gone = scene::unknown_groups(mix, open.light_groups());
   if (!gone.empty())
     log::warning("preset '{}': the scene has no group of lights {}; the others are set", name,
                  fmt::join(gone, ", "));
 }
 
-void Workspace::apply_mix() {
-  needs_scene();
-  const scene::LightGroups groups = light_groups();
-  const scene::LightMix mix = light_mix();
+/// Writes the mix into the lights.
+void apply_mix(OpenScene& open) {
+  open.needs_scene();
+  const scene::LightGroups groups = open.light_groups();
+  const scene::LightMix mix = open.light_mix();
   const std::vector<vec3> weights = scene::mix_weights(mix, groups);
-  Document& d = edit();
+  Document& d = open.edit();
   scene::LightMix left;
   std::vector<bool> written(groups.groups.size());
   for (size_t g = 0; g < groups.groups.size(); ++g) {
     if (weights[g] == vec3(1)) continue;
     const std::string& name = groups.groups[g].name;
-    const std::string why = refusal(*scene, groups, g, weights);
+    const std::string why = refusal(*open.scene, groups, g, weights);
     written[g] = why.empty();
     if (written[g]) continue;
     log::warning("group '{}' keeps its mix: {}", name, why);
@@ -155,9 +123,9 @@ void Workspace::apply_mix() {
   std::vector<bool> done(d.materials.size());
   for (size_t i = 0; i < groups.surfaces.size(); ++i)
     for (size_t p = 0; p < groups.surfaces[i].size(); ++p) {
-      const scene::Id m = scene->meshes[scene->instances[i].mesh].primitives[p].material;
+      const scene::Id m = open.scene->meshes[open.scene->instances[i].mesh].primitives[p].material;
       const size_t g = groups.surfaces[i][p];
-      if (!scene::is_light(scene->materials[m]) || done[m] || !written[g]) continue;
+      if (!scene::is_light(open.scene->materials[m]) || done[m] || !written[g]) continue;
       done[m] = true;
       if (weights[g] == vec3(0))
         d.materials[m].emits = false;
@@ -169,15 +137,17 @@ void Workspace::apply_mix() {
   d.settings["relight.mix"] = scene::mix_text(left);
 }
 
-void Workspace::add_mix_commands() {
-  const auto group_names = [this] {
+}  // namespace
+
+void add_mix_commands(Registry& registry, OpenScene& open) {
+  const auto group_names = [&open] {
     std::vector<std::string> names;
-    for (const scene::LightGroup& group : light_groups().groups) names.push_back(group.name);
+    for (const scene::LightGroup& group : open.light_groups().groups) names.push_back(group.name);
     return names;
   };
-  const auto preset_names = [this] {
+  const auto preset_names = [&open] {
     std::vector<std::string> names;
-    for (const auto& [name, mix] : mix_presets()) names.push_back(name);
+    for (const auto& [name, mix] : open.mix_presets()) names.push_back(name);
     return names;
   };
   constexpr double most = scene::k_most_ev;
@@ -217,17 +187,17 @@ void Workspace::add_mix_commands() {
             {.name = "mute", .type = Type::boolean, .help = "removes its light", .optional = true},
             {.name = "solo", .type = Type::boolean, .help = "shows it without the others", .optional = true}},
        .run =
-           [this](const Arguments& a) {
-             const std::string name = group_named(a.text("group"));
-             scene::LightMix mix = light_mix();
+           [&open](const Arguments& a) {
+             const std::string name = group_named(open, a.text("group"));
+             scene::LightMix mix = open.light_mix();
              take(a, mix[name]);
-             edit().settings["relight.mix"] = scene::mix_text(mix);
+             open.edit().settings["relight.mix"] = scene::mix_text(mix);
            },
        .undoable = true});
   registry.add({.name = "mix.reset",
                 .help = "Resets the mix of all light groups.",
                 .parameters = {},
-                .run = [this](const Arguments&) { edit().settings["relight.mix"].clear(); },
+                .run = [&open](const Arguments&) { open.edit().settings["relight.mix"].clear(); },
                 .undoable = true});
   registry.add({.name = "mix.group",
                 .help = "Moves lights into a group: lamps, materials or nodes of that name, or sky or sun. "
@@ -240,11 +210,11 @@ void Workspace::add_mix_commands() {
                         throw Error("", "group: a name is needed");
                     },
                 .run =
-                    [this](const Arguments& a) {
+                    [&open](const Arguments& a) {
                       // Rules are separated by these characters; ? matches any.
                       std::string light = a.text("light");
                       for (char& c : light) c = c == ';' || c == '=' ? '?' : c;
-                      std::string& rules = edit().settings["relight.groups"];
+                      std::string& rules = open.edit().settings["relight.groups"];
                       rules += (rules.empty() ? "" : "; ") + light + "=" + scene::group_name(a.text("group"));
                     },
                 .undoable = true});
@@ -257,33 +227,33 @@ void Workspace::add_mix_commands() {
                         throw Error("", "name: must not be empty");
                     },
                 .run =
-                    [this](const Arguments& a) {
-                      scene::MixPresets presets = mix_presets();
-                      presets[scene::group_name(a.text("name"))] = light_mix();
-                      edit().settings["relight.presets"] = scene::presets_text(presets);
+                    [&open](const Arguments& a) {
+                      scene::MixPresets presets = open.mix_presets();
+                      presets[scene::group_name(a.text("name"))] = open.light_mix();
+                      open.edit().settings["relight.presets"] = scene::presets_text(presets);
                     },
                 .undoable = true});
   registry.add({.name = "mix.preset.load",
                 .help = "Applies a preset of the light mix.",
                 .parameters = {one_of("name", "of the preset", preset_names)},
                 .run =
-                    [this](const Arguments& a) {
-                      needs_scene();
-                      const scene::MixPresets presets = mix_presets();
+                    [&open](const Arguments& a) {
+                      open.needs_scene();
+                      const scene::MixPresets presets = open.mix_presets();
                       const scene::LightMix& mix = preset_named(presets, a.text("name"));
-                      warn_of_groups(a.text("name"), mix);
-                      edit().settings["relight.mix"] = scene::mix_text(mix);
+                      warn_of_groups(open, a.text("name"), mix);
+                      open.edit().settings["relight.mix"] = scene::mix_text(mix);
                     },
                 .undoable = true});
   registry.add({.name = "mix.preset.delete",
                 .help = "Deletes a preset of the light mix.",
                 .parameters = {one_of("name", "of the preset", preset_names)},
                 .run =
-                    [this](const Arguments& a) {
-                      scene::MixPresets presets = mix_presets();
+                    [&open](const Arguments& a) {
+                      scene::MixPresets presets = open.mix_presets();
                       preset_named(presets, a.text("name"));
                       presets.erase(a.text("name"));
-                      edit().settings["relight.presets"] = scene::presets_text(presets);
+                      open.edit().settings["relight.presets"] = scene::presets_text(presets);
                     },
                 .undoable = true});
   registry.add(
@@ -293,13 +263,13 @@ void Workspace::add_mix_commands() {
                       one_of("to", "preset", preset_names),
                       {.name = "amount", .type = Type::real, .help = "0 is from, 1 is to", .lo = 0, .hi = 1}},
        .run =
-           [this](const Arguments& a) {
-             needs_scene();
-             const scene::MixPresets presets = mix_presets();
+           [&open](const Arguments& a) {
+             open.needs_scene();
+             const scene::MixPresets presets = open.mix_presets();
              const scene::LightMix &from = preset_named(presets, a.text("from")),
                                    &to = preset_named(presets, a.text("to"));
-             edit().settings["relight.mix"] =
-                 scene::mix_text(scene::blend(from, to, a.number("amount"), light_groups()));
+             open.edit().settings["relight.mix"] =
+                 scene::mix_text(scene::blend(from, to, a.number("amount"), open.light_groups()));
            },
        .undoable = true});
   registry.add(
@@ -309,7 +279,7 @@ void Workspace::add_mix_commands() {
                "lights "
                "cannot represent the mix keeps it, with a warning.",
        .parameters = {},
-       .run = [this](const Arguments&) { apply_mix(); },
+       .run = [&open](const Arguments&) { apply_mix(open); },
        .undoable = true});
 }
 

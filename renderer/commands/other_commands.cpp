@@ -1,9 +1,11 @@
 // Commands for the scene file, rendering and scripts, and commands that wait.
 #include <algorithm>
+#include <memory>
 #include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
+#include "commands/command_list.h"
 #include "commands/workspace.h"
 
 namespace lucerna::commands {
@@ -20,44 +22,44 @@ std::string settings_manual() {
   return text;
 }
 
-}  // namespace
-
-void Workspace::add_plain(const char* name, const char* help, std::function<void()> run) {
+/// A command without parameters.
+void add_plain(Registry& registry, const char* name, const char* help, std::function<void()> run) {
   registry.add(
       {.name = name, .help = help, .parameters = {}, .run = [run = std::move(run)](const Arguments&) {
          run();
        }});
 }
 
-void Workspace::add_scene_commands() {
-  registry.add(
+}  // namespace
+
+void add_scene_commands(Workspace& work) {
+  work.registry.add(
       {.name = "scene.open",
        .help = "Opens a glTF scene. The shown scene stays until the new one is ready, or if loading fails.",
        .parameters = {file_named({".gltf", ".glb"})},
-       .run = [this](const Arguments& a) {
-         open_failed_ = exposure_given_ = false;
-         session.load(a.text("file"));
-         opened_by_ = session.commands();
+       .run = [&work](const Arguments& a) {
+         work.exposure.begin_load();
+         work.open.load(a.text("file"));
        }});
-  registry.add({.name = "scene.cancel",
-                .help = "Cancels the load in progress; the shown scene stays.",
-                .parameters = {},
-                .run = [this](const Arguments&) { session.cancel(); },
-                .done = [this](const Arguments&) { return !loading(); },
-                .recorded = false});
+  work.registry.add({.name = "scene.cancel",
+                     .help = "Cancels the load in progress; the shown scene stays.",
+                     .parameters = {},
+                     .run = [&work](const Arguments&) { work.session.cancel(); },
+                     .done = [&work](const Arguments&) { return !work.open.loading(); },
+                     .recorded = false});
 }
 
-void Workspace::add_render_commands() {
-  add_plain("render.pause", "Pauses sampling.", [this] {
-    record_wait();
-    session.set_paused(true);
+void add_render_commands(Workspace& work) {
+  add_plain(work.registry, "render.pause", "Pauses sampling.", [&work] {
+    work.history.record_wait();
+    work.session.set_paused(true);
   });
-  add_plain("render.resume", "Resumes sampling.", [this] { session.set_paused(false); });
-  add_plain("render.restart", "Discards all samples and restarts the picture.",
-            [this] { session.restart(); });
-  add_plain("shaders.reload", "Compiles the shaders again; on errors the old ones stay.",
-            [this] { session.reload_shaders(); });
-  registry.add(
+  add_plain(work.registry, "render.resume", "Resumes sampling.", [&work] { work.session.set_paused(false); });
+  add_plain(work.registry, "render.restart", "Discards all samples and restarts the picture.",
+            [&work] { work.session.restart(); });
+  add_plain(work.registry, "shaders.reload", "Compiles the shaders again; on errors the old ones stay.",
+            [&work] { work.session.reload_shaders(); });
+  work.registry.add(
       {.name = "image.save",
        .help = "Writes the picture, once every pixel has a sample: all layers as EXR, untouched, or "
                "through exposure and tone curve as PNG. A script waits for it, and fails if it "
@@ -71,30 +73,31 @@ void Workspace::add_render_commands() {
                        .choices = {"unfiltered", "shown"},
                        .optional = true}},
        .run =
-           [this](const Arguments& a) {
+           [&work](const Arguments& a) {
              const std::string& file = a.text("file");
              const bool png = std::filesystem::path(file).extension() == ".png";
              const bool as_shown = a.has("as") && a.text("as") == "shown";
              if (as_shown && !png) throw Error("", "as: only a PNG is saved as shown");
-             record_wait();
-             saved_ = session.save(file, as_shown);
-             writing_.push_back({file + (png ? as_shown ? ", as shown" : ", unfiltered" : ""), saved_});
+             work.history.record_wait();
+             work.files.add(work.session.save(file, as_shown),
+                            file + (png ? as_shown ? ", as shown" : ", unfiltered" : ""));
            },
-       .done = [this](const Arguments&) { return saved(); }});
-  registry.add({.name = "reference.load",
-                .help =
-                    "Compares this picture with a reference: an EXR with all layers, of the same scene, view "
-                    "and size.",
-                .parameters = {file_named({".exr"})},
-                .run = [this](const Arguments& a) {
-                  needs_scene();
-                  session.set_reference(a.text("file"), scene_id_);
-                }});
-  add_plain("reference.clear", "Removes the reference.", [this] { session.clear_reference(); });
+       .done = [&work](const Arguments&) { return work.files.latest_written(); }});
+  work.registry.add(
+      {.name = "reference.load",
+       .help = "Compares this picture with a reference: an EXR with all layers, of the same scene, view "
+               "and size.",
+       .parameters = {file_named({".exr"})},
+       .run = [&work](const Arguments& a) {
+         work.open.needs_scene();
+         work.session.set_reference(a.text("file"), work.open.id());
+       }});
+  add_plain(work.registry, "reference.clear", "Removes the reference.",
+            [&work] { work.session.clear_reference(); });
 }
 
-void Workspace::add_script_commands() {
-  registry.add(
+void add_script_commands(Workspace& work) {
+  work.registry.add(
       {.name = "script.save",
        .help =
            "Saves this session as a script that repeats it; it waits for the same number of samples where "
@@ -102,74 +105,94 @@ void Workspace::add_script_commands() {
            "saved session.",
        .parameters = {file_to_write({".lucerna"})},
        .run =
-           [this](const Arguments& a) {
-             save_script(a.text("file"));
+           [&work](const Arguments& a) {
+             work.history.save_script(a.text("file"));
              log::info("session saved as {}", a.text("file"));
            },
        .recorded = false,
        .needs_outcome = true});
-  registry.add(
-      {.name = "help",
-       .help = "Lists the commands, or describes one.",
-       .parameters = {{.name = "command",
-                       .help = "a command, a setting, or 'settings'",
-                       .optional = true,
-                       .names =
-                           [this](const std::vector<std::string>&) {
-                             std::vector<std::string> names{"settings"};
-                             for (const auto& [name, command] : registry.all()) names.push_back(name);
-                             return names;
-                           }}},
-       .run =
-           [this](const Arguments& a) { log::info("{}", manual(a.has("command") ? a.text("command") : "")); },
-       .recorded = false});
+  work.registry.add({.name = "help",
+                     .help = "Lists the commands, or describes one.",
+                     .parameters = {{.name = "command",
+                                     .help = "a command, a setting, or 'settings'",
+                                     .optional = true,
+                                     .names =
+                                         [&work](const std::vector<std::string>&) {
+                                           std::vector<std::string> names{"settings"};
+                                           for (const auto& [name, command] : work.registry.all())
+                                             names.push_back(name);
+                                           return names;
+                                         }}},
+                     .run =
+                         [&work](const Arguments& a) {
+                           log::info("{}", work.manual(a.has("command") ? a.text("command") : ""));
+                         },
+                     .recorded = false});
 }
 
-void Workspace::add_wait_commands() {
+namespace {
+
+/// A wait in progress.
+struct Waiting {
+  double since = -1;     ///< time of its start, or of the last new picture during it
+  uint64_t errors = 0;   ///< at its start
+  uint64_t picture = 0;  ///< last seen
+};
+
+/// True if the picture has that many samples a pixel, or is finished. Throws Error if it never will.
+bool has_samples(const Workspace& work, Waiting& waiting, int64_t samples) {
+  const session::Snapshot* snapshot = work.open.snapshot.get();
+  if (snapshot && snapshot->id != waiting.picture) waiting.picture = snapshot->id, waiting.since = work.now;
+  if (work.error_count > waiting.errors && work.now - waiting.since > k_standstill)
+    throw Error("", "the picture stands still after an error");
+  // A picture from before the last edits, cameras and sizes does not count.
+  if (!work.open.up_to_date() || work.camera.resizing) return false;
+  if (const solvers::Report* waiting_report = work.open.waiting()) throw Error("", waiting_report->to_go_on);
+  if (snapshot->finished || (!snapshot->coarse && snapshot->samples >= samples)) return true;
+  if (snapshot->paused) throw Error("", "rendering is paused; render.resume takes more samples");
+  return false;
+}
+
+}  // namespace
+
+void add_wait_commands(Workspace& work) {
   const Parameter limit = time_limit();
-  registry.add({.name = "wait",
-                .help = "In a script: lets the window run. Saved sessions leave it out.",
-                .parameters = {{.name = "time", .type = Type::real, .lo = 0, .hi = 86400, .unit = "seconds"}},
-                .run = [this](const Arguments&) { waited_since_ = now; },
-                .done = [this](const Arguments& a) { return now - waited_since_ >= a.real("time"); },
-                .recorded = false});
-  registry.add({.name = "wait_scene",
-                .help = "In a script: waits until the scene is loaded; fails if loading fails.",
-                .parameters = {limit},
-                .run = [](const Arguments&) {},
-                .done =
-                    [this](const Arguments&) {
-                      if (loading()) return false;
-                      if (open_failed_ || !view) throw Error("", "no scene was loaded");
-                      return true;
-                    },
-                .recorded = false});
-  registry.add({.name = "wait_load",
-                .help = "In a script: waits until no scene is being loaded, even after a failure.",
-                .parameters = {limit},
-                .run = [](const Arguments&) {},
-                .done = [this](const Arguments&) { return !loading(); }});
-  registry.add(
+  const auto waiting = std::make_shared<Waiting>();
+  work.registry.add(
+      {.name = "wait",
+       .help = "In a script: lets the window run. Saved sessions leave it out.",
+       .parameters = {{.name = "time", .type = Type::real, .lo = 0, .hi = 86400, .unit = "seconds"}},
+       .run = [&work, waiting](const Arguments&) { waiting->since = work.now; },
+       .done = [&work, waiting](const Arguments& a) { return work.now - waiting->since >= a.real("time"); },
+       .recorded = false});
+  work.registry.add({.name = "wait_scene",
+                     .help = "In a script: waits until the scene is loaded; fails if loading fails.",
+                     .parameters = {limit},
+                     .run = [](const Arguments&) {},
+                     .done =
+                         [&work](const Arguments&) {
+                           if (work.open.loading()) return false;
+                           if (work.open.load_failed() || !work.camera.view)
+                             throw Error("", "no scene was loaded");
+                           return true;
+                         },
+                     .recorded = false});
+  work.registry.add({.name = "wait_load",
+                     .help = "In a script: waits until no scene is being loaded, even after a failure.",
+                     .parameters = {limit},
+                     .run = [](const Arguments&) {},
+                     .done = [&work](const Arguments&) { return !work.open.loading(); }});
+  work.registry.add(
       {.name = "wait_samples",
        .help = "In a script: waits until the picture has that many samples per pixel, or is finished.",
        .parameters = {{.name = "samples", .type = Type::integer, .lo = 0, .hi = 1 << 20}, limit},
        .run =
-           [this](const Arguments&) {
-             waited_since_ = now, waited_errors_ = error_count, waited_id_ = snapshot ? snapshot->id : 0;
+           [&work, waiting](const Arguments&) {
+             waiting->since = work.now, waiting->errors = work.error_count;
+             waiting->picture = work.open.snapshot ? work.open.snapshot->id : 0;
            },
-       .done = [this](const Arguments& a) { return has_samples(a.integer("samples")); }});
-}
-
-bool Workspace::has_samples(int64_t samples) {
-  if (snapshot && snapshot->id != waited_id_) waited_id_ = snapshot->id, waited_since_ = now;
-  if (error_count > waited_errors_ && now - waited_since_ > k_standstill)
-    throw Error("", "the picture stands still after an error");
-  // A picture from before the last edits, cameras and sizes does not count.
-  if (!up_to_date() || resizing) return false;
-  if (const solvers::Report* waiting_report = waiting()) throw Error("", waiting_report->to_go_on);
-  if (snapshot->finished || (!snapshot->coarse && snapshot->samples >= samples)) return true;
-  if (snapshot->paused) throw Error("", "rendering is paused; render.resume takes more samples");
-  return false;
+       .done = [&work,
+                waiting](const Arguments& a) { return has_samples(work, *waiting, a.integer("samples")); }});
 }
 
 std::string Workspace::manual(const std::string& topic) const {

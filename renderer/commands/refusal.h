@@ -1,6 +1,6 @@
 #pragma once
 // Reverts a change of the document that the session has refused.
-#include "commands/workspace.h"
+#include "commands/document.h"
 
 namespace lucerna::commands {
 

@@ -12,35 +12,35 @@ TEST_CASE("solo shows one component, switches to another and is switched off") {
   WorkspaceBench b;
   b.open();
   b.run("view.show caustic off");
-  const Document before = b.work.document();
+  const Document before = b.work.open.document();
   b.run("view.solo secondary");
-  CHECK(b.work.setting_on("show.secondary"));
-  CHECK_FALSE(b.work.setting_on("show.primary"));
+  CHECK(b.work.open.setting_on("show.secondary"));
+  CHECK_FALSE(b.work.open.setting_on("show.primary"));
   b.run("view.solo primary");
-  CHECK(b.work.setting_on("show.primary"));
-  CHECK_FALSE(b.work.setting_on("show.secondary"));
+  CHECK(b.work.open.setting_on("show.primary"));
+  CHECK_FALSE(b.work.open.setting_on("show.secondary"));
   b.run("view.solo none");
-  CHECK_FALSE(b.work.setting_on("show.caustic"));
-  CHECK(b.work.setting_on("show.tertiary"));
+  CHECK_FALSE(b.work.open.setting_on("show.caustic"));
+  CHECK(b.work.open.setting_on("show.tertiary"));
   b.run("undo"), b.run("undo");
-  CHECK(b.work.solo() == 1);
+  CHECK(b.work.open.solo() == 1);
   b.run("undo");
-  CHECK(b.work.document() == before);
+  CHECK(b.work.open.document() == before);
 }
 
 TEST_CASE("a click selects the object, then its material, then nothing") {
   WorkspaceBench b;
   b.open();
-  b.work.aspect = 2;
+  b.work.camera.aspect = 2;
   b.run("camera.place 3,1.5,20 1,0.5,-1.5 0,1,0");  // the triangle's middle in the centre
   b.run("pick 0.5 0.5");
-  CHECK(b.work.selection == Selection{Kind::instance, 0});
+  CHECK(b.work.camera.selection == Selection{Kind::instance, 0});
   CHECK(b.work.selection_name() == "column 0");
   b.run("pick 0.5 0.5");
-  CHECK(b.work.selection == Selection{Kind::material, 0});
+  CHECK(b.work.camera.selection == Selection{Kind::material, 0});
   b.run("pick 0.02 0.02");
-  CHECK(b.work.selection == Selection{});
-  const auto script = b.work.script();
+  CHECK(b.work.camera.selection == Selection{});
+  const auto script = b.work.history.script();
   CHECK(script.back() == "select.none");
   CHECK(script[script.size() - 2] == "select material 1");
 }
@@ -48,58 +48,59 @@ TEST_CASE("a click selects the object, then its material, then nothing") {
 TEST_CASE("camera moves are undone like all other steps, a drag as one step") {
   WorkspaceBench b;
   b.open();
-  const Viewpoint start = *b.work.view;
-  REQUIRE(b.work.scene_camera == 0);
+  const Viewpoint start = *b.work.camera.view;
+  REQUIRE(b.work.camera.scene_camera == 0);
   for (int i = 0; i < 20; ++i) {
-    Viewpoint v = *b.work.view;
+    Viewpoint v = *b.work.camera.view;
     orbit(v, {0.02f, 0.01f});
-    b.run(Workspace::place_line(v), 5);
+    b.run(Navigation::place_line(v), 5);
   }
-  const Viewpoint dragged = *b.work.view;
+  const Viewpoint dragged = *b.work.camera.view;
   b.run("film.ev 1");
   b.run("camera.select Detail");
   b.run("camera.fov 20");
   b.run("camera.speed 3");  // no move
   b.run("undo"), b.run("undo");
-  CHECK(same_view(b.work.view->camera, dragged.camera));
-  CHECK(b.work.setting_real("film.ev") == 1);
+  CHECK(same_view(b.work.camera.view->camera, dragged.camera));
+  CHECK(b.work.open.setting_real("film.ev") == 1);
   b.run("undo");
-  CHECK(b.work.setting_real("film.ev") == 0);
-  CHECK(same_view(b.work.view->camera, dragged.camera));
-  CHECK_THAT(b.work.undo_text(), Catch::StartsWith("camera.place "));
+  CHECK(b.work.open.setting_real("film.ev") == 0);
+  CHECK(same_view(b.work.camera.view->camera, dragged.camera));
+  CHECK_THAT(b.work.history.undo_text(), Catch::StartsWith("camera.place "));
   b.run("undo");
-  CHECK(same_view(b.work.view->camera, start.camera));
-  CHECK(b.work.scene_camera == 0);
-  CHECK_FALSE(b.work.can_undo());
-  REQUIRE(b.until([&] { return b.work.snapshot && same_view(b.work.snapshot->camera, start.camera); }));
+  CHECK(same_view(b.work.camera.view->camera, start.camera));
+  CHECK(b.work.camera.scene_camera == 0);
+  CHECK_FALSE(b.work.history.can_undo());
+  REQUIRE(
+      b.until([&] { return b.work.open.snapshot && same_view(b.work.open.snapshot->camera, start.camera); }));
   for (int i = 0; i < 4; ++i) b.run("redo");
-  CHECK(b.work.scene_camera == -1);
-  CHECK(b.work.view->camera.yfov == Approx(20 * k_pi / 180));
-  CHECK(b.work.setting_real("film.ev") == 1);
+  CHECK(b.work.camera.scene_camera == -1);
+  CHECK(b.work.camera.view->camera.yfov == Approx(20 * k_pi / 180));
+  CHECK(b.work.open.setting_real("film.ev") == 1);
   b.run("undo");
-  CHECK(b.work.scene_camera == 2);
+  CHECK(b.work.camera.scene_camera == 2);
   b.run("camera.select Detail");  // no move
-  CHECK(b.work.can_redo());
+  CHECK(b.work.history.can_redo());
 }
 
 TEST_CASE("bookmarks are stored by name for their scene") {
   WorkspaceBench b;
   b.open();
-  const Viewpoint start = *b.work.view;
+  const Viewpoint start = *b.work.camera.view;
   b.run("camera.bookmark");
   b.run("camera.orbit 0.4 0.1");
   b.run("camera.fov 30");
-  const Viewpoint other = *b.work.view;
+  const Viewpoint other = *b.work.camera.view;
   b.run("camera.bookmark \"From the stage\"");
   b.run("camera.go \"View 1\"");
-  CHECK(glm::length(eye_of(b.work.view->camera) - eye_of(start.camera)) < 1e-4f);
-  CHECK(b.work.view->camera.yfov == Approx(start.camera.yfov));
+  CHECK(glm::length(eye_of(b.work.camera.view->camera) - eye_of(start.camera)) < 1e-4f);
+  CHECK(b.work.camera.view->camera.yfov == Approx(start.camera.yfov));
   b.run("camera.go \"From the stage\"");
-  CHECK(glm::length(forward_of(b.work.view->camera) - forward_of(other.camera)) < 1e-5f);
-  CHECK(b.work.view->camera.yfov == Approx(30 * k_pi / 180));
+  CHECK(glm::length(forward_of(b.work.camera.view->camera) - forward_of(other.camera)) < 1e-5f);
+  CHECK(b.work.camera.view->camera.yfov == Approx(30 * k_pi / 180));
   // A session's script needs no bookmark that it has not created.
-  CHECK_THAT(b.work.script().back(), Catch::StartsWith("camera.place "));
-  CHECK(b.work.bookmarks_here().size() == 2);
+  CHECK_THAT(b.work.history.script().back(), Catch::StartsWith("camera.place "));
+  CHECK(b.work.camera.bookmarks_of(b.work.open.scene.get()).size() == 2);
   CHECK_THAT(b.failure("camera.go \"From the sage\""), Contains("did you mean 'From the stage'?"));
   CHECK_THAT(b.failure("camera.go nowhere"), Contains("there are From the stage, View 1"));
   CHECK_THAT(b.failure("camera.forget nowhere"), Contains("there is no bookmark 'nowhere'"));
@@ -107,46 +108,46 @@ TEST_CASE("bookmarks are stored by name for their scene") {
   CHECK_THAT(b.failure("camera.bookmark " + std::string(65, 'x')),
              Contains("65 bytes are too long; at most 64"));
   b.run("camera.forget \"View 1\"");
-  CHECK(b.work.bookmarks_here().size() == 1);
+  CHECK(b.work.camera.bookmarks_of(b.work.open.scene.get()).size() == 1);
   b.open("other.gltf");
   CHECK_THAT(b.failure("camera.go \"From the stage\""), Contains("this scene has no bookmarks"));
   b.open();
-  CHECK(b.work.bookmarks_here().size() == 1);
+  CHECK(b.work.camera.bookmarks_of(b.work.open.scene.get()).size() == 1);
 }
 
 TEST_CASE("walking by command stays on the floor") {
   WorkspaceBench b;
   b.open();
   CHECK_THAT(b.failure("camera.walking on"), Contains("there is no floor below the camera"));
-  CHECK_FALSE(b.work.walking);
+  CHECK_FALSE(b.work.camera.walking);
   // The fake scene's triangle is a ramp: it rises by 3 m over 8 m towards +z.
   b.run("camera.place 2,1,-3 2,1,-2 0,1,0");
   b.run("camera.walking on");
-  CHECK(b.work.walking);
-  CHECK(eye_of(b.work.view->camera).y == Approx(0.375 + 1.65).margin(1e-3));
+  CHECK(b.work.camera.walking);
+  CHECK(eye_of(b.work.camera.view->camera).y == Approx(0.375 + 1.65).margin(1e-3));
   b.run("camera.walk 0 2");
-  CHECK(eye_of(b.work.view->camera).z == Approx(-1).margin(1e-3));
-  CHECK(eye_of(b.work.view->camera).y == Approx(1.125 + 1.65).margin(1e-3));
+  CHECK(eye_of(b.work.camera.view->camera).z == Approx(-1).margin(1e-3));
+  CHECK(eye_of(b.work.camera.view->camera).y == Approx(1.125 + 1.65).margin(1e-3));
   b.run("camera.eye_height 1.2");
-  CHECK(eye_of(b.work.view->camera).y == Approx(1.125 + 1.2).margin(1e-3));
+  CHECK(eye_of(b.work.camera.view->camera).y == Approx(1.125 + 1.2).margin(1e-3));
   b.run("undo"), b.run("undo"), b.run("undo");
-  CHECK(eye_of(b.work.view->camera) == vec3(2, 1, -3));
+  CHECK(eye_of(b.work.camera.view->camera) == vec3(2, 1, -3));
   CHECK_THAT(b.failure("camera.walk nan 1"), Contains("expected a number"));
 }
 
 TEST_CASE("exposure is measured by command, at a point, and on loading if set") {
   WorkspaceBench b;
   b.open();
-  CHECK(b.work.setting_real("film.ev") == 0);  // no window, and no command
+  CHECK(b.work.open.setting_real("film.ev") == 0);  // no window, and no command
   b.run("exposure.find");
-  CHECK(b.work.setting_real("film.ev") == 2.5);
-  CHECK(b.work.script().back() == "set film.ev 2.5");
+  CHECK(b.work.open.setting_real("film.ev") == 2.5);
+  CHECK(b.work.history.script().back() == "set film.ev 2.5");
   b.run("exposure.at 0.5 0.5");
-  CHECK(b.work.setting_real("film.ev") == 1);
+  CHECK(b.work.open.setting_real("film.ev") == 1);
   b.run("undo"), b.run("undo");
-  CHECK(b.work.setting_real("film.ev") == 0);
+  CHECK(b.work.open.setting_real("film.ev") == 0);
   const Line black = b.work.run("exposure.at 0.01 0.5");
-  REQUIRE(b.until([&] { return !b.work.measuring(); }));
+  REQUIRE(b.until([&] { return !b.work.exposure.measuring(); }));
   CHECK_THROWS_WITH(black.command->done(black.arguments), Contains("it is black there"));
   CHECK(b.errors == 1);
   CHECK_THAT(b.failure("exposure.at 2 0"), Contains("from 0 to 1"));
@@ -154,10 +155,10 @@ TEST_CASE("exposure is measured by command, at a point, and on loading if set") 
   b.run("set film.exposure_at_load always");
   REQUIRE(b.settled());
   b.open("other.gltf");
-  REQUIRE(b.until([&] { return b.work.setting_real("film.ev") == 2.5; }));
-  CHECK(b.work.undo_text() == "set film.ev 2.5");
+  REQUIRE(b.until([&] { return b.work.open.setting_real("film.ev") == 2.5; }));
+  CHECK(b.work.history.undo_text() == "set film.ev 2.5");
   b.run("scene.open third.gltf");
   b.run("set film.ev -1");  // the user's own value
   b.run("wait_scene");
-  CHECK_FALSE(b.until([&] { return b.work.setting_real("film.ev") != -1; }, 0.5));
+  CHECK_FALSE(b.until([&] { return b.work.open.setting_real("film.ev") != -1; }, 0.5));
 }

@@ -13,7 +13,7 @@ namespace {
 
 /// Waits until the session has executed every command.
 bool quiet(WorkspaceBench& b) {
-  return b.until([&] { return b.work.up_to_date() && !b.work.loading(); });
+  return b.until([&] { return b.work.open.up_to_date() && !b.work.open.loading(); });
 }
 
 }  // namespace
@@ -27,18 +27,18 @@ TEST_CASE("a camera and a size reach the session before the next command") {
   b.work.run("camera.select Detail");
   CHECK(b.session.commands() == before + 1);
   b.work.run("film.ev 1");
-  b.work.set_size(80, 50);
-  CHECK(b.work.aspect == Approx(1.6));
+  b.work.camera.set_size(80, 50);
+  CHECK(b.work.camera.aspect == Approx(1.6));
   CHECK(b.session.commands() == before + 3);
-  CHECK_FALSE(b.work.up_to_date());
+  CHECK_FALSE(b.work.open.up_to_date());
   session::fake::busy_ms = 0;
   REQUIRE(quiet(b));
-  CHECK(same_view(b.work.snapshot->camera, b.work.scene->cameras[2]));
-  CHECK(b.work.snapshot->width == 80);
+  CHECK(same_view(b.work.open.snapshot->camera, b.work.open.scene->cameras[2]));
+  CHECK(b.work.open.snapshot->width == 80);
   // A command that changes nothing does not restart the picture.
   const uint64_t given = b.session.commands();
   b.work.run("camera.select Detail");
-  b.work.set_size(80, 50);
+  b.work.camera.set_size(80, 50);
   CHECK(b.session.commands() == given);
 }
 
@@ -53,13 +53,13 @@ TEST_CASE("of several queued cameras only the last is rendered") {
   CHECK(b.session.commands() <= before + 3);
   session::fake::busy_ms = 0;
   REQUIRE(quiet(b));
-  CHECK(same_view(b.work.snapshot->camera, b.work.view->camera));
+  CHECK(same_view(b.work.open.snapshot->camera, b.work.camera.view->camera));
 }
 
 TEST_CASE("no command places the camera where nothing can be rendered") {
   WorkspaceBench b;
   b.open();
-  const Viewpoint start = *b.work.view;
+  const Viewpoint start = *b.work.camera.view;
   for (const char* line : {"camera.dolly -400", "camera.dolly -1000", "camera.fly 0 0 -1e9",
                            "camera.place 1e9,1e9,1e9 0,0,0 0,1,0", "camera.walk 1e4 1e4 through=on"}) {
     INFO(line);
@@ -69,9 +69,9 @@ TEST_CASE("no command places the camera where nothing can be rendered") {
       CHECK(failure.empty());  // just inside
     else
       CHECK_THAT(failure, Contains("1e+09 m from the origin"));
-    const vec3 eye = eye_of(b.work.view->camera);
+    const vec3 eye = eye_of(b.work.camera.view->camera);
     CHECK((std::isfinite(eye.x + eye.y + eye.z) && glm::length(eye) < 2e9f));
-    b.run(Workspace::place_line(start));
+    b.run(Navigation::place_line(start));
   }
   CHECK_FALSE(b.failure("light.set 2 position=1e10,0,0").empty());
 }
@@ -89,7 +89,7 @@ TEST_CASE("edits during loading do not reach the new scene") {
         "mix.preset.save more", "mix.preset.delete mine", "mix.group Sun=a b"}) {
     INFO(line);
     b.run("scene.open other.gltf");
-    REQUIRE(b.work.loading());
+    REQUIRE(b.work.open.loading());
     try {
       b.work.run(line);
     } catch (const Error&) {
@@ -97,12 +97,12 @@ TEST_CASE("edits during loading do not reach the new scene") {
     }
     b.run("wait_scene");
     REQUIRE(quiet(b));
-    CHECK(same_view(b.work.view->camera, b.work.scene->cameras[0]));
-    CHECK(same_view(b.work.snapshot->camera, b.work.view->camera));
+    CHECK(same_view(b.work.camera.view->camera, b.work.open.scene->cameras[0]));
+    CHECK(same_view(b.work.open.snapshot->camera, b.work.camera.view->camera));
     CHECK(b.session.scene()->lights[1].intensity.x == 12);
-    CHECK(b.work.solo() == -1);
-    CHECK(b.work.setting("show.primary") == "true");
-    CHECK(b.work.script().back() == "wait_scene");
+    CHECK(b.work.open.solo() == -1);
+    CHECK(b.work.open.setting("show.primary") == "true");
+    CHECK(b.work.history.script().back() == "wait_scene");
     b.run("light.set 2 intensity=1");
     b.run("mix.set \"Brass lamp\" ev=1");
     REQUIRE(quiet(b));
@@ -115,14 +115,14 @@ TEST_CASE("edits during a load that fails are kept") {
   REQUIRE(quiet(b));
   b.run("scene.open missing.gltf");
   b.work.run("camera.orbit 0.3 0");
-  const Viewpoint moved = *b.work.view;
+  const Viewpoint moved = *b.work.camera.view;
   b.work.run("film.ev 1");
   REQUIRE(quiet(b));
-  CHECK(same_view(b.work.view->camera, moved.camera));
-  CHECK(same_view(b.work.snapshot->camera, moved.camera));
-  CHECK(b.work.setting_real("film.ev") == 1);
-  CHECK_THAT(b.work.script().back(), Catch::StartsWith("set film.ev"));
-  CHECK(b.work.script().size() == 4);
+  CHECK(same_view(b.work.camera.view->camera, moved.camera));
+  CHECK(same_view(b.work.open.snapshot->camera, moved.camera));
+  CHECK(b.work.open.setting_real("film.ev") == 1);
+  CHECK_THAT(b.work.history.script().back(), Catch::StartsWith("set film.ev"));
+  CHECK(b.work.history.script().size() == 4);
 }
 
 TEST_CASE("two loads in a row: the first is shown when the second fails") {
@@ -134,10 +134,10 @@ TEST_CASE("two loads in a row: the first is shown when the second fails") {
   b.run("scene.open missing.gltf");
   b.run("wait_load");
   REQUIRE(quiet(b));
-  CHECK(b.work.scene->name == "other");
-  CHECK(b.work.view_scene == b.work.snapshot->scene_id);
-  CHECK(same_view(b.work.view->camera, b.work.scene->cameras[0]));
-  CHECK(same_view(b.work.snapshot->camera, b.work.view->camera));
+  CHECK(b.work.open.scene->name == "other");
+  CHECK(b.work.camera.view_scene == b.work.open.snapshot->scene_id);
+  CHECK(same_view(b.work.camera.view->camera, b.work.open.scene->cameras[0]));
+  CHECK(same_view(b.work.open.snapshot->camera, b.work.camera.view->camera));
   b.run("wait_samples 1");
   CHECK(b.failure("wait_scene").empty());
   CHECK_THROWS_WITH(b.work.registry.find("wait_scene")->done({}), "no scene was loaded");
@@ -148,9 +148,9 @@ TEST_CASE("a cancelled load leaves no trace") {
   b.open();
   b.run("scene.open slow.gltf");
   b.run("scene.cancel");
-  CHECK_FALSE(b.work.loading());
-  CHECK(b.work.script().size() == 2);
-  CHECK(b.work.scene->name == "hall");
+  CHECK_FALSE(b.work.open.loading());
+  CHECK(b.work.history.script().size() == 2);
+  CHECK(b.work.open.scene->name == "hall");
 }
 
 TEST_CASE("the start camera is not a way to move the camera") {
@@ -161,11 +161,11 @@ TEST_CASE("the start camera is not a way to move the camera") {
   REQUIRE(quiet(b));
   CHECK_THAT(b.failure("reset camera"), Contains("camera.select takes another one now"));
   CHECK_THAT(b.failure("set camera Entrance"), Contains("camera.select takes another one now"));
-  CHECK(b.work.setting("camera") == "Detail");
+  CHECK(b.work.open.setting("camera") == "Detail");
   // Any move updates the view to the picture's camera.
-  b.session.set_camera(b.work.scene->cameras[1]);
+  b.session.set_camera(b.work.open.scene->cameras[1]);
   REQUIRE(quiet(b));
-  CHECK(same_view(b.work.view->camera, b.work.scene->cameras[1]));
+  CHECK(same_view(b.work.camera.view->camera, b.work.open.scene->cameras[1]));
 }
 
 TEST_CASE("a refused edit is neither undoable nor saved") {
@@ -173,14 +173,14 @@ TEST_CASE("a refused edit is neither undoable nor saved") {
   b.open();
   b.run("light.set 2 intensity=5");
   REQUIRE(quiet(b));
-  const std::vector<std::string> before = b.work.script();
-  const Document document = b.work.document();
+  const std::vector<std::string> before = b.work.history.script();
+  const Document document = b.work.open.document();
   b.run("set relight.mix nonsense");
-  CHECK(b.work.can_undo());
+  CHECK(b.work.history.can_undo());
   REQUIRE(quiet(b));
-  CHECK(b.work.script() == before);
-  CHECK(b.work.document() == document);
-  CHECK_THAT(b.work.undo_text(), Catch::StartsWith("light.set"));
+  CHECK(b.work.history.script() == before);
+  CHECK(b.work.open.document() == document);
+  CHECK_THAT(b.work.history.undo_text(), Catch::StartsWith("light.set"));
   // A step made before the refusal was known does not restore it.
   b.run("set relight.mix nonsense"), b.run("light.set 1 intensity=7");
   REQUIRE(quiet(b));
@@ -188,16 +188,16 @@ TEST_CASE("a refused edit is neither undoable nor saved") {
   b.run("undo"), b.run("redo"), b.run("undo");
   REQUIRE(quiet(b));
   CHECK(b.errors == errors);
-  CHECK(b.work.document() == document);
+  CHECK(b.work.open.document() == document);
   // A drag of which only the last step is refused can be undone.
   b.run("set relight.mix \"sky: ev=1\"", 3), b.run("set relight.mix nonsense", 3);
   REQUIRE(quiet(b));
-  CHECK_THAT(b.work.undo_text(), Contains("relight.mix"));
-  CHECK(b.work.setting("relight.mix") == "sky: ev=1");
+  CHECK_THAT(b.work.history.undo_text(), Contains("relight.mix"));
+  CHECK(b.work.open.setting("relight.mix") == "sky: ev=1");
   b.run("undo"), b.run("undo");
   REQUIRE(quiet(b));
-  CHECK(b.work.setting("relight.mix").empty());
-  CHECK(b.work.light(1).intensity.x == Approx(12));
+  CHECK(b.work.open.setting("relight.mix").empty());
+  CHECK(b.work.open.light(1).intensity.x == Approx(12));
   // A file that cannot be read keeps the previous one with its scale and rotation.
   const Folder folder;
   for (const char* name : {"red.exr", "broken.exr"}) std::ofstream(folder.path / name) << "x";
@@ -205,30 +205,30 @@ TEST_CASE("a refused edit is neither undoable nor saved") {
   b.run("environment.set scale=3");
   b.run("environment.load " + quote((folder.path / "broken.exr").string()));
   REQUIRE(quiet(b));
-  CHECK_THAT(b.work.environment_file(), Catch::EndsWith("red.exr"));
-  CHECK(b.work.environment_scale() == 3);
+  CHECK_THAT(b.work.open.environment_file(), Catch::EndsWith("red.exr"));
+  CHECK(b.work.open.environment_scale() == 3);
   CHECK(b.session.scene()->environment.scale == 3);
-  CHECK_THAT(b.work.undo_text(), Catch::StartsWith("environment.set"));
+  CHECK_THAT(b.work.history.undo_text(), Catch::StartsWith("environment.set"));
 }
 
 TEST_CASE("a refused size is dropped") {
   WorkspaceBench b;
   b.open();
-  b.work.set_size(64, 64);
+  b.work.camera.set_size(64, 64);
   REQUIRE(quiet(b));
-  b.work.set_size(16384, 16384);
+  b.work.camera.set_size(16384, 16384);
   b.run("wait_samples 1");
-  CHECK(b.work.snapshot->width == 64);
-  CHECK(b.work.aspect == 1);
-  b.work.set_size(32, 64);
+  CHECK(b.work.open.snapshot->width == 64);
+  CHECK(b.work.camera.aspect == 1);
+  b.work.camera.set_size(32, 64);
   REQUIRE(quiet(b));
-  CHECK(b.work.snapshot->width == 32);
+  CHECK(b.work.open.snapshot->width == 32);
 }
 
 TEST_CASE("a wait for samples that will never come is reported") {
   WorkspaceBench b;
   b.open();
-  REQUIRE(b.until([&] { return b.work.up_to_date() && b.work.snapshot->samples >= 3; }));
+  REQUIRE(b.until([&] { return b.work.open.up_to_date() && b.work.open.snapshot->samples >= 3; }));
   b.run("render.pause");
   const Line few = b.work.registry.parse("wait_samples 2"), many = b.work.registry.parse("wait_samples 200");
   REQUIRE(quiet(b));
@@ -236,9 +236,9 @@ TEST_CASE("a wait for samples that will never come is reported") {
   CHECK_THROWS_WITH(many.command->done(many.arguments), Contains("rendering is paused; render.resume"));
   // Its script waits for the number of samples at which the picture was stopped.
   b.run("image.save /tmp/never.exr");
-  const std::vector<std::string> lines = b.work.script();
+  const std::vector<std::string> lines = b.work.history.script();
   REQUIRE(lines.size() == 6);
-  CHECK(lines[2] == line("wait_samples", b.work.snapshot->samples, named("limit", 86400)));
+  CHECK(lines[2] == line("wait_samples", b.work.open.snapshot->samples, named("limit", 86400)));
   CHECK(lines[3] == "render.pause");
   CHECK(lines[4] == lines[2]);
 }
@@ -246,22 +246,22 @@ TEST_CASE("a wait for samples that will never come is reported") {
 TEST_CASE("a view of either projection is applied to a camera of either projection") {
   WorkspaceBench b;
   b.open();
-  b.work.set_size(96, 64);
-  const Viewpoint start = *b.work.view;
+  b.work.camera.set_size(96, 64);
+  const Viewpoint start = *b.work.camera.view;
   b.run("camera.bookmark wide");
   b.run("camera.place 0,1,3 0,1,0 0,1,0 height=2");
-  const scene::Camera flat = b.work.view->camera;
+  const scene::Camera flat = b.work.camera.view->camera;
   CHECK(flat.orthographic);
   CHECK(flat.ymag == 1);
   CHECK(flat.xmag == 1.5f);
   b.run("camera.bookmark flat");
   b.run("camera.go wide");
-  CHECK_FALSE(b.work.view->camera.orthographic);
-  CHECK(b.work.view->camera.yfov == Approx(start.camera.yfov));
-  CHECK(glm::length(eye_of(b.work.view->camera) - eye_of(start.camera)) < 1e-4f);
+  CHECK_FALSE(b.work.camera.view->camera.orthographic);
+  CHECK(b.work.camera.view->camera.yfov == Approx(start.camera.yfov));
+  CHECK(glm::length(eye_of(b.work.camera.view->camera) - eye_of(start.camera)) < 1e-4f);
   b.run("camera.go flat");
-  CHECK(b.work.view->camera.orthographic);
-  CHECK(b.work.view->camera.ymag == Approx(1));
+  CHECK(b.work.camera.view->camera.orthographic);
+  CHECK(b.work.camera.view->camera.ymag == Approx(1));
   CHECK_THAT(b.failure("camera.place 0,1,3 0,1,0 0,1,0 height=2 fov=40"), Contains("exclude each other"));
 }
 
@@ -269,10 +269,10 @@ TEST_CASE("the aspect ratio is that of the picture") {
   WorkspaceBench b;
   b.open();
   REQUIRE(quiet(b));
-  CHECK(b.work.aspect == Approx(64.0 / 36));
+  CHECK(b.work.camera.aspect == Approx(64.0 / 36));
   b.session.set_size(30, 60);
   REQUIRE(quiet(b));
-  CHECK(b.work.aspect == 0.5f);
+  CHECK(b.work.camera.aspect == 0.5f);
 }
 
 TEST_CASE("a mix written into the lights is one edit for the session, and so is its undo") {
@@ -284,8 +284,8 @@ TEST_CASE("a mix written into the lights is one edit for the session, and so is 
   const uint64_t before = b.session.commands();
   b.run("mix.apply");
   CHECK(b.session.commands() == before + 1);
-  CHECK(b.work.light(1).intensity.x == Approx(24));
-  CHECK_FALSE(b.work.light(0).enabled);
+  CHECK(b.work.open.light(1).intensity.x == Approx(24));
+  CHECK_FALSE(b.work.open.light(0).enabled);
   REQUIRE(b.settled());
   CHECK(b.session.scene()->lights[1].intensity.x == Approx(24));
   CHECK(b.session.settings().text("relight.mix").empty());

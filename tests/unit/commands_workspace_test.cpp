@@ -11,39 +11,39 @@ using Catch::Contains;
 TEST_CASE("edits are visible immediately, reach the session, and can be undone and redone") {
   WorkspaceBench b;
   b.open();
-  const Document before = b.work.document();
+  const Document before = b.work.open.document();
   REQUIRE(before.lights.size() == 3);
   b.run("film.ev 1.5");
-  CHECK(b.work.setting_real("film.ev") == 1.5);
+  CHECK(b.work.open.setting_real("film.ev") == 1.5);
   b.run("light.set \"Brass lamp\" intensity=24 on=false");
-  CHECK(b.work.light(1).intensity.x == Approx(24));
-  CHECK(b.work.light(1).intensity.y == Approx(18));  // the colour stays
-  CHECK_FALSE(b.work.light(1).enabled);
+  CHECK(b.work.open.light(1).intensity.x == Approx(24));
+  CHECK(b.work.open.light(1).intensity.y == Approx(18));  // the colour stays
+  CHECK_FALSE(b.work.open.light(1).enabled);
   b.run("light.set 1 color=0,0,2");
-  CHECK(b.work.light(0).intensity == vec3(0, 0, 3.1f));
+  CHECK(b.work.open.light(0).intensity == vec3(0, 0, 3.1f));
   b.run("environment.set rotation=90");
   b.run("view.show tertiary off");
-  const Document after = b.work.document();
+  const Document after = b.work.open.document();
   REQUIRE(b.settled());
   CHECK(b.session.scene()->lights[0].intensity == vec3(0, 0, 3.1f));
   CHECK(b.session.settings().text("show.tertiary") == "false");
 
-  CHECK(b.work.undo_text() == "view.show tertiary false");
+  CHECK(b.work.history.undo_text() == "view.show tertiary false");
   for (int i = 0; i < 5; ++i) b.run("undo");
-  CHECK(b.work.document() == before);
+  CHECK(b.work.open.document() == before);
   REQUIRE(b.settled());
   CHECK(b.session.settings().real("film.ev") == 0);
   CHECK(b.session.scene()->lights[1].enabled);
-  CHECK_FALSE(b.work.can_undo());
+  CHECK_FALSE(b.work.history.can_undo());
   CHECK(b.failure("undo") == "undo: there is nothing to undo");
   for (int i = 0; i < 5; ++i) b.run("redo");
-  CHECK(b.work.document() == after);
+  CHECK(b.work.open.document() == after);
   REQUIRE(b.settled());
-  CHECK_FALSE(b.work.can_redo());
+  CHECK_FALSE(b.work.history.can_redo());
 
   b.run("undo");
   b.run("film.ev -1");  // a new step ends the redo list
-  CHECK_FALSE(b.work.can_redo());
+  CHECK_FALSE(b.work.history.can_redo());
 }
 
 TEST_CASE("an edit is shown until the session has executed it, however busy the session is") {
@@ -54,14 +54,14 @@ TEST_CASE("an edit is shown until the session has executed it, however busy the 
   b.run("light.set 1 on=false");
   b.work.refresh(b.timer.seconds() + 1000);
   CHECK(b.session.settings().real("film.ev") == 0);  // it is queued
-  CHECK(b.work.setting_real("film.ev") == 1.5);
-  CHECK_FALSE(b.work.light(0).enabled);
+  CHECK(b.work.open.setting_real("film.ev") == 1.5);
+  CHECK_FALSE(b.work.open.light(0).enabled);
   session::fake::busy_ms = 0;
   REQUIRE(b.settled());
-  CHECK(b.work.setting_real("film.ev") == 1.5);
+  CHECK(b.work.open.setting_real("film.ev") == 1.5);
   // Then the session's value is shown, whatever has set it.
   b.session.set("film.ev", "0.25");
-  REQUIRE(b.until([&] { return b.work.setting_real("film.ev") == 0.25; }));
+  REQUIRE(b.until([&] { return b.work.open.setting_real("film.ev") == 0.25; }));
 }
 
 TEST_CASE("a drag is one step; another drag, another control or no drag is another") {
@@ -73,9 +73,9 @@ TEST_CASE("a drag is one step; another drag, another control or no drag is anoth
   b.run("environment.set rotation=10", 8);
   b.run("film.ev 3");  // no change: no step
   int steps = 0;
-  for (; b.work.can_undo(); ++steps) b.run("undo");
+  for (; b.work.history.can_undo(); ++steps) b.run("undo");
   CHECK(steps == 4);
-  const std::vector<std::string> script = b.work.script();
+  const std::vector<std::string> script = b.work.history.script();
   CHECK(script[2] == "set film.ev 2");
   CHECK(script[3] == "set film.ev 3");
   CHECK(script.size() == 6 + 4);
@@ -86,10 +86,10 @@ TEST_CASE("the steps of a drag give the result of its last step alone") {
   dragged.open(), at_once.open();
   for (int i = 0; i < 200; ++i)
     dragged.run(line("light.set", 1, named("intensity", 0.137f * static_cast<float>(i + 1))), 3);
-  at_once.run(dragged.work.script().back());
-  CHECK(dragged.work.light(0).intensity == at_once.work.light(0).intensity);
+  at_once.run(dragged.work.history.script().back());
+  CHECK(dragged.work.open.light(0).intensity == at_once.work.open.light(0).intensity);
   dragged.run("undo");
-  CHECK(dragged.work.light(0).intensity == vec3(3.1f, 2.9f, 2.6f));
+  CHECK(dragged.work.open.light(0).intensity == vec3(3.1f, 2.9f, 2.6f));
 }
 
 TEST_CASE("a failed command reports the reason and changes nothing") {
@@ -99,7 +99,7 @@ TEST_CASE("a failed command reports the reason and changes nothing") {
   CHECK_THAT(b.failure("light.set 1 on=off"), Contains("no scene is open"));
   CHECK_THAT(b.failure("select light 1"), Contains("no scene is open"));
   b.open();
-  const Document before = b.work.document();
+  const Document before = b.work.open.document();
   CHECK(b.failure("light.set \"Bras lamp\" on=off") ==
         "light.set: the scene has no light 'Bras lamp'; did you mean 'Brass lamp'?");
   CHECK_THAT(b.failure("light.set 4 on=off"), Contains("there is no light 4; the scene has 3"));
@@ -111,9 +111,9 @@ TEST_CASE("a failed command reports the reason and changes nothing") {
   CHECK_THAT(b.failure("camera.height 2"), Contains("the camera is not orthographic"));
   CHECK_THAT(b.failure("select material 99"), Contains("there is no material 99"));
   CHECK_THAT(b.failure("script.save /no/such/folder/x.lucerna"), Contains("cannot be written: No such file"));
-  CHECK(b.work.document() == before);
-  CHECK_FALSE(b.work.can_undo());
-  CHECK(b.work.script().size() == 2);  // the scene only
+  CHECK(b.work.open.document() == before);
+  CHECK_FALSE(b.work.history.can_undo());
+  CHECK(b.work.history.script().size() == 2);  // the scene only
 }
 
 TEST_CASE("a failed load is reported, and the previous scene stays") {
@@ -121,25 +121,25 @@ TEST_CASE("a failed load is reported, and the previous scene stays") {
   b.open();
   b.run("select light 2");
   b.run("scene.open missing.gltf");
-  CHECK(b.work.loading());
+  CHECK(b.work.open.loading());
   CHECK_THAT(b.failure("light.set 1 on=off"), Contains("a scene is being loaded"));
   const Command* wait = b.work.registry.find("wait_scene");
-  REQUIRE(b.until([&] { return !b.work.loading(); }));
+  REQUIRE(b.until([&] { return !b.work.open.loading(); }));
   CHECK_THROWS_WITH(wait->done({}), "no scene was loaded");
-  CHECK(b.work.scene->name == "hall");
-  CHECK(b.work.selection == Selection{Kind::light, 1});
-  CHECK(b.work.script().back() == "select light 2");  // a failed load is not repeated
+  CHECK(b.work.open.scene->name == "hall");
+  CHECK(b.work.camera.selection == Selection{Kind::light, 1});
+  CHECK(b.work.history.script().back() == "select light 2");  // a failed load is not repeated
   // Nor are pictures and records that could not be read.
   b.run("reference.load missing.exr"), b.run("cache.load missing.cache");
   REQUIRE(b.until([&] { return b.errors == 3; }));
-  CHECK(b.work.script().back() == "select light 2");
+  CHECK(b.work.history.script().back() == "select light 2");
   b.run("reference.load truth.exr");
   REQUIRE(b.settled());
-  CHECK_THAT(b.work.script().back(), Contains("reference.load") && Contains("truth.exr"));
+  CHECK_THAT(b.work.history.script().back(), Contains("reference.load") && Contains("truth.exr"));
   b.open("other.gltf");
-  CHECK(b.work.scene->name == "other");
-  CHECK(b.work.selection == Selection{});
-  CHECK_FALSE(b.work.can_undo());  // steps of the previous scene do not apply here
+  CHECK(b.work.open.scene->name == "other");
+  CHECK(b.work.camera.selection == Selection{});
+  CHECK_FALSE(b.work.history.can_undo());  // steps of the previous scene do not apply here
 }
 
 TEST_CASE("a session's script waits for the saved picture, and omits failed commands") {
@@ -148,7 +148,7 @@ TEST_CASE("a session's script waits for the saved picture, and omits failed comm
   b.run("set samples 12");
   b.run("wait_samples 12");
   b.run("image.save /tmp/never.exr");  // the fake session writes no file
-  const auto finished = b.work.script();
+  const auto finished = b.work.history.script();
   CHECK(finished[finished.size() - 2] == "wait_samples 12 limit=86400");
   CHECK(finished.back() == "image.save /tmp/never.exr");
   CHECK(std::count_if(finished.begin(), finished.end(),
@@ -156,11 +156,11 @@ TEST_CASE("a session's script waits for the saved picture, and omits failed comm
   // The script of a user session: without a wait, and rendering was paused.
   WorkspaceBench p;
   p.open();
-  REQUIRE(p.until([&] { return p.work.up_to_date() && p.work.snapshot->samples >= 5; }));
+  REQUIRE(p.until([&] { return p.work.open.up_to_date() && p.work.open.snapshot->samples >= 5; }));
   p.run("render.pause");
-  REQUIRE(p.until([&] { return p.work.up_to_date() && p.work.snapshot->paused; }));
+  REQUIRE(p.until([&] { return p.work.open.up_to_date() && p.work.open.snapshot->paused; }));
   p.run("image.save /tmp/never.png");
-  const auto lines = p.work.script();
+  const auto lines = p.work.history.script();
   REQUIRE(lines.size() == 6);
   CHECK_THAT(lines[2], Catch::StartsWith("wait_samples "));
   CHECK(lines[3] == "render.pause");
@@ -175,7 +175,7 @@ TEST_CASE("a setting made while a scene is loading is kept") {
   b.run("wait_scene");
   REQUIRE(b.settled());
   CHECK(b.until([&] { return b.session.settings().integer("samples") == 256; }));
-  CHECK(b.work.script().size() == 4);
+  CHECK(b.work.history.script().size() == 4);
 }
 
 TEST_CASE("a repeated session script gives the same state") {
@@ -186,9 +186,9 @@ TEST_CASE("a repeated session script gives the same state") {
   a.run("film.tone_curve agx");
   a.run("camera.select Detail");
   for (int i = 0; i < 30; ++i) {  // a drag of the mouse, as the window sends it
-    Viewpoint v = *a.work.view;
+    Viewpoint v = *a.work.camera.view;
     orbit(v, {0.01f, 0.003f});
-    a.run(Workspace::place_line(v), 11);
+    a.run(Navigation::place_line(v), 11);
   }
   a.run("camera.dolly 1.5");
   a.run("camera.fov 33.3");
@@ -208,16 +208,16 @@ TEST_CASE("a repeated session script gives the same state") {
   int lines = 0;
   for (std::string line; std::getline(in, line); ++lines) b.run(line);
   CHECK(lines == 18);  // a comment, and the drags as one line each
-  CHECK(b.work.document() == a.work.document());
-  CHECK(b.work.solo() == 2);
-  CHECK(b.work.selection == a.work.selection);
-  CHECK(b.work.speed == a.work.speed);
-  REQUIRE((a.work.view && b.work.view));
-  CHECK(same_view(a.work.view->camera, b.work.view->camera));
-  CHECK(a.work.view->distance == b.work.view->distance);
-  CHECK(b.work.script() == a.work.script());
-  CHECK(a.work.undo_text() == b.work.undo_text());
+  CHECK(b.work.open.document() == a.work.open.document());
+  CHECK(b.work.open.solo() == 2);
+  CHECK(b.work.camera.selection == a.work.camera.selection);
+  CHECK(b.work.camera.speed == a.work.camera.speed);
+  REQUIRE((a.work.camera.view && b.work.camera.view));
+  CHECK(same_view(a.work.camera.view->camera, b.work.camera.view->camera));
+  CHECK(a.work.camera.view->distance == b.work.camera.view->distance);
+  CHECK(b.work.history.script() == a.work.history.script());
+  CHECK(a.work.history.undo_text() == b.work.history.undo_text());
   REQUIRE(b.settled());
-  CHECK(b.session.settings().all() == a.work.document().settings);
+  CHECK(b.session.settings().all() == a.work.open.document().settings);
   std::filesystem::remove(file);
 }

@@ -37,17 +37,17 @@ TEST_CASE("bookmarks and the state of the first steps survive a restart; a damag
   {
     Window window;  // no file yet
     CHECK_FALSE(window.ui.welcomed);
-    CHECK(window.ui.bookmarks.empty());
+    CHECK(window.ui.camera.bookmarks.empty());
     window.ui.welcomed = true;
-    window.ui.bookmarks["/a/hall.gltf"]["From the \"stage\""] = k_line;
-    window.ui.bookmarks["/a/empty.gltf"];
-    window.ui.bookmarks["/a/b\xFChne.gltf"]["\xE9"] = k_line;
+    window.ui.camera.bookmarks["/a/hall.gltf"]["From the \"stage\""] = k_line;
+    window.ui.camera.bookmarks["/a/empty.gltf"];
+    window.ui.camera.bookmarks["/a/b\xFChne.gltf"]["\xE9"] = k_line;
   }
   {
     Window window;
     CHECK(window.ui.welcomed);
-    CHECK(window.ui.bookmarks.size() == 2);
-    CHECK(window.ui.bookmarks["/a/hall.gltf"]["From the \"stage\""] == k_line);
+    CHECK(window.ui.camera.bookmarks.size() == 2);
+    CHECK(window.ui.camera.bookmarks["/a/hall.gltf"]["From the \"stage\""] == k_line);
   }
   REQUIRE(std::filesystem::exists(folder.file()));
   for (const char* text :
@@ -57,10 +57,10 @@ TEST_CASE("bookmarks and the state of the first steps survive a restart; a damag
     INFO(text);
     CHECK_NOTHROW([] {
       Window damaged;
-      damaged.ui.bookmarks["/a/hall.gltf"]["new"] = k_line;
+      damaged.ui.camera.bookmarks["/a/hall.gltf"]["new"] = k_line;
     }());
     Window after;
-    CHECK(after.ui.bookmarks["/a/hall.gltf"]["new"] == k_line);
+    CHECK(after.ui.camera.bookmarks["/a/hall.gltf"]["new"] == k_line);
   }
 }
 
@@ -68,32 +68,32 @@ TEST_CASE("two windows keep each other's bookmarks, files and panels") {
   const StateFolder folder;
   {
     Window before;
-    before.ui.bookmarks["/a"] = {{"old", k_line}, {"gone", k_line}};
+    before.ui.camera.bookmarks["/a"] = {{"old", k_line}, {"gone", k_line}};
     before.ui.recent = {"/1", "/2", "/3"};
   }
   {
     Window first, second;
-    first.ui.bookmarks["/a"]["first"] = k_line;
-    first.ui.bookmarks["/a"].erase("gone");
+    first.ui.camera.bookmarks["/a"]["first"] = k_line;
+    first.ui.camera.bookmarks["/a"].erase("gone");
     first.ui.recent = {"/4", "/1", "/2", "/3"};
     first.ui.layout.left = 300;
     first.ui.sections["Camera"] = true;
     REQUIRE(first.memory.save());
-    second.ui.bookmarks["/a"]["second"] = k_line;
-    second.ui.bookmarks["/b"]["other"] = k_line;
+    second.ui.camera.bookmarks["/a"]["second"] = k_line;
+    second.ui.camera.bookmarks["/b"]["other"] = k_line;
     second.ui.recent = {"/3", "/5", "/1", "/2"};
     second.ui.layout.bottom = 200;
     second.ui.sections["Render"] = false;
     REQUIRE(second.memory.save());
     // A window that saves merges the other's views; its own panels stay.
-    CHECK(second.ui.bookmarks["/a"].size() == 3);
+    CHECK(second.ui.camera.bookmarks["/a"].size() == 3);
     CHECK(second.ui.recent == std::vector<std::string>{"/3", "/5", "/4", "/1", "/2"});
     CHECK(second.ui.layout.left == ui::Layout().left);
   }
   Window after;
-  using Views = commands::Workspace::Bookmarks;
-  CHECK(after.ui.bookmarks["/a"] == Views{{"first", k_line}, {"old", k_line}, {"second", k_line}});
-  CHECK(after.ui.bookmarks["/b"] == Views{{"other", k_line}});
+  using Views = commands::Navigation::Bookmarks;
+  CHECK(after.ui.camera.bookmarks["/a"] == Views{{"first", k_line}, {"old", k_line}, {"second", k_line}});
+  CHECK(after.ui.camera.bookmarks["/b"] == Views{{"other", k_line}});
   CHECK(after.ui.recent == std::vector<std::string>{"/3", "/5", "/4", "/1", "/2"});
   CHECK(after.ui.layout.left == 300);
   CHECK(after.ui.layout.bottom == 200);
@@ -105,7 +105,7 @@ TEST_CASE("bookmarks are saved immediately, panels once they stop moving, and no
   Window window;
   window.memory.follow(1);
   CHECK_FALSE(std::filesystem::exists(folder.file()));
-  window.ui.bookmarks["/a"]["x"] = k_line;
+  window.ui.camera.bookmarks["/a"]["x"] = k_line;
   window.memory.follow(2);
   CHECK_THAT(read_file(folder.file()), Catch::Contains("\"x\""));
 
@@ -138,7 +138,7 @@ TEST_CASE("a failed save is reported once") {
   {
     Window window;
     for (const char* name : {"x", "y"}) {
-      window.ui.bookmarks["/a"][name] = k_line;
+      window.ui.camera.bookmarks["/a"][name] = k_line;
       window.memory.follow(1);
     }
   }

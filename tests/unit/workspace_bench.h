@@ -47,8 +47,8 @@ struct WorkspaceBench {
   /// Every command has reached the session.
   bool settled() {
     return until([&] {
-      const commands::Document d = work.document();
-      if (work.loading() || session.settings().all() != d.settings) return false;
+      const commands::Document d = work.open.document();
+      if (work.open.loading() || session.settings().all() != d.settings) return false;
       const auto scene = session.scene();
       if (!scene) return true;
       for (size_t i = 0; i < scene->lights.size(); ++i)

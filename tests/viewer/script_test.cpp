@@ -54,7 +54,7 @@ TEST_CASE("file names of other formats are refused before the script runs") {
   for (const char* line : {"image.save a.jpg", "image.save .exr", "image.save a", "screenshot a.exr",
                            "script.save a.txt", "cache.save a.exr"})
     CHECK_THROWS_WITH(
-        ui::parse_script(window.registry, {line}, "s"),
+        ui::parse_script(window.work.registry, {line}, "s"),
         Catch::StartsWith("s: line 1: ") && Catch::Contains("expected a file name that ends in ."));
 }
 
@@ -62,11 +62,12 @@ TEST_CASE("the busy card names the running command, not a finished one") {
   session::Session session({});
   ui::Ui window(session);
   session::fake::busy_ms = 150, session::fake::drawing_ms = 300;
-  for (const char* line : {"film.ev 1", "window.fold left true", "image.save slow.exr"}) window.run(line);
+  for (const char* line : {"film.ev 1", "window.fold left true", "image.save slow.exr"})
+    window.work.run(line);
   std::vector<std::string> texts;
   const auto begin = std::chrono::steady_clock::now();
   while (texts.empty() || window.busy.command != 0) {
-    window.refresh(window.time());
+    window.work.refresh(window.time());
     window.follow_busy();
     const std::string text = window.busy.command == 0 ? "" : window.busy.done ? "drawing" : window.busy.text;
     // A finished command is not shown.
@@ -211,14 +212,14 @@ TEST_CASE("in the program a saved picture shows the camera and the size of earli
 TEST_CASE("the what-if target stays when the sampling mode changes, in one step to undo") {
   session::Session session({});
   ui::Ui window(session);
-  const auto target = [&] { return window.setting_real("sampling.target_error"); };
-  const auto act = [&](const std::string& line) { window.run(line); };
+  const auto target = [&] { return window.open.setting_real("sampling.target_error"); };
+  const auto act = [&](const std::string& line) { window.work.run(line); };
   act("accuracy.what_if 0.023");
   act("set sampling.mode adaptive");
   CHECK(target() == Approx(0.023));
   CHECK(window.target() == Approx(0.023));
   act("undo");
-  CHECK(window.setting("sampling.mode") == "uniform");
+  CHECK(window.open.setting("sampling.mode") == "uniform");
   CHECK(target() == Approx(0.05));
   // A target that is set directly is not overridden, neither before nor after.
   act("accuracy.what_if 0.03");

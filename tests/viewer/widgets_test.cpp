@@ -113,7 +113,7 @@ class Walk {
     ui_.texture = 1, ui_.texture_width = 64, ui_.texture_height = 48;
   }
   ~Walk() {
-    ui_.session.on_publish({});
+    ui_.work.session.on_publish({});
     ImGui::DestroyContext();
   }
 
@@ -129,7 +129,7 @@ class Walk {
     const auto begin = std::chrono::steady_clock::now();
     const auto busy = [&] {
       const auto s = session_.snapshot();
-      return !s || s->commands < session_.commands() || (ui_.scene && !s->finished);
+      return !s || s->commands < session_.commands() || (ui_.open.scene && !s->finished);
     };
     for (frames(1); busy(); frames(1)) {
       REQUIRE(std::chrono::steady_clock::now() - begin < std::chrono::seconds(20));
@@ -247,8 +247,8 @@ class Walk {
 
  private:
   void frame() {
-    ui_.now = ui_.time();
-    ui_.refresh(ui_.now);
+    ui_.work.now = ui_.time();
+    ui_.work.refresh(ui_.work.now);
     ui_.keys = std::exchange(keys, {});
     g_frame = {};
     ImGui::NewFrame();
@@ -300,10 +300,10 @@ const std::vector<std::string> k_sections{"Light",       "Light mix", "Render", 
 /// The hall with all sections open.
 void open_hall(Walk& walk) {
   walk.act("samples 4");
-  walk.ui().session.set_size(64, 48);
+  walk.ui().work.session.set_size(64, 48);
   walk.act("scene.open hall.gltf");
   walk.settle();
-  REQUIRE(walk.ui().scene);
+  REQUIRE(walk.ui().open.scene);
   REQUIRE(walk.ui().has_picture());
   for (const std::string& section : k_sections) walk.ui().sections[section] = true;
   walk.frames(3);
@@ -392,7 +392,7 @@ TEST_CASE("solo of the first light group mutes the others") {
   Walk walk;
   open_hall(walk);
   const std::vector<Control> solos = walk.named("##solo");
-  const size_t groups = walk.ui().light_groups().groups.size();
+  const size_t groups = walk.ui().open.light_groups().groups.size();
   REQUIRE(groups > 0);
   REQUIRE(solos.size() == session::k_components + groups);
   // The mix is below the components.
@@ -403,8 +403,8 @@ TEST_CASE("solo of the first light group mutes the others") {
   walk.click(first.id, nth);
   g_answered.reset();
   walk.frames(2);
-  const auto mix = walk.ui().light_mix();
-  const auto found = mix.find(walk.ui().light_groups().groups[0].name);
+  const auto mix = walk.ui().open.light_mix();
+  const auto found = mix.find(walk.ui().open.light_groups().groups[0].name);
   REQUIRE(found != mix.end());
   CHECK(found->second.solo);
 }
@@ -449,11 +449,11 @@ TEST_CASE("components, solvers and list entries have tooltips, at any frame rate
 TEST_CASE("Ctrl+S pressed and released within a frame, or released after Ctrl, does not move the camera") {
   Walk walk;
   open_hall(walk);
-  REQUIRE(walk.ui().view);
+  REQUIRE(walk.ui().camera.view);
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = {800, 300};
   walk.frames(3);
-  const auto eye = [&] { return commands::eye_of(walk.ui().view->camera); };
+  const auto eye = [&] { return commands::eye_of(walk.ui().camera.view->camera); };
   const vec3 before = eye();
   const auto press = [&](int key, int mods) {
     walk.keys = {{key, mods}};

@@ -33,7 +33,7 @@ TEST_CASE("a script is checked before it runs") {
   ui::Runner runner(window, {}, "");
   const auto message = [&](const std::vector<std::string>& lines) -> std::string {
     try {
-      ui::parse_script(window.registry, lines, "s");
+      ui::parse_script(window.work.registry, lines, "s");
     } catch (const Error& error) {
       return error.what();
     }
@@ -48,16 +48,16 @@ TEST_CASE("a script is checked before it runs") {
   CHECK_THAT(message({"wait soon"}), Catch::StartsWith("s: line 1: wait: time = 'soon': expected a number"));
   CHECK_THAT(message({"scene.open \"a"}), Catch::StartsWith("s: line 1: a quotation mark"));
   CHECK_THAT(message({"key ctrl+hyper"}), Catch::Contains("there is no key 'ctrl+hyper'"));
-  CHECK(ui::parse_script(window.registry, {"", "quit 0"}, "s").at(0).where == "s: line 2");
+  CHECK(ui::parse_script(window.work.registry, {"", "quit 0"}, "s").at(0).where == "s: line 2");
 }
 
 TEST_CASE("every command of the window is unchanged after read, write and read") {
   session::Session session({});
   ui::Ui window(session);
   ui::Runner runner(window, {}, "");
-  CHECK(test::round_trip(window.registry) > 200);
+  CHECK(test::round_trip(window.work.registry) > 200);
   for (const char* name : {"window.panels", "measure", "screenshot", "drop", "camera.orbit", "log.clear"})
-    CHECK(window.registry.find(name));
+    CHECK(window.work.registry.find(name));
 }
 
 TEST_CASE("the parts of the window tile it and leave room for the picture") {

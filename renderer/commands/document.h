@@ -1,0 +1,46 @@
+#pragma once
+// The undoable state of an open scene, as plain values. Commands change it; differences are sent to the
+// session (open_scene.h).
+#include <array>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "scene/scene.h"
+#include "session/session.h"
+
+namespace lucerna::commands {
+
+struct Document {
+  struct Light {
+    vec3 intensity{0};  ///< all members as in scene::Light
+    bool enabled = true;
+    vec3 position{0}, direction{0, 0, -1};
+    float inner_cone = 0, outer_cone = 0;
+    void put(scene::Light& light) const;
+    bool operator==(const Light&) const = default;
+  };
+  struct Material {
+    vec3 color{1};  ///< all members as in scene::Material
+    float roughness = 1, metallic = 0;
+    vec3 emission{0};
+    bool emits = true;  ///< false: its emission is stored, but switched off
+    /// The values that the scene has.
+    Material in_scene() const;
+    void put(scene::Material& material) const;
+    bool operator==(const Material&) const = default;
+  };
+  static Light of(const scene::Light& light);
+  static Material of(const scene::Material& material);  ///< emits
+  std::map<std::string, std::string> settings;          ///< by key
+  std::vector<Light> lights;                            ///< in the scene's order
+  std::vector<Material> materials;                      ///< likewise
+  float environment_scale = 1;
+  float environment_rotation = 0;  ///< degrees
+  std::string environment_file;    ///< image that replaces the scene's own environment; "": none
+  int solo = -1;                   ///< component shown alone, or -1
+  std::array<bool, session::k_components> shown_before{};  ///< restored after solo
+  bool operator==(const Document&) const = default;
+};
+
+}  // namespace lucerna::commands

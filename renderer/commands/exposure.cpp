@@ -1,0 +1,62 @@
+#include "commands/exposure.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+#include "base/error.h"
+#include "base/log.h"
+#include "commands/text.h"
+#include "plan/settings.h"
+
+namespace lucerna::commands {
+
+void Exposure::measure(std::optional<vec2> at) { measure(at, false); }
+
+void Exposure::measure(std::optional<vec2> at, bool of_load) {
+  failure_.clear();
+  measuring_ = Measuring{open_.session.measure(at, open_.id()), at.has_value(), of_load, camera_.view_scene};
+}
+
+bool Exposure::done() const {
+  if (!failure_.empty()) throw Error("", failure_);
+  return !measuring_;
+}
+
+void Exposure::begin_scene() {
+  measuring_.reset();
+  const auto& settings = open_.scene->settings;
+  const bool sets_exposure = std::any_of(settings.begin(), settings.end(),
+                                         [](const auto& setting) { return setting.first == "film.ev"; });
+  due_ = sets_exposure || std::exchange(given_, false) ? 0 : camera_.view_scene;
+}
+
+void Exposure::follow(bool interactive, const std::function<void(float ev, bool of_load)>& found) {
+  if (due_ != 0 && due_ == camera_.view_scene && open_.snapshot && !open_.snapshot->rgba.empty() &&
+      !measuring_) {
+    const std::string& when = open_.setting("film.exposure_at_load");
+    if (interactive ? when != "never" : when == "always") measure(std::nullopt, true);
+    due_ = 0;
+  }
+  if (!measuring_ || measuring_->result.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
+    return;
+  const Measuring requested = *measuring_;
+  measuring_.reset();
+  if (requested.scene != camera_.view_scene) return;
+  try {
+    const film::Brightness brightness = requested.result.get();
+    if (!brightness.ev)
+      throw Error("", requested.at_point ? "it is black there: no exposure makes it grey"
+                                         : "the picture is black: no exposure shows it");
+    // A value that the user has set meanwhile stays.
+    if (requested.of_load && open_.setting("film.ev") != plan::find_option("film.ev")->fallback) return;
+    const float ev = std::round(*brightness.ev * 100) / 100;
+    if (number_text(ev) != open_.setting("film.ev")) found(ev, requested.of_load);
+  } catch (const std::exception& error) {
+    failure_ = error.what();
+    if (!requested.of_load) log::error("exposure: {}", error.what());
+  }
+}
+
+}  // namespace lucerna::commands

@@ -1,0 +1,48 @@
+#pragma once
+// Measurements of the picture's brightness that set the exposure: on request, and for a scene that sets none.
+#include <functional>
+#include <future>
+#include <optional>
+#include <string>
+
+#include "commands/navigation.h"
+#include "commands/open_scene.h"
+
+namespace lucerna::commands {
+
+class Exposure {
+ public:
+  Exposure(const OpenScene& open, const Navigation& camera) : open_(open), camera_(camera) {}
+
+  /// Requests a measurement of the whole picture, or at a point (0..1 to the right and down).
+  void measure(std::optional<vec2> at);
+  bool measuring() const { return measuring_.has_value(); }
+  /// True if the latest request is done. Throws Error if it has failed.
+  bool done() const;
+
+  /// Another scene is requested: an exposure that is set from now on is meant for it.
+  void begin_load() { given_ = false; }
+  void note_given() { given_ = true; }
+  /// A scene has been shown.
+  void begin_scene();
+  /// Measures a new scene's picture if it is due and the setting film.exposure_at_load allows it;
+  /// `interactive`: for a user. Calls `found` with the result of a measurement that is ready, if it differs
+  /// from the setting; an Error that it throws is the measurement's.
+  void follow(bool interactive, const std::function<void(float ev, bool of_load)>& found);
+
+ private:
+  void measure(std::optional<vec2> at, bool of_load);
+  struct Measuring {
+    std::shared_future<film::Brightness> result;
+    bool at_point, of_load;
+    uint64_t scene;
+  };
+  const OpenScene& open_;
+  const Navigation& camera_;
+  std::optional<Measuring> measuring_;
+  std::string failure_;  ///< of the latest request
+  uint64_t due_ = 0;     ///< scene whose exposure is to be measured; 0: none
+  bool given_ = false;   ///< film.ev was set after a scene was requested
+};
+
+}  // namespace lucerna::commands

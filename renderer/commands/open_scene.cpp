@@ -1,0 +1,362 @@
+#include "commands/open_scene.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <tuple>
+
+#include "base/error.h"
+#include "commands/text.h"
+#include "plan/views.h"
+#include "solvers/registry.h"
+
+namespace lucerna::commands {
+
+using solvers::SolverInfo;
+
+std::vector<uint64_t> OpenScene::refresh() {
+  // The state after the snapshot: a picture's scene is then never newer than the one held here.
+  snapshot = session.snapshot();
+  session::State state = session.state();
+  scene = std::move(state.scene), known_ = std::move(state.settings), id_ = state.scene_id;
+  std::vector<uint64_t> refused = take_refused();
+  drop_executed();
+  return refused;
+}
+
+std::vector<uint64_t> OpenScene::take_refused() {
+  std::vector<uint64_t> numbers;
+  if (!snapshot || !snapshot->refused) return numbers;
+  for (; refused_seen_ < snapshot->refused->size(); ++refused_seen_) {
+    const uint64_t number = (*snapshot->refused)[refused_seen_];
+    numbers.push_back(number);
+    if (number == loaded_by_) load_failed_ = true;
+    // A file that cannot be read lights nothing.
+    if (std::erase_if(environments_sent_, [&](const auto& sent) { return sent.first == number; }) > 0)
+      environment_file_ =
+          environments_sent_.empty() ? environment_in_force_ : environments_sent_.back().second;
+  }
+  return numbers;
+}
+
+void OpenScene::drop_executed() {
+  // Scene and settings were read after the snapshot: they include what it counts.
+  const auto over = [&](uint64_t sent) { return snapshot && snapshot->commands >= sent; };
+  std::erase_if(pending_, [&](const auto& entry) { return over(entry.second.sent); });
+  std::erase_if(pending_lights_, [&](const auto& entry) {
+    return !scene || entry.first >= scene->lights.size() || over(entry.second.sent);
+  });
+  std::erase_if(pending_materials_, [&](const auto& entry) {
+    return !scene || entry.first >= scene->materials.size() || over(entry.second.sent);
+  });
+  std::erase_if(environments_sent_, [&](const auto& sent) {
+    if (over(sent.first)) environment_in_force_ = sent.second;
+    return over(sent.first);
+  });
+  if (pending_environment_ && (!scene || over(pending_environment_->sent))) pending_environment_.reset();
+}
+
+void OpenScene::begin_scene() {
+  pending_lights_.clear(), pending_materials_.clear(), pending_environment_.reset();
+  own_environment_ = {scene->environment.scale, scene->environment.rotation};
+  dark_.clear(), environment_file_.clear(), environment_in_force_.clear(), environments_sent_.clear();
+  solo_ = -1;
+}
+
+void OpenScene::load(const std::string& file) {
+  load_failed_ = false;
+  session.load(file);
+  loaded_by_ = session.commands();
+}
+
+void OpenScene::follow_load(bool shown) {
+  if (!snapshot || snapshot->commands < loaded_by_ || snapshot->scene_id != id_) return;
+  const bool no_picture = snapshot->paused && snapshot->rgba.empty();  // drawing it has failed
+  if (shown || no_picture) loaded_by_ = 0;
+}
+
+Document OpenScene::document() const {
+  Document d;
+  d.settings = known_.all();
+  for (const auto& [key, edit] : pending_) d.settings[key] = edit.value;
+  if (scene)
+    for (uint32_t i = 0; i < scene->lights.size(); ++i) d.lights.push_back(Document::of(light(i)));
+  if (scene)
+    for (uint32_t i = 0; i < scene->materials.size(); ++i) {
+      d.materials.push_back(Document::of(material(i)));
+      d.materials.back().emission = emission(i), d.materials.back().emits = emits(i);
+    }
+  std::tie(d.environment_scale, d.environment_rotation) = environment();
+  d.environment_file = environment_file_;
+  d.solo = solo_;
+  d.shown_before = shown_before_;
+  return d;
+}
+
+const std::string& OpenScene::setting(const std::string& key) const {
+  const auto found = pending_.find(key);
+  return found != pending_.end() ? found->second.value : known_.text(key);
+}
+
+double OpenScene::setting_real(const std::string& key) const {
+  double value = 0;
+  read_number(setting(key), value);
+  return value;
+}
+
+scene::Light OpenScene::light(uint32_t index) const {
+  scene::Light light = scene->lights.at(index);
+  if (const auto found = pending_lights_.find(index); found != pending_lights_.end())
+    found->second.value.put(light);
+  return light;
+}
+
+scene::Material OpenScene::material(uint32_t index) const {
+  scene::Material m = scene->materials.at(index);
+  if (const auto found = pending_materials_.find(index); found != pending_materials_.end())
+    found->second.value.put(m);
+  return m;
+}
+
+vec3 OpenScene::emission(uint32_t index) const {
+  const auto found = dark_.find(index);
+  return found != dark_.end() ? found->second : material(index).emission;
+}
+
+std::pair<float, float> OpenScene::environment() const {
+  if (pending_environment_) return {pending_environment_->value.scale, pending_environment_->value.rotation};
+  if (scene) return {scene->environment.scale, scene->environment.rotation};
+  return {1, 0};
+}
+
+const scene::LightGroups& OpenScene::light_groups() {
+  const std::string& text = setting("relight.groups");
+  if (groups_of_ == scene && text == groups_by_) return groups_;
+  std::vector<scene::LightGroupRule> rules;
+  try {
+    rules = scene::parse_group_rules(text);
+  } catch (const Error&) {  // the session says so
+  }
+  if (!scene)
+    groups_ = {};
+  else if (groups_of_)
+    groups_ = scene::group_lights(*scene, rules, *groups_of_, groups_);
+  else
+    groups_ = scene::group_lights(*scene, rules);
+  groups_of_ = scene, groups_by_ = text;
+  return groups_;
+}
+
+scene::LightMix OpenScene::light_mix() const {
+  try {
+    return scene::parse_mix(setting("relight.mix"));
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+scene::MixPresets OpenScene::mix_presets() const {
+  try {
+    return scene::parse_presets(setting("relight.presets"));
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+bool OpenScene::uses(const SolverInfo& solver) const {
+  for (size_t c = 0; c < solver.serves.size(); ++c)
+    if (solver.serves[c] &&
+        solvers::chooses(setting(std::string("components.") + session::k_component_names[c]), solver.name))
+      return true;
+  return false;
+}
+
+const solvers::Report* OpenScene::report(const SolverInfo& solver) const {
+  if (!snapshot) return nullptr;
+  for (const auto& report : snapshot->reports)
+    if (report->solver == solver.name) return report.get();
+  return nullptr;
+}
+
+const solvers::Report* OpenScene::waiting() const {
+  if (!snapshot) return nullptr;
+  for (const auto& report : snapshot->reports)
+    if (report->waits) return report.get();
+  return nullptr;
+}
+
+void OpenScene::needs_scene() const {
+  if (!scene) throw Error("", "no scene is open");
+  if (loading()) throw Error("", "a scene is being loaded; wait until it is shown (in a script: wait_scene)");
+}
+
+void OpenScene::needs_solver(const SolverInfo& solver) const {
+  needs_scene();
+  if (uses(solver)) return;
+  const auto first = solver.serves.begin() + (solver.primary_part.empty() ? 0 : 1);
+  const auto served = size_t(std::find(first, solver.serves.end(), true) - solver.serves.begin());
+  throw Error(
+      "", fmt::format("no component takes its light from the {}; set components.{} {}", solver.name,
+                      session::k_component_names[std::min(served, solver.serves.size() - 1)], solver.name));
+}
+
+void OpenScene::needs_lookup() const {
+  needs_scene();
+  // Views of no solver have something to show everywhere.
+  for (const solvers::ViewInfo& view : plan::views())
+    if (view.inspects_pointer && setting(view.option) == "true") return;
+  const SolverInfo* missing = nullptr;
+  for (const SolverInfo* solver : solvers::registered()) {
+    if (!solver->looked_up) continue;
+    if (uses(*solver)) return;
+    if (!missing) missing = solver;
+  }
+  if (!missing) throw Error("", "no solver is looked up");
+  needs_solver(*missing);
+}
+
+namespace {
+
+/// The `kind` ("light") with that name, or with that number from 1.
+uint32_t index_of(const char* kind, const std::string& which, const std::vector<std::string>& names) {
+  const auto found = std::find(names.begin(), names.end(), which);
+  if (found != names.end()) return static_cast<uint32_t>(found - names.begin());
+  double number = 0;
+  if (read_number(which, number)) {
+    if (number >= 1 && number <= static_cast<double>(names.size()) && number == std::floor(number))
+      return static_cast<uint32_t>(number) - 1;
+    throw Error("", fmt::format("there is no {} {}; the scene has {}", kind, which, names.size()));
+  }
+  throw Error("", fmt::format("the scene has no {} '{}'{}", kind, which, suggestion(which, names)));
+}
+
+}  // namespace
+
+uint32_t OpenScene::light_index(const std::string& which) const {
+  needs_scene();
+  std::vector<std::string> names;
+  for (const scene::Light& light : scene->lights) names.push_back(light.name);
+  return index_of("light", which, names);
+}
+
+uint32_t OpenScene::material_index(const std::string& which) const {
+  needs_scene();
+  std::vector<std::string> names;
+  for (const scene::Material& material : scene->materials) names.push_back(material.name);
+  return index_of("material", which, names);
+}
+
+void OpenScene::begin_edit(Document from) { working_ = std::move(from), named_.clear(); }
+
+Document& OpenScene::edit() {
+  assert(working_ && "only commands marked undoable change the document");
+  return *working_;
+}
+
+void OpenScene::set_by_name(const std::string& key, const std::string& value) {
+  edit().settings[key] = value, named_.push_back(key);
+}
+
+Document OpenScene::end_edit() {
+  Document after = std::move(*working_);
+  working_.reset();
+  return after;
+}
+
+void OpenScene::note_dark(uint32_t material, const Document::Material& value) {
+  if (value.emits)
+    dark_.erase(material);
+  else
+    dark_[material] = value.emission;
+}
+
+bool OpenScene::send_lights(const Document& before, const Document& after) {
+  static const std::string key = "relight.mix";
+  // All the rest, with the lights as they were.
+  Document rest = after;
+  rest.settings[key] = before.settings.at(key);
+  if (!scene || rest == before || rest.settings != before.settings || loading()) return false;
+  session::LightsEdit edit{
+      .lights = {}, .materials = {}, .environment_scale = {}, .mix = after.settings.at(key)};
+  if (rest.lights.size() != before.lights.size() || rest.materials.size() != before.materials.size())
+    return false;
+  for (uint32_t i = 0; i < rest.lights.size(); ++i) {
+    if (rest.lights[i] == before.lights[i]) continue;
+    edit.lights.emplace_back(i, light(i));
+    after.lights[i].put(edit.lights.back().second);
+    rest.lights[i].intensity = before.lights[i].intensity, rest.lights[i].enabled = before.lights[i].enabled;
+  }
+  for (uint32_t i = 0; i < rest.materials.size(); ++i) {
+    if (rest.materials[i] == before.materials[i]) continue;
+    edit.materials.emplace_back(i, material(i));
+    edit.materials.back().second.emission = after.materials[i].in_scene().emission;
+    rest.materials[i].emission = before.materials[i].emission;
+    rest.materials[i].emits = before.materials[i].emits;
+  }
+  if (rest.environment_scale != before.environment_scale) edit.environment_scale = rest.environment_scale;
+  rest.environment_scale = before.environment_scale;
+  if (rest != before) return false;
+  session.set_lights(edit, id_);
+  const uint64_t sent = session.commands();
+  pending_[key] = {edit.mix, sent};
+  for (const auto& [i, l] : edit.lights) pending_lights_[i] = {after.lights[i], sent};
+  for (const auto& [i, m] : edit.materials) {
+    pending_materials_[i] = {after.materials[i].in_scene(), sent};
+    note_dark(i, after.materials[i]);
+  }
+  pending_environment_ = {{after.environment_scale, after.environment_rotation}, sent};
+  return true;
+}
+
+void OpenScene::restore(const Document& to) {
+  named_.clear();
+  send(document(), to);
+}
+
+void OpenScene::send(const Document& before, const Document& after) {
+  if (before.settings.at("relight.mix") != after.settings.at("relight.mix") && send_lights(before, after))
+    return;
+  for (const auto& [key, value] : after.settings) {
+    const auto old = before.settings.find(key);
+    // Settings given on the command line apply to the next scene, whatever it sets.
+    const bool named = std::find(named_.begin(), named_.end(), key) != named_.end();
+    if (!(named && loading()) && old != before.settings.end() && old->second == value) continue;
+    session.set(key, value, named ? session::k_any_scene : id_);
+    pending_[key] = {value, session.commands()};
+  }
+  if (scene)
+    for (uint32_t i = 0; i < std::min(after.lights.size(), scene->lights.size()); ++i) {
+      if (i < before.lights.size() && before.lights[i] == after.lights[i]) continue;
+      pending_lights_[i] = {after.lights[i], 0};
+      session.set_light(i, light(i), id_);
+      pending_lights_[i].sent = session.commands();
+    }
+  if (scene)
+    for (uint32_t i = 0; i < std::min(after.materials.size(), scene->materials.size()); ++i) {
+      if (i < before.materials.size() && before.materials[i] == after.materials[i]) continue;
+      note_dark(i, after.materials[i]);
+      const Document::Material now_seen = after.materials[i].in_scene();
+      if (i < before.materials.size() && before.materials[i].in_scene() == now_seen) continue;
+      pending_materials_[i] = {now_seen, 0};
+      session.set_material(i, material(i), id_);
+      pending_materials_[i].sent = session.commands();
+    }
+  const bool other_file = before.environment_file != after.environment_file;
+  if (other_file || before.environment_scale != after.environment_scale ||
+      before.environment_rotation != after.environment_rotation) {
+    const float scale = after.environment_scale, rotation = after.environment_rotation;
+    if (other_file)
+      session.set_environment_file(after.environment_file, scale, rotation, id_);
+    else
+      session.set_environment(scale, rotation, id_);
+    pending_environment_ = {{scale, rotation}, session.commands()};
+    if (other_file) {
+      environment_file_ = after.environment_file;
+      environments_sent_.emplace_back(session.commands(), environment_file_);
+    }
+  }
+  solo_ = after.solo;
+  shown_before_ = after.shown_before;
+}
+
+}  // namespace lucerna::commands
