@@ -5,6 +5,7 @@
 
 #include "solvers/registry.h"
 #include "support/ambient/ambient.h"
+#include "support/folder.h"
 #include "support/render.h"
 #include "support/rooms.h"
 
@@ -101,7 +102,7 @@ TEST_CASE("its view is drawn over the picture, and its report and figures are pu
   test::set(r, {{"components.tertiary", "ambient"}, {"samples", "1"}});
   test::finish(r);
   const std::vector<uint8_t> plain = r.picture(false);
-  test::set(r, {{"overlay.ambient", "true"}});
+  test::set(r, {{"overlay.ambient", "small"}});
   const std::vector<uint8_t> shown = r.picture(false);
   const size_t middle = 4 * (16 * 32 + 16);
   CHECK(std::abs(int(shown[middle]) - 255) < 2);
@@ -111,4 +112,27 @@ TEST_CASE("its view is drawn over the picture, and its report and figures are pu
   REQUIRE(reports.size() == 1);
   CHECK(reports[0]->solver == "ambient");
   CHECK(r.solver_statistics().at("ambient").at("radiance") == 0.5);
+}
+
+TEST_CASE("its command and its file change its light; a file of another kind is refused") {
+  const test::Folder folder;
+  session::Renderer r(test::renderer_options());
+  r.set_size(16, 16);
+  r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/furnace-closed/furnace-closed.gltf");
+  test::set(r, {{"components.tertiary", "ambient"}, {"samples", "1"}});
+  const auto light = [&] {
+    r.restart();
+    return test::mean(test::finish(r).components[2]);
+  };
+  const double once = light();
+  CHECK(once > 0);
+  const auto file = folder.path / "a.ambient", other = folder.path / "b.ambient";
+  r.solver_save("ambient", file);
+  r.solver_command("ambient", "double");
+  CHECK(light() == Approx(2 * once));
+  r.solver_load("ambient", file);
+  CHECK(light() == Approx(once));
+  write_file(other.string(), "none");
+  CHECK_THROWS_WITH(r.solver_load("ambient", other), Catch::Contains("b.ambient: is not a radiance"));
+  CHECK(light() == Approx(once));
 }

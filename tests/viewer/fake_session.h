@@ -136,6 +136,20 @@ struct Session::Impl {
     wake.notify_all();
   }
 
+  /// Posts an edit of the scene, which restarts the picture or keeps it.
+  void post_edit(const std::function<void(scene::Scene&)>& edit, SceneId of, bool restarts = true) {
+    const auto act = [this, edit, restarts] {
+      auto edited = std::make_shared<scene::Scene>(*scene);
+      edit(*edited);
+      {
+        std::lock_guard lock(mutex);
+        scene = edited;
+      }
+      if (restarts) restart(), publish();
+    };
+    post(act, of);
+  }
+
   void publish() {
     auto s = std::make_shared<Snapshot>();
     s->id = ++id, s->scene_id = scene_id, s->camera = camera, s->activity = activity, s->progress = progress;
@@ -412,48 +426,23 @@ void Session::set_window_scale(uint32_t scale) {
   impl_->post([] {});
 }
 void Session::set_light(uint32_t index, const scene::Light& light, SceneId scene) {
-  impl_->post(
-      [this, index, light] {
-        auto edited = std::make_shared<scene::Scene>(*impl_->scene);
-        edited->lights[index] = light;
-        {
-          std::lock_guard lock(impl_->mutex);
-          impl_->scene = edited;
-        }
-        impl_->restart(), impl_->publish();
-      },
-      scene);
+  impl_->post_edit([index, light](scene::Scene& s) { s.lights[index] = light; }, scene);
 }
 void Session::set_environment(float scale, float rotation, SceneId scene) {
-  impl_->post(
-      [this, scale, rotation] {
-        auto edited = std::make_shared<scene::Scene>(*impl_->scene);
-        edited->environment.scale = scale, edited->environment.rotation = rotation;
-        {
-          std::lock_guard lock(impl_->mutex);
-          impl_->scene = edited;
-        }
-        impl_->restart(), impl_->publish();
-      },
+  impl_->post_edit(
+      [scale, rotation](scene::Scene& s) { s.environment.scale = scale, s.environment.rotation = rotation; },
       scene);
 }
 /// Files named "broken" cannot be read.
 void Session::set_environment_file(const std::filesystem::path& file, std::optional<float> scale,
                                    std::optional<float> rotation, SceneId scene) {
-  impl_->post(
-      [this, file, scale, rotation] {
+  impl_->post_edit(
+      [file, scale, rotation](scene::Scene& s) {
         if (file.string().find("broken") != std::string::npos)
           throw Error(file.string(), "the image cannot be decoded");
-        auto edited = std::make_shared<scene::Scene>(*impl_->scene);
-        if (scale) edited->environment.scale = *scale;
-        if (rotation) edited->environment.rotation = *rotation;
-        edited->environment.file =
-            file.empty() ? fake::make_scene("hall.gltf").environment.file : file.string();
-        {
-          std::lock_guard lock(impl_->mutex);
-          impl_->scene = edited;
-        }
-        impl_->restart(), impl_->publish();
+        if (scale) s.environment.scale = *scale;
+        if (rotation) s.environment.rotation = *rotation;
+        s.environment.file = file.empty() ? fake::make_scene("hall.gltf").environment.file : file.string();
       },
       scene);
 }
@@ -470,30 +459,18 @@ std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at, Sc
   return promise->get_future().share();
 }
 void Session::set_material(uint32_t index, const scene::Material& material, SceneId scene) {
-  impl_->post(
-      [this, index, material] {
-        auto edited = std::make_shared<scene::Scene>(*impl_->scene);
-        edited->materials[index] = material;
-        {
-          std::lock_guard lock(impl_->mutex);
-          impl_->scene = edited;
-        }
-        impl_->restart(), impl_->publish();
-      },
-      scene);
+  impl_->post_edit([index, material](scene::Scene& s) { s.materials[index] = material; }, scene);
 }
 void Session::set_lights(const LightsEdit& edit, SceneId scene) {
-  impl_->post(
-      [this, edit] {
-        auto edited = std::make_shared<scene::Scene>(*impl_->scene);
-        for (const auto& [i, light] : edit.lights) edited->lights[i] = light;
-        for (const auto& [i, material] : edit.materials) edited->materials[i] = material;
-        if (edit.environment_scale) edited->environment.scale = *edit.environment_scale;
+  impl_->post_edit(
+      [this, edit](scene::Scene& s) {
+        for (const auto& [i, light] : edit.lights) s.lights[i] = light;
+        for (const auto& [i, material] : edit.materials) s.materials[i] = material;
+        if (edit.environment_scale) s.environment.scale = *edit.environment_scale;
         std::lock_guard lock(impl_->mutex);
-        impl_->scene = edited;
         impl_->settings.set("relight.mix", edit.mix);
       },
-      scene);
+      scene, false);
 }
 void Session::set_paused(bool paused) {
   impl_->post([this, paused] { impl_->paused = paused, impl_->publish(); });
