@@ -38,38 +38,17 @@ void set_height(scene::Camera& camera, float metres) {
   camera.ymag = 0.5f * metres, camera.xmag *= ratio;
 }
 
-template <class List>
-std::vector<std::string> names_of(const List& list) {
-  std::vector<std::string> names;
-  for (const auto& item : list)
-    if (!item.name.empty()) names.push_back(item.name);
-  return names;
-}
-
-/// Index of the item of that name, or of that number from 1.
-template <class List>
-uint32_t find_item(const List& list, const std::string& which, const char* kind) {
-  for (size_t i = 0; i < list.size(); ++i)
-    if (list[i].name == which) return static_cast<uint32_t>(i);
-  double number = 0;
-  if (read_number(which, number)) {
-    if (number >= 1 && number <= static_cast<double>(list.size()) && number == std::floor(number))
-      return static_cast<uint32_t>(number) - 1;
-    throw Error("", fmt::format("there is no {} {}; the scene has {}", kind, which, list.size()));
-  }
-  throw Error("", fmt::format("the scene has no {} '{}'{}", kind, which, suggestion(which, names_of(list))));
-}
-
 int camera_index(const OpenScene& open, const Navigation& camera, const std::string& which) {
   open.needs_scene(), camera.needs_view();
-  return static_cast<int>(find_item(open.scene->cameras, which, "camera"));
+  return static_cast<int>(index_of("camera", which, names_of(open.scene->cameras)));
 }
 
 Selection selection_of(const OpenScene& open, const std::string& kind, const std::string& which) {
   open.needs_scene();
-  if (kind == "material") return {Kind::material, find_item(open.scene->materials, which, "material")};
-  if (kind == "light") return {Kind::light, find_item(open.scene->lights, which, "light")};
-  return {Kind::instance, find_item(open.scene->instances, which, "object")};
+  if (kind == "material")
+    return {Kind::material, index_of("material", which, names_of(open.scene->materials))};
+  if (kind == "light") return {Kind::light, index_of("light", which, names_of(open.scene->lights))};
+  return {Kind::instance, index_of("object", which, names_of(open.scene->instances))};
 }
 
 /// Commands that move the camera.
@@ -188,22 +167,23 @@ void add_camera_commands(Registry& registry, const OpenScene& open, Navigation& 
                 .help = "Sets the speed of flight.",
                 .parameters = {real("speed", "", "m/s", 1e-3, 1e4)},
                 .run = [&camera](const Arguments& a) { camera.speed = a.number("speed"); }});
-  registry.add(
-      {.name = "camera.select",
-       .help = "Switches to a camera of the scene.",
-       .parameters = {{.name = "camera",
-                       .help = "its name, or its number from 1",
-                       .names =
-                           [&open](const std::vector<std::string>&) {
-                             return open.scene ? names_of(open.scene->cameras) : std::vector<std::string>{};
-                           }}},
-       .run =
-           [&open, &camera](const Arguments& a) {
-             const int index = camera_index(open, camera, a.text("camera"));
-             camera.take_view(make_viewpoint(open.scene->cameras[static_cast<size_t>(index)], camera.core),
-                              index);
-           },
-       .moves = true});
+  registry.add({.name = "camera.select",
+                .help = "Switches to a camera of the scene.",
+                .parameters = {{.name = "camera",
+                                .help = "its name, or its number from 1",
+                                .names =
+                                    [&open](const std::vector<std::string>&) {
+                                      return open.scene ? given_names(open.scene->cameras)
+                                                        : std::vector<std::string>{};
+                                    }}},
+                .run =
+                    [&open, &camera](const Arguments& a) {
+                      const int index = camera_index(open, camera, a.text("camera"));
+                      camera.take_view(
+                          make_viewpoint(open.scene->cameras[static_cast<size_t>(index)], camera.core),
+                          index);
+                    },
+                .moves = true});
 }
 
 void add_selection_commands(Workspace& work) {
@@ -217,9 +197,9 @@ void add_selection_commands(Workspace& work) {
                            [&open = work.open](const std::vector<std::string>& before) {
                              std::vector<std::string> none;
                              if (!open.scene || before.empty()) return none;
-                             if (before[0] == "material") return names_of(open.scene->materials);
-                             return before[0] == "light" ? names_of(open.scene->lights)
-                                                         : names_of(open.scene->instances);
+                             if (before[0] == "material") return given_names(open.scene->materials);
+                             return before[0] == "light" ? given_names(open.scene->lights)
+                                                         : given_names(open.scene->instances);
                            }}},
        .run = [&work](const Arguments& a) {
          work.camera.selection = selection_of(work.open, a.text("kind"), a.text("item"));

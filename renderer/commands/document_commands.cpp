@@ -233,11 +233,7 @@ void add_setting_commands(Workspace& work) {
 
 void add_light_commands(Registry& registry, OpenScene& open) {
   const auto light_names = [&open](const std::vector<std::string>&) {
-    std::vector<std::string> names;
-    if (open.scene)
-      for (const scene::Light& light : open.scene->lights)
-        if (!light.name.empty()) names.push_back(light.name);
-    return names;
+    return open.scene ? given_names(open.scene->lights) : std::vector<std::string>();
   };
 
   std::vector<Parameter> parameters = light_parameters();
@@ -293,11 +289,7 @@ void add_environment_commands(Registry& registry, OpenScene& open) {
 
 void add_material_commands(Registry& registry, OpenScene& open) {
   const auto material_names = [&open](const std::vector<std::string>&) {
-    std::vector<std::string> names;
-    if (open.scene)
-      for (const scene::Material& material : open.scene->materials)
-        if (!material.name.empty()) names.push_back(material.name);
-    return names;
+    return open.scene ? given_names(open.scene->materials) : std::vector<std::string>();
   };
   registry.add(
       {.name = "material.set",

@@ -215,35 +215,14 @@ void OpenScene::needs_lookup() const {
   needs_solver(*missing);
 }
 
-namespace {
-
-/// The `kind` ("light") with that name, or with that number from 1.
-uint32_t index_of(const char* kind, const std::string& which, const std::vector<std::string>& names) {
-  const auto found = std::find(names.begin(), names.end(), which);
-  if (found != names.end()) return static_cast<uint32_t>(found - names.begin());
-  double number = 0;
-  if (read_number(which, number)) {
-    if (number >= 1 && number <= static_cast<double>(names.size()) && number == std::floor(number))
-      return static_cast<uint32_t>(number) - 1;
-    throw Error("", fmt::format("there is no {} {}; the scene has {}", kind, which, names.size()));
-  }
-  throw Error("", fmt::format("the scene has no {} '{}'{}", kind, which, suggestion(which, names)));
-}
-
-}  // namespace
-
 uint32_t OpenScene::light_index(const std::string& which) const {
   needs_scene();
-  std::vector<std::string> names;
-  for (const scene::Light& light : scene->lights) names.push_back(light.name);
-  return index_of("light", which, names);
+  return index_of("light", which, names_of(scene->lights));
 }
 
 uint32_t OpenScene::material_index(const std::string& which) const {
   needs_scene();
-  std::vector<std::string> names;
-  for (const scene::Material& material : scene->materials) names.push_back(material.name);
-  return index_of("material", which, names);
+  return index_of("material", which, names_of(scene->materials));
 }
 
 void OpenScene::begin_edit(Document from) { working_ = std::move(from), named_.clear(); }

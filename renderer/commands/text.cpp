@@ -115,6 +115,7 @@ std::string nearest(std::string_view word, const std::vector<std::string>& known
   std::string best;
   size_t least = std::max<size_t>(1, wanted.size() / 3) + 1;  // the distance at which nothing is near
   for (const std::string& name : known) {
+    if (name.empty()) continue;
     const std::string candidate = lower(name);
     const size_t dot = candidate.rfind('.');
     const std::string tail = dot == std::string::npos ? candidate : candidate.substr(dot + 1);
@@ -129,6 +130,18 @@ std::string nearest(std::string_view word, const std::vector<std::string>& known
 std::string suggestion(std::string_view word, const std::vector<std::string>& known) {
   const std::string near = nearest(word, known);
   return near.empty() ? "" : fmt::format("; did you mean '{}'?", near);
+}
+
+uint32_t index_of(const char* kind, const std::string& which, const std::vector<std::string>& names) {
+  const auto found = std::find(names.begin(), names.end(), which);
+  if (found != names.end()) return static_cast<uint32_t>(found - names.begin());
+  double number = 0;
+  if (read_number(which, number)) {
+    if (number >= 1 && number <= static_cast<double>(names.size()) && number == std::floor(number))
+      return static_cast<uint32_t>(number) - 1;
+    throw Error("", fmt::format("there is no {} {}; the scene has {}", kind, which, names.size()));
+  }
+  throw Error("", fmt::format("the scene has no {} '{}'{}", kind, which, suggestion(which, names)));
 }
 
 std::vector<std::string> paths_starting(const std::string& typed, const std::vector<std::string>& endings) {

@@ -67,6 +67,24 @@ std::string nearest(std::string_view word, const std::vector<std::string>& known
 /// "; did you mean 'x'?", or "" if none is similar.
 std::string suggestion(std::string_view word, const std::vector<std::string>& known);
 
+/// Names of objects of the scene, in its order; "" for unnamed ones.
+template <class List>
+std::vector<std::string> names_of(const List& list) {
+  std::vector<std::string> names;
+  for (const auto& item : list) names.push_back(item.name);
+  return names;
+}
+/// Without the empty ones.
+template <class List>
+std::vector<std::string> given_names(const List& list) {
+  std::vector<std::string> names = names_of(list);
+  std::erase(names, "");
+  return names;
+}
+/// Index of the object of a `kind` ("light") with that name, or with that number from 1. Throws Error with a
+/// suggestion if there is none.
+uint32_t index_of(const char* kind, const std::string& which, const std::vector<std::string>& names);
+
 /// Files that begin with `typed` and end in one of `endings` (".gltf"; none: all), and folders with a final
 /// '/', folders first. Reads only the first 5000 entries of a folder.
 std::vector<std::string> paths_starting(const std::string& typed, const std::vector<std::string>& endings);
