@@ -122,12 +122,12 @@ std::optional<ImVec2> free_corner(const Area& area, const ImVec2& size, float ed
 
 }  // namespace
 
-void draw_inspection(Ui& ui, const Area& area, const Area& legend) {
-  if (!ui.open.snapshot || !ui.open.snapshot->activity.empty()) return;
+void draw_inspection(const session::Snapshot& picture, const Area& area, const Area& legend) {
+  if (!picture.activity.empty()) return;
   // The cards of all solvers with data there, one below the other on a common background.
   std::vector<const Card*> cards;
   std::optional<vec2> place;
-  for (const auto& report : ui.open.snapshot->reports)
+  for (const auto& report : picture.reports)
     if (report->card && report->looked_at) cards.push_back(&*report->card), place = report->looked_at;
   if (cards.empty()) return;
   Card::Room room = Card::Room::much;

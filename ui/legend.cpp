@@ -257,21 +257,23 @@ std::vector<solvers::Legend> window_legends(const session::Legend& layer, bool l
   return list;
 }
 
-Area draw_legend(Ui& ui, const Area& frame) {
-  const session::Snapshot* s = ui.open.snapshot.get();
-  if (!s || !s->activity.empty() || !ui.has_picture()) return {};
+Area draw_legend(const commands::OpenScene& open, bool light_marks, const Area& frame, const Area& room) {
+  const session::Snapshot& picture = *open.snapshot;
+  if (!picture.activity.empty() || picture.rgba.empty()) return {};
   std::vector<Block> blocks;
   // The coarse first image has neither samples to be counted nor tiles; solvers draw over it too.
-  if (!s->coarse && s->legend.layer >= shared::k_layer_samples) blocks.push_back(heat_block(s->legend));
+  if (!picture.coarse && picture.legend.layer >= shared::k_layer_samples)
+    blocks.push_back(heat_block(picture.legend));
   const std::vector<solvers::Legend> own =
-      window_legends(s->legend, ui.light_marks, ui.open.setting_on("overlay.former") && shows_former(*s));
+      window_legends(picture.legend, light_marks, open.setting_on("overlay.former") && shows_former(picture));
   const auto add = [&](const solvers::Legend& legend) {
     blocks.push_back({legend.title, legend.note, body_height(legend),
                       [&legend](ImDrawList* list, const ImVec2& at) { draw_body(list, at, legend); }});
   };
   std::for_each(own.begin(), own.end(), add);
-  for (const auto& report : s->reports) std::for_each(report->legends.begin(), report->legends.end(), add);
-  if (!s->coarse && s->tiles && s->accuracy) blocks.push_back(tiles_block(*s->accuracy));
+  for (const auto& report : picture.reports)
+    std::for_each(report->legends.begin(), report->legends.end(), add);
+  if (!picture.coarse && picture.tiles && picture.accuracy) blocks.push_back(tiles_block(*picture.accuracy));
   if (blocks.empty()) return {};
 
   const float pad = px(12), edge = px(12), w = px(k_ramp_width) + 2 * pad;
@@ -285,7 +287,7 @@ Area draw_legend(Ui& ui, const Area& frame) {
   const auto fits = [&](const Area& area, float h) {
     return h + 2 * edge <= area.height() && w + 2 * edge <= area.width();
   };
-  const Area& area = fits(frame, height(blocks.size(), true)) ? frame : ui.picture;
+  const Area& area = fits(frame, height(blocks.size(), true)) ? frame : room;
   const bool notes = fits(area, height(blocks.size(), true));
   size_t shown = blocks.size();
   while (shown > 0 && !fits(area, height(shown, notes))) --shown;

@@ -268,7 +268,7 @@ void draw_light_panel(Ui& ui, const Area& area) {
   if (ui.open.scene)
     panel_block(ui, "Light mix", false, ui.open.setting("relight.mix").empty() ? "" : "mixed", 10, [&] {
       ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(2)});
-      draw_mix(ui);
+      draw_mix(ui.actions, ui.open);
       ImGui::PopStyleVar();
     });
   panel_block(ui, "Render", true, "", 12, [&] { render_rows(ui); });

@@ -23,7 +23,7 @@ std::string members(const scene::LightGroup& group) {
   return text.empty() ? "no light" : text;
 }
 
-void group_row(Ui& ui, const scene::LightGroup& group, const scene::GroupMix& mix, bool silent) {
+void group_row(Actions& actions, const scene::LightGroup& group, const scene::GroupMix& mix, bool silent) {
   const float width = ImGui::CalcItemWidth();
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImDrawList* list = ImGui::GetWindowDrawList();
@@ -36,12 +36,13 @@ void group_row(Ui& ui, const scene::LightGroup& group, const scene::GroupMix& mi
   draw_text(list, {at.x + px(18), at.y}, {at.x + width - px(52), at.y + px(22)},
             elided(group.name, width - px(70)), silent ? colour::text_faint : colour::text);
   ImGui::SetCursorScreenPos({at.x + width - px(48), at.y});
-  if (sign_button("##mute", Sign::power, !mix.mute)) ui.act("mix.set", group.name, named("mute", !mix.mute));
+  if (sign_button("##mute", Sign::power, !mix.mute))
+    actions.act("mix.set", group.name, named("mute", !mix.mute));
   tooltip(mix.mute ? "Switches the group's light on again."
                    : "Mutes the group: removes its light from the picture.");
   ImGui::SetCursorScreenPos({at.x + width - px(22), at.y});
   if (sign_button("##solo", Sign::solo, mix.solo, colour::accent))
-    ui.act("mix.set", group.name, named("solo", !mix.solo));
+    actions.act("mix.set", group.name, named("solo", !mix.solo));
   tooltip(mix.solo ? "Shows all groups again." : "Solo: shows the light of this group only.");
   ImGui::SetCursorScreenPos({at.x, at.y + px(24)});
   float ev = mix.ev;
@@ -55,14 +56,14 @@ void group_row(Ui& ui, const scene::LightGroup& group, const scene::GroupMix& mi
               .travel = 0.5f,
               .typed_lo = -scene::k_most_ev,
               .typed_hi = scene::k_most_ev}))
-    ui.act("mix.set", group.name, named("ev", ev));
+    actions.act("mix.set", group.name, named("ev", ev));
   tooltip("Strength of the group in exposure values: a factor of 2 to this power.");
   vec3 picked = tint;
   const float half = std::floor(0.5f * (width - px(6)));
   ImGui::PushItemWidth(half);
   const float line = ImGui::GetCursorScreenPos().y;
   if (colour_field("##tint", "Tint", picked) && strength_of(picked) > 0)
-    ui.act("mix.set", group.name, named("color", tint_of(picked)));
+    actions.act("mix.set", group.name, named("color", tint_of(picked)));
   ImGui::PopItemWidth();
   tooltip("Multiplies the colour of the group's lights; white keeps it. Press to choose a colour.");
   const NearestKelvin nearest = nearest_kelvin(tint);
@@ -78,15 +79,15 @@ void group_row(Ui& ui, const scene::LightGroup& group, const scene::GroupMix& mi
               .step = 10,
               .travel = 0.5f},
              width - half - px(6)))
-    ui.act("mix.set", group.name, named("kelvin", kelvin));
+    actions.act("mix.set", group.name, named("kelvin", kelvin));
   tooltip("Tints by the colour of a black body of this temperature; 6500 K is nearly white.");
   ImGui::EndDisabled();
   ImGui::SetCursorScreenPos({at.x, ImGui::GetCursorScreenPos().y});
 }
 
 /// Named mixes, and a slider between two of them.
-void preset_rows(Ui& ui) {
-  const scene::MixPresets presets = ui.open.mix_presets();
+void preset_rows(Actions& actions, const commands::OpenScene& open) {
+  const scene::MixPresets presets = open.mix_presets();
   std::vector<std::string> names;
   for (const auto& [name, mix] : presets) names.push_back(name);
   const float width = ImGui::CalcItemWidth();
@@ -94,16 +95,16 @@ void preset_rows(Ui& ui) {
   int row = 0;
   for (const auto& [name, mix] : presets) {
     ImGui::PushID(row++);
-    const bool chosen = scene::mix_text(mix) == scene::mix_text(ui.open.light_mix());
+    const bool chosen = scene::mix_text(mix) == scene::mix_text(open.light_mix());
     if (button("##preset", elided(name, width - px(52)), chosen, width - px(28)))
-      ui.act("mix.preset.load", name);
+      actions.act("mix.preset.load", name);
     tooltip(fmt::format("{}: loads this mix.", name));
     ImGui::SameLine(0, px(6));
     if (sign_button("##forget", Sign::close, false)) forgotten = name;
     tooltip("Deletes this preset.");
     ImGui::PopID();
   }
-  if (!forgotten.empty()) ui.act("mix.preset.delete", forgotten);
+  if (!forgotten.empty()) actions.act("mix.preset.delete", forgotten);
   if (names.size() >= 2) {
     static int from = 0, to = 1;
     static float amount = 0;
@@ -118,19 +119,20 @@ void preset_rows(Ui& ui) {
     moved = slider("##blend", "Blend", amount, {.lo = 0, .hi = 1, .decimals = 2}) || moved;
     tooltip("A mix between the two, linearly in light.");
     if (moved)
-      ui.act("mix.preset.blend", names[static_cast<size_t>(from)], names[static_cast<size_t>(to)], amount);
+      actions.act("mix.preset.blend", names[static_cast<size_t>(from)], names[static_cast<size_t>(to)],
+                  amount);
   }
   const float half = std::floor(0.5f * (width - px(6)));
   if (button("##save", "Save preset", false, half)) {
     std::string name;
     for (int n = 1; name.empty() || presets.contains(name); ++n) name = fmt::format("mix {}", n);
-    ui.act("mix.preset.save", name);
+    actions.act("mix.preset.save", name);
   }
   tooltip("Saves this mix as a preset; mix.preset.save NAME in the console sets the name.");
   ImGui::SameLine(0, px(6));
-  if (button("##reset", "Reset", false, width - half - px(6))) ui.act("mix.reset");
+  if (button("##reset", "Reset", false, width - half - px(6))) actions.act("mix.reset");
   tooltip("Resets all groups to the scene's light.");
-  if (button("##apply", "Apply to lights", false, width)) ui.act("mix.apply");
+  if (button("##apply", "Apply to lights", false, width)) actions.act("mix.apply");
   tooltip(
       "Sets strength and colour of the lights to the mix. The picture's light stays the same. Can be "
       "undone.");
@@ -138,25 +140,25 @@ void preset_rows(Ui& ui) {
 
 }  // namespace
 
-void draw_mix(Ui& ui) {
-  const scene::LightGroups& groups = ui.open.light_groups();
-  const scene::LightMix mix = ui.open.light_mix();
+void draw_mix(Actions& actions, commands::OpenScene& open) {
+  const scene::LightGroups& groups = open.light_groups();
+  const scene::LightMix mix = open.light_mix();
   const std::vector<vec3> weights = scene::mix_weights(mix, groups);
-  const std::string how = ui.open.setting("relight.enabled");
+  const std::string how = open.setting("relight.enabled");
   const bool keeps = how != "off", by_component = how == "on";
   const float both = ImGui::CalcItemWidth() - px(6), first = std::floor(0.56f * both);
   if (button("##apart", "Track light groups", keeps, first))
-    ui.act("set", "relight.enabled", keeps ? "off" : "auto");
+    actions.act("set", "relight.enabled", keeps ? "off" : "auto");
   tooltip(
       "Stores the light of each group separately, so a mix traces no ray. Takes 16 bytes per pixel and "
       "group. A change restarts the picture.");
   ImGui::SameLine(0, px(6));
   if (button("##components", "By component", by_component, both - first))
-    ui.act("set", "relight.enabled", by_component ? "auto" : "on");
+    actions.act("set", "relight.enabled", by_component ? "auto" : "on");
   tooltip(
       "Stores each group's light by component. Takes 200 bytes per pixel and group, and more time. Without "
       "it the picture of a mix is exact, but its components are estimates. A change restarts the picture.");
-  const std::string why = ui.open.snapshot ? ui.open.snapshot->lights_together : "";
+  const std::string why = open.snapshot ? open.snapshot->lights_together : "";
   if (!why.empty()) {
     label("A new mix restarts the picture", colour::text_faint, nullptr, ImGui::CalcItemWidth());
     tooltip("Light groups are not tracked: " + why + ".");
@@ -164,12 +166,12 @@ void draw_mix(Ui& ui) {
   for (size_t g = 0; g < groups.groups.size(); ++g) {
     const auto found = mix.find(groups.groups[g].name);
     ImGui::PushID(static_cast<int>(g));
-    group_row(ui, groups.groups[g], found == mix.end() ? scene::GroupMix() : found->second,
+    group_row(actions, groups.groups[g], found == mix.end() ? scene::GroupMix() : found->second,
               weights[g] == vec3(0));
     ImGui::PopID();
     gap(6);
   }
-  preset_rows(ui);
+  preset_rows(actions, open);
 }
 
 }  // namespace lucerna::ui

@@ -163,12 +163,12 @@ void stage_rows(const std::vector<StageStatus>& stages, const ImVec2& at, float 
 
 }  // namespace
 
-void draw_passes(Ui& ui, const Area& area) {
+void draw_passes(const commands::OpenScene& open, bool expanded, const Area& area) {
   begin_panel("##passes", area, colour::panel, false);
   const float left = panel_heading("PASSES", area);
   ImDrawList* list = ImGui::GetWindowDrawList();
-  const Snapshot* s = ui.open.snapshot.get();
-  if (s && ui.open.scene && s->mrays_per_second > 0) {
+  const Snapshot* s = open.snapshot.get();
+  if (s && open.scene && s->mrays_per_second > 0) {
     const ImVec2 lo(left + px(8), area.lo.y), hi(area.hi.x - px(16), area.lo.y + px(k_folded_bottom));
     if (hi.x > lo.x) {
       draw_text(list, lo, hi,
@@ -179,7 +179,7 @@ void draw_passes(Ui& ui, const Area& area) {
       tooltip(machine_text(*s));
     }
   }
-  if (ui.shown.bottom_open) {
+  if (expanded) {
     const Area inside{{area.lo.x + px(12), area.lo.y + px(k_folded_bottom) + px(4)},
                       {area.hi.x - px(16), area.hi.y - px(12)}};
     if (s && s->accuracy && !s->stages.empty()) {

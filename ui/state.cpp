@@ -59,24 +59,6 @@ commands::WorkspaceEvents Ui::events() {
   };
 }
 
-void Ui::act_line(const std::string& line) {
-  // A change at the moment of a press belongs to the drag that begins there.
-  if (gesture == 0 && ImGui::GetActiveID() != 0) follow_gesture();
-  try {
-    work.run(line, gesture);
-  } catch (const std::exception& error) {
-    log::error("{}", error.what());
-  }
-  wake();
-}
-
-void Ui::follow_gesture() {
-  const unsigned held = ImGui::GetActiveID();
-  const bool flying = flight.moving();
-  if (held != held_ || flying != flying_) gesture = held != 0 || flying ? ++gestures_ : 0;
-  held_ = held, flying_ = flying;
-}
-
 bool Ui::reveals() {
   if (std::exchange(revealed_, camera.selection) == camera.selection) return false;
   return !std::exchange(chosen_in_list, false);
@@ -85,11 +67,9 @@ bool Ui::reveals() {
 void Ui::place(const Viewpoint& to) { act_line(commands::Navigation::place_line(to)); }
 
 void Ui::place_by_wheel(const Viewpoint& to) {
-  if (work.now - wheeled_ > 0.8) wheel_gesture_ = ++gestures_;
+  if (work.now - wheeled_ > 0.8) wheel_gesture_ = actions.new_gesture();
   wheeled_ = work.now;
-  const uint64_t held = std::exchange(gesture, wheel_gesture_);
-  place(to);
-  gesture = held;
+  actions.act_in(wheel_gesture_, commands::Navigation::place_line(to));
 }
 
 void Ui::notice(const std::string& text, double seconds) {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "accuracy_plot.h"
+#include "actions.h"
 #include "base/log.h"
 #include "commands/workspace.h"
 #include "lamp_handles.h"
@@ -85,23 +86,19 @@ struct Ui {
 
   static double time();  ///< seconds since the window opened
 
-  /// Runs the command of a control; failures go to the log and the error strip. Everything done while one
-  /// control is held, or during one flight, is one gesture.
+  Flight flight;
+  Actions actions{work, flight, [this] { wake(); }};
+  // The same, in short.
   template <class... A>
   void act(const std::string& command, const A&... words) {
-    act_line(commands::line(command, words...));
+    actions.act(command, words...);
   }
-  void act_line(const std::string& line);
-  /// Toggles a boolean setting.
-  void toggle(const std::string& key) { act("set", key, open.setting_on(key) ? "false" : "true"); }
-  uint64_t gesture = 0;  ///< of the control that is held now; 0: none
-  /// Determines the held control; call once per frame.
-  void follow_gesture();
+  void act_line(const std::string& line) { actions.act_line(line); }
+  void toggle(const std::string& key) { actions.toggle(key); }
 
   /// Lines typed at the console, for the runner.
   std::vector<std::string> typed;
 
-  Flight flight;
   std::set<int> chorded;  ///< GLFW keys whose last press was with Ctrl: they do not fly
   /// True if the selection is new since the last call and was not made in the list (`chosen_in_list`): its
   /// row must be scrolled into view.
@@ -246,9 +243,6 @@ struct Ui {
   std::vector<std::pair<std::string, std::string>> set_with(const std::string& key, const std::string& value);
 
   Selection revealed_;
-  unsigned held_ = 0;  ///< id of the control that is held
-  bool flying_ = false;
-  uint64_t gestures_ = 0;
   double wheeled_ = -10, blocked_said_ = -60;
   uint64_t wheel_gesture_ = 0;
   struct {
@@ -264,7 +258,8 @@ void draw_parts(Ui& ui);
 // The parts, each in its file; called once per frame in this order. Coordinates are window pixels.
 void draw_menu_bar(Ui& ui, const Area& area);
 void draw_light_panel(Ui& ui, const Area& area);
-void draw_mix(Ui& ui);  ///< the light mix, into a section of that panel
+/// The light mix, into a section of that panel.
+void draw_mix(Actions& actions, commands::OpenScene& open);
 /// The tabs of the right panel; returns the area below them.
 Area draw_side_tabs(Ui& ui, const Area& area);
 void draw_scene_panel(Ui& ui, const Area& area);
@@ -272,17 +267,17 @@ void draw_solver_panel(Ui& ui, const solvers::SolverInfo& solver, const Area& ar
 void draw_toolbar(Ui& ui, const Area& area);
 void draw_picture(Ui& ui, const Area& area);
 void draw_accuracy(Ui& ui, const Area& area);
-void draw_passes(Ui& ui, const Area& area);
+void draw_passes(const commands::OpenScene& open, bool expanded, const Area& area);
 void draw_log(Ui& ui, const Area& area);
 /// What can be opened while there is no picture; part of draw_picture. Draws nothing during a load.
 void draw_empty_state(Ui& ui, const Area& area);
 /// Progress, errors and first steps over the picture, notices beside `legend`; part of draw_picture.
 void draw_cards(Ui& ui, const Area& area, const Area& legend);
-/// Over the picture's lower left corner; part of draw_picture. Returns its area, which is empty if there is
-/// no legend.
-Area draw_legend(Ui& ui, const Area& frame);
+/// Over the lower left corner of the picture, or of the `room` around a small one; part of draw_picture.
+/// Returns its area, which is empty if there is no legend. Requires a snapshot.
+Area draw_legend(const commands::OpenScene& open, bool light_marks, const Area& frame, const Area& room);
 /// The result of inspect.at, in a card over the picture that does not cover `legend`; part of draw_picture.
-void draw_inspection(Ui& ui, const Area& area, const Area& legend);
+void draw_inspection(const session::Snapshot& picture, const Area& area, const Area& legend);
 /// Bookmarks the view under the next free name, with a notice.
 void keep_view(Ui& ui);
 void draw_splitters(Ui& ui, const Areas& areas);

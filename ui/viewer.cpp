@@ -162,7 +162,7 @@ class Viewer {
 
     window_.begin_frame();
     ImGui::PushFont(theme().fonts.regular);
-    ui_.follow_gesture();
+    ui_.actions.follow_gesture();
     draw_parts(ui_);
     if (ui_.frames_to_settle > 0) --ui_.frames_to_settle, ui_.wake(1);
     ImGui::PopFont();
@@ -265,7 +265,7 @@ void draw_parts(Ui& ui) {
     else
       draw_scene_panel(ui, side);
     draw_accuracy(ui, areas.accuracy);
-    draw_passes(ui, areas.passes);
+    draw_passes(ui.open, ui.shown.bottom_open, areas.passes);
     draw_log(ui, areas.log);
   }
   draw_picture(ui, areas.picture);

@@ -246,7 +246,7 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
   if (flying || ui.flight.moving()) {
     const float seconds = std::min(io.DeltaTime, 0.1f);
     const vec3 metres = advance(ui.flight, wish, ui.camera.speed * (io.KeyShift ? 4.0f : 1.0f), seconds);
-    if (flying) ui.follow_gesture();  // the first move belongs to the flight already
+    if (flying) ui.actions.follow_gesture();  // the first move belongs to the flight already
     advance_view(ui, metres, through);
     ui.moving = true;
   }
@@ -450,8 +450,11 @@ void draw_picture(Ui& ui, const Area& area) {
     if (ui.brackets) draw_brackets(ui, frame);
   }
   if (!shown) draw_empty_state(ui, area);
-  const Area legend = draw_legend(ui, frame);
-  draw_inspection(ui, frame, legend);
+  Area legend;
+  if (ui.open.snapshot) {
+    legend = draw_legend(ui.open, ui.light_marks, frame, ui.picture);
+    draw_inspection(*ui.open.snapshot, frame, legend);
+  }
   draw_cards(ui, area, legend);
 
   bool active = false;

@@ -253,7 +253,7 @@ class Walk {
     g_frame = {};
     ImGui::NewFrame();
     ImGui::PushFont(ui::theme().fonts.regular);
-    ui_.follow_gesture();
+    ui_.actions.follow_gesture();
     ui::draw_parts(ui_);
     ImGui::PopFont();
     ImGui::Render();
