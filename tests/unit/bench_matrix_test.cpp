@@ -124,9 +124,8 @@ TEST_CASE("The built-in matrices are valid") {
   CHECK(builtin_matrix("quick", k_scenes).scenes.size() == 3);
   const Matrix indirect = builtin_matrix("indirect", k_scenes);
   CHECK(indirect.scenes.size() == 5);
-  CHECK(indirect.set == SettingValues{{"cache.metric", "split-sphere"},
-                                      {"components.caustic", "off"},
-                                      {"components.primary", "off"}});
+  // The default metric.
+  CHECK(indirect.set == SettingValues{{"components.caustic", "off"}, {"components.primary", "off"}});
   CHECK_THROWS_AS(builtin_matrix("slow", k_scenes), Error);
 }
 
