@@ -103,25 +103,26 @@ void draw_axes(ImDrawList* list, const Plot& plot) {
 /// The target's line: shows its cost, and can be dragged. In adaptive sampling it is the setting, in uniform
 /// sampling a what-if value. The range stays fixed during a drag. Returns true if the pointer is over the
 /// line or drags it.
-bool drag_target(Ui& ui, const Plot& plot, const Accuracy& a, double target, const PlotRange& range) {
+bool drag_target(Actions& actions, AccuracyView& view, const Plot& plot, const Accuracy& a, double target,
+                 const PlotRange& range) {
   const float y = std::floor(plot.y.at(target));
   const bool inside = y >= plot.area.lo.y && y <= plot.area.hi.y;
-  if (!inside && !ui.held_range) return false;
+  if (!inside && !view.held_range) return false;
   ImGui::SetCursorScreenPos({plot.area.lo.x, y - px(5)});
   ImGui::InvisibleButton("##target", {plot.area.width(), px(11)});
   const bool held = ImGui::IsItemActive(), hovered = ImGui::IsItemHovered();
-  if (ImGui::IsItemActivated()) ui.held_offset = ImGui::GetIO().MousePos.y - y, ui.held_range = range;
-  if (!held) ui.held_range.reset();
+  if (ImGui::IsItemActivated()) view.held_offset = ImGui::GetIO().MousePos.y - y, view.held_range = range;
+  if (!held) view.held_range.reset();
   if (held) {
     const float place =
-        std::clamp(ImGui::GetIO().MousePos.y - ui.held_offset, plot.area.lo.y, plot.area.hi.y);
+        std::clamp(ImGui::GetIO().MousePos.y - view.held_offset, plot.area.lo.y, plot.area.hi.y);
     const double wanted = snapped_target(plot.y.value(place));
     if (wanted != target && ImGui::GetIO().MouseDelta.y != 0) {
       const std::string text = fmt::format("{:.4g}", wanted);
       if (a.adaptive)
-        ui.act("set", "sampling.target_error", text);
+        actions.act("set", "sampling.target_error", text);
       else
-        ui.act("accuracy.what_if", text);
+        actions.act("accuracy.what_if", text);
     }
   }
   if (held || hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeNS);
@@ -184,7 +185,7 @@ std::string run_figures(const Accuracy& a, size_t line) {
 }
 
 /// Shows what is under the pointer: a line's values at that time, or how an earlier run differs.
-void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
+void hover(const AccuracyView& view, const Plot& plot, const Accuracy& a) {
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   if (!ImGui::IsMouseHoveringRect(plot.area.lo, plot.area.hi) || !ImGui::IsWindowHovered()) return;
   const float reach = px(9);
@@ -218,7 +219,7 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   if (a.adaptive) look(line_points(plot, a, [&](size_t i) { return a.hardest[i]; }), "hardest tile", k_sum);
   look(floor_points(plot, a), "noise of records and bias of lookups, as seen: the limit of more samples",
        colour::text_dim);
-  for (const Run& run : ui.runs.earlier())
+  for (const Run& run : view.runs.earlier())
     look(error_points(plot, *run.accuracy, 0), "earlier render, noise as seen (estimated)", colour::text_dim,
          &run);
   if (best.points.empty()) return;
@@ -260,7 +261,7 @@ void hover(Ui& ui, const Plot& plot, const Accuracy& a) {
   else if (best.layer)
     rows.emplace_back(bias_text(a, *best.layer), colour::text_dim);
   if (best.run) {
-    const std::vector<std::string> other = differences(*best.run, ui.runs.current());
+    const std::vector<std::string> other = differences(*best.run, view.runs.current());
     if (other.empty()) rows.emplace_back("Same settings", colour::text_dim);
     for (const std::string& row : other) rows.emplace_back(row, colour::text);
   }
@@ -306,7 +307,7 @@ void noise_row(const Accuracy& a, const ImVec2& lo, float right) {
 }
 
 /// Names of the lines in their colours.
-void line_names(const Ui& ui, const Accuracy& a, const ImVec2& lo, float right) {
+void line_names(const AccuracyView& view, const Accuracy& a, const ImVec2& lo, float right) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   ImFont* font = theme().fonts.small;
   float x = lo.x;
@@ -330,16 +331,15 @@ void line_names(const Ui& ui, const Accuracy& a, const ImVec2& lo, float right) 
   const auto error = a.error();
   for (size_t c = 0; c < session::k_components; ++c)
     if (error[c + 1] > 0) put(session::k_component_names[c], colour::component[c], 8);
-  if (!ui.runs.earlier().empty())
-    put(fmt::format("{} earlier", ui.runs.earlier().size()), colour::text_faint, 8);
+  if (!view.runs.earlier().empty())
+    put(fmt::format("{} earlier", view.runs.earlier().size()), colour::text_faint, 8);
 }
 
-void body(Ui& ui, const Area& area, const Accuracy& a) {
-  const double seconds = ui.open.snapshot->seconds;
-  const double target = ui.target();
-  const std::optional<stats::Band> band = ui.forecast();
+void body(Actions& actions, AccuracyView& view, const Area& area, const Accuracy& a, double seconds) {
+  const double target = view.target();
+  const std::optional<stats::Band> band = view.forecast();
   const PlotRange range =
-      ui.held_range ? *ui.held_range : plot_range(a, ui.runs.earlier(), target, band, seconds);
+      view.held_range ? *view.held_range : plot_range(a, view.runs.earlier(), target, band, seconds);
   Plot plot;
   plot.area = {{area.lo.x + px(56), area.lo.y + px(40)}, {area.hi.x - px(16), area.hi.y - px(18)}};
   if (plot.area.width() < px(60) || plot.area.height() < px(30)) return;
@@ -348,10 +348,10 @@ void body(Ui& ui, const Area& area, const Accuracy& a) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   draw_axes(list, plot);
   noise_row(a, {area.lo.x + px(12), area.lo.y}, area.hi.x - px(12));
-  line_names(ui, a, {area.lo.x + px(12), area.lo.y + px(16)}, area.hi.x - px(12));
+  line_names(view, a, {area.lo.x + px(12), area.lo.y + px(16)}, area.hi.x - px(12));
 
   list->PushClipRect(plot.area.lo, plot.area.hi, true);
-  for (const Run& run : ui.runs.earlier())
+  for (const Run& run : view.runs.earlier())
     stroke(list, error_points(plot, *run.accuracy, 0), colour::grey(92), 1);
   draw_forecast(list, plot, a, target, band);
   for (size_t k = stats::k_layers; k-- > 1;) stroke(list, error_points(plot, a, k), layer_ink(k), px(1.25f));
@@ -375,7 +375,7 @@ void body(Ui& ui, const Area& area, const Accuracy& a) {
   }
   list->PopClipRect();
 
-  if (!drag_target(ui, plot, a, target, range)) hover(ui, plot, a);
+  if (!drag_target(actions, view, plot, a, target, range)) hover(view, plot, a);
 }
 
 /// Lines shown before the first samples: the error of the preview, and the progress of preparation.
@@ -408,31 +408,17 @@ void draw_early(ImDrawList* list, const Area& inside, const session::Snapshot& s
 
 }  // namespace
 
-double Ui::target() const {
-  const bool adaptive = open.setting("sampling.mode") == "adaptive";
-  return adaptive ? open.setting_real("sampling.target_error") : what_if;
-}
-
-std::optional<stats::Band> Ui::forecast() {
-  if (!open.snapshot || !open.snapshot->accuracy) return std::nullopt;
-  const Accuracy& a = *open.snapshot->accuracy;
-  const double wanted = target();
-  if (a.adaptive && wanted == a.target) return a.forecast;
-  if (forecast_.of != open.snapshot->accuracy || forecast_.target != wanted)
-    forecast_ = {open.snapshot->accuracy, wanted, session::seconds_to(a, wanted)};
-  return forecast_.band;
-}
-
-void draw_accuracy(Ui& ui, const Area& area) {
+void draw_accuracy(Actions& actions, const commands::OpenScene& open, AccuracyView& view, bool expanded,
+                   const Area& area) {
   begin_panel("##accuracy", area, colour::panel, false);
   const float left = panel_heading("ACCURACY", area);
-  const Accuracy* a = ui.open.snapshot ? ui.open.snapshot->accuracy.get() : nullptr;
+  const Accuracy* a = open.snapshot ? open.snapshot->accuracy.get() : nullptr;
   ImDrawList* list = ImGui::GetWindowDrawList();
-  if (a && ui.open.scene) {
+  if (a && open.scene) {
     const float right = area.hi.x - px(16), room = right - left - px(16);
-    std::vector<std::string> texts = target_texts(*a, ui.target(), ui.forecast(), ui.open.snapshot->seconds);
+    std::vector<std::string> texts = target_texts(*a, view.target(), view.forecast(), open.snapshot->seconds);
     // The displayed picture's error first, if there is room for both.
-    if (const std::vector<std::string> shown = shown_texts(*ui.open.snapshot); !shown.empty())
+    if (const std::vector<std::string> shown = shown_texts(*open.snapshot); !shown.empty())
       texts.insert(texts.begin(), fmt::format("Displayed: {}  ·  samples: {}", shown.front(), texts.front()));
     for (const std::string& text : texts) {
       if (text_width(text, theme().fonts.small) > room) continue;
@@ -441,12 +427,12 @@ void draw_accuracy(Ui& ui, const Area& area) {
       break;
     }
   }
-  if (ui.shown.bottom_open) {
+  if (expanded) {
     const Area inside{{area.lo.x, area.lo.y + px(k_folded_bottom)}, area.hi};
-    if (a && ui.open.scene && !a->ledger.entries().empty())
-      body(ui, inside, *a);
-    else if (ui.open.snapshot && ui.open.scene)
-      draw_early(list, inside, *ui.open.snapshot, ui.target());
+    if (a && open.scene && !a->ledger.entries().empty())
+      body(actions, view, inside, *a, open.snapshot->seconds);
+    else if (open.snapshot && open.scene)
+      draw_early(list, inside, *open.snapshot, view.target());
   }
   ImGui::End();
 }

@@ -16,7 +16,7 @@ void Actions::act_line(const std::string& line) {
   } catch (const std::exception& error) {
     log::error("{}", error.what());
   }
-  acted_();
+  wake();
 }
 
 void Actions::act_in(uint64_t gesture, const std::string& line) {

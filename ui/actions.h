@@ -11,9 +11,9 @@ namespace lucerna::ui {
 /// go to the log and the error strip.
 class Actions {
  public:
-  /// `acted` is called after each line.
-  Actions(commands::Workspace& work, const commands::Flight& flight, std::function<void()> acted)
-      : work_(work), flight_(flight), acted_(std::move(acted)) {}
+  /// `wake`: called after each line, with the number of frames to draw.
+  Actions(commands::Workspace& work, const commands::Flight& flight, std::function<void(int)> wake)
+      : work_(work), flight_(flight), wake_(std::move(wake)) {}
   Actions(const Actions&) = delete;
   Actions& operator=(const Actions&) = delete;
 
@@ -26,6 +26,8 @@ class Actions {
   /// Toggles a boolean setting.
   void toggle(const std::string& key) { act("set", key, work_.open.setting_on(key) ? "false" : "true"); }
 
+  /// Lets the window draw this number of frames.
+  void wake(int frames = 2) { wake_(frames); }
   /// Determines the held control; call once per frame.
   void follow_gesture();
   /// A gesture that no control has, for act_in().
@@ -36,7 +38,7 @@ class Actions {
  private:
   commands::Workspace& work_;
   const commands::Flight& flight_;
-  std::function<void()> acted_;
+  std::function<void(int)> wake_;
   uint64_t gesture_ = 0;  ///< of the control that is held now; 0: none
   uint64_t gestures_ = 0;
   unsigned held_ = 0;  ///< id of the control that is held

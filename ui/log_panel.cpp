@@ -28,10 +28,16 @@ ImU32 level_colour(log::Level level) {
 
 const char* const k_level_names[] = {"debug", "info", "warning", "error"};
 
+/// The edited text, and what completes it.
+struct Edited {
+  Console& console;
+  const commands::Registry& registry;
+};
+
 /// Tab completes the text typed at the console, arrows browse its history.
 int edit_console(ImGuiInputTextCallbackData* data) {
-  auto& ui = *static_cast<Ui*>(data->UserData);
-  Console& console = ui.console;
+  const Edited& edited = *static_cast<Edited*>(data->UserData);
+  Console& console = edited.console;
   const auto put = [&](const std::string& text) {
     data->DeleteChars(0, data->BufTextLen);
     data->InsertChars(0, text.c_str());
@@ -45,7 +51,7 @@ int edit_console(ImGuiInputTextCallbackData* data) {
     return 0;
   }
   const std::string typed(data->Buf, static_cast<size_t>(data->CursorPos));
-  const std::vector<std::string> words = ui.work.registry.complete(typed);
+  const std::vector<std::string> words = edited.registry.complete(typed);
   if (words.empty()) return 0;
   std::string common = words[0];
   for (const std::string& word : words) {
@@ -61,25 +67,24 @@ int edit_console(ImGuiInputTextCallbackData* data) {
 }
 
 /// The console's hint to the right of the typed text: possible continuations.
-std::string console_hint(const Ui& ui) {
-  const std::string& typed = ui.console.text;
+std::string console_hint(const commands::Registry& registry, const std::string& typed) {
   if (typed.empty()) return "";
-  const std::vector<std::string> words = ui.work.registry.complete(typed);
+  const std::vector<std::string> words = registry.complete(typed);
   const std::string last = typed.substr(commands::last_word(typed));
   std::string hint;
   if (!words.empty() && !(words.size() == 1 && words[0] == last)) {
     for (size_t i = 0; i < std::min<size_t>(words.size(), 12); ++i) hint += (i ? "   " : "") + words[i];
     return hint + (words.size() > 12 ? "   \xE2\x80\xA6" : "");
   }
-  if (const commands::Command* c = ui.work.registry.find(typed.substr(0, typed.find(' '))))
-    return ui.work.registry.usage(*c).substr(c->name.size());
+  if (const commands::Command* c = registry.find(typed.substr(0, typed.find(' '))))
+    return registry.usage(*c).substr(c->name.size());
   return "";
 }
 
-void draw_console(Ui& ui, const Area& area) {
+void draw_console(Actions& actions, const commands::Registry& registry, LogView& log, const Area& area) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   list->AddLine({area.lo.x, area.lo.y}, {area.hi.x, area.lo.y}, colour::hairline);
-  Console& console = ui.console;
+  Console& console = log.console;
   ImFont* font = theme().fonts.regular;
   draw_text(list, {area.lo.x + px(12), area.lo.y}, {area.lo.x + px(24), area.hi.y}, "\xE2\x80\xBA",
             console.active ? colour::accent : colour::text_faint);
@@ -90,28 +95,31 @@ void draw_console(Ui& ui, const Area& area) {
   ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 0);
   ImGui::PushStyleColor(ImGuiCol_FrameBg, 0);
   if (console.focus) ImGui::SetKeyboardFocusHere(), console.focus = false;
+  Edited edited{console, registry};
   const bool entered =
       ImGui::InputText("##console", &console.text,
                        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
                            ImGuiInputTextFlags_CallbackHistory,
-                       edit_console, &ui);
+                       edit_console, &edited);
   ImGui::PopStyleColor();
   ImGui::PopStyleVar(2);
   console.active = ImGui::IsItemActive();
   tooltip("Runs a command. Tab completes, arrows browse the history, 'help' lists the commands. Ctrl+L.");
   const float used = px(24) + text_width(console.text) + px(14);
-  const std::string hint = console.active ? console_hint(ui) : console.text.empty() ? "Command" : "";
+  const std::string hint = console.active         ? console_hint(registry, console.text)
+                           : console.text.empty() ? "Command"
+                                                  : "";
   const ImVec2 lo(area.lo.x + (console.text.empty() ? px(26) : used), area.lo.y);
   draw_text(list, lo, {area.hi.x - px(12), area.hi.y}, elided(hint, area.hi.x - px(12) - lo.x),
             colour::text_faint);
   if (entered && !console.text.empty()) {
     if (console.history.empty() || console.history.back() != console.text)
       console.history.push_back(console.text);
-    ui.typed.push_back(std::exchange(console.text, {}));
+    log.typed.push_back(std::exchange(console.text, {}));
     console.at = -1;
-    ui.log_follows = true;
+    log.follows = true;
     console.focus = true;
-    ui.wake(3);
+    actions.wake(3);
   }
 }
 
@@ -129,18 +137,18 @@ float panel_heading(const char* title, const Area& area) {
   return at.x + px(8);
 }
 
-void draw_log(Ui& ui, const Area& area) {
+void draw_log(Actions& actions, const commands::Registry& registry, LogView& log, bool expanded,
+              const Area& area) {
   begin_panel("##log", area, colour::panel, false);
   panel_heading("LOG", area);
   ImGui::SetCursorScreenPos({area.hi.x - px(28), area.lo.y + px(3)});
-  if (sign_button("##fold", ui.shown.bottom_open ? Sign::chevron_down : Sign::chevron_up, true,
-                  colour::text_faint))
-    ui.act("window.fold", "bottom", ui.shown.bottom_open);
-  tooltip(ui.shown.bottom_open ? "Folds the strip." : "Unfolds the strip.");
+  if (sign_button("##fold", expanded ? Sign::chevron_down : Sign::chevron_up, true, colour::text_faint))
+    actions.act("window.fold", "bottom", expanded);
+  tooltip(expanded ? "Folds the strip." : "Unfolds the strip.");
   static const char* names[] = {"Debug", "Info", "Warnings", "Errors"};
   std::array<size_t, 4> counts{};
-  for (const LogLine& line : ui.log) ++counts[static_cast<size_t>(line.level)];
-  if (ui.shown.bottom_open && area.width() > px(460)) {
+  for (const LogLine& line : log.lines) ++counts[static_cast<size_t>(line.level)];
+  if (expanded && area.width() > px(460)) {
     float right = area.hi.x - px(36);
     ImDrawList* list = ImGui::GetWindowDrawList();
     const auto chip = [&](const char* id, const std::string& text, bool on, ImU32 ink, bool counted = false) {
@@ -159,29 +167,28 @@ void draw_log(Ui& ui, const Area& area) {
       right -= px(4);
       return pressed;
     };
-    if (chip("##clear", "Clear", false, colour::text)) ui.act("log.clear");
+    if (chip("##clear", "Clear", false, colour::text)) actions.act("log.clear");
     tooltip("Clears the log.");
-    if (chip("##copy", "Copy", false, colour::text)) ui.act("log.copy");
+    if (chip("##copy", "Copy", false, colour::text)) actions.act("log.copy");
     tooltip("Copies the displayed lines to the clipboard.");
     right -= px(8);
     for (int level = 3; level >= 0; --level) {
       const auto l = static_cast<size_t>(level);
-      if (chip(names[l], counts[l] > 0 ? fmt::format("{} {}", names[l], counts[l]) : names[l],
-               ui.log_levels[l],
+      if (chip(names[l], counts[l] > 0 ? fmt::format("{} {}", names[l], counts[l]) : names[l], log.levels[l],
                counts[l] > 0 ? level_colour(static_cast<log::Level>(level)) : colour::text_dim, true))
-        ui.act("log.show", k_level_names[l], !ui.log_levels[l]);
-      tooltip(fmt::format("{} lines of this level.", ui.log_levels[l] ? "Hides" : "Shows"));
+        actions.act("log.show", k_level_names[l], !log.levels[l]);
+      tooltip(fmt::format("{} lines of this level.", log.levels[l] ? "Hides" : "Shows"));
     }
   }
-  if (ui.shown.bottom_open) {
+  if (expanded) {
     ImGui::SetCursorScreenPos({area.lo.x, area.lo.y + px(30)});
     const float console = px(28);
     ImGui::BeginChild("##lines", {area.width(), std::max(1.0f, area.hi.y - area.lo.y - px(30) - console)});
     const float width = begin_padded();
     ImDrawList* list = ImGui::GetWindowDrawList();
     ImFont* font = theme().fonts.small;
-    for (const LogLine& line : ui.log) {
-      if (!ui.log_levels[static_cast<size_t>(line.level)]) continue;
+    for (const LogLine& line : log.lines) {
+      if (!log.levels[static_cast<size_t>(line.level)]) continue;
       const ImVec2 at = ImGui::GetCursorScreenPos();
       const float text_x = at.x + px(64), room = std::max(px(80), at.x + width - text_x);
       const ImVec2 size = font->CalcTextSizeA(font->FontSize, 1e9f, room, line.text.c_str());
@@ -202,10 +209,10 @@ void draw_log(Ui& ui, const Area& area) {
     end_padded();
     // Follows the newest line until the user scrolls up.
     if (ImGui::GetIO().MouseWheel != 0 && ImGui::IsWindowHovered())
-      ui.log_follows = ImGui::GetScrollY() >= ImGui::GetScrollMaxY() - 1;
-    if (ui.log_follows) ImGui::SetScrollHereY(1);
+      log.follows = ImGui::GetScrollY() >= ImGui::GetScrollMaxY() - 1;
+    if (log.follows) ImGui::SetScrollHereY(1);
     ImGui::EndChild();
-    draw_console(ui, {{area.lo.x, area.hi.y - console}, area.hi});
+    draw_console(actions, registry, log, {{area.lo.x, area.hi.y - console}, area.hi});
   }
   ImGui::End();
 }

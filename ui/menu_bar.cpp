@@ -285,7 +285,7 @@ void view_menu(Ui& ui) {
     ImGui::PopID();
   }
   if (entry("Clear earlier renders", nullptr, "Removes the lines of earlier renders from the Accuracy plot.",
-            false, !ui.runs.earlier().empty()))
+            false, !ui.accuracy.runs.earlier().empty()))
     ui.act("accuracy.clear_runs");
   divide();
   if (begin_submenu("Resolution", "Pixels of the picture per pixel of the window.")) {
@@ -358,7 +358,7 @@ void help_menu(Ui& ui) {
   if (entry("Keys and mouse", "F1", "Navigation and keys.")) ui.act("window.keys");
   if (entry("First steps", nullptr, "The introduction of the first start.")) ui.act("window.welcome");
   if (entry("Commands", nullptr, "Lists the commands of the console and of scripts in the log."))
-    ui.typed.push_back("help");
+    ui.log.typed.push_back("help");
   end_menu();
 }
 

@@ -216,7 +216,7 @@ void Runner::add_key_commands() {
 }
 
 void Runner::advance() {
-  for (const std::string& line : std::exchange(ui_.typed, {})) console(line);
+  for (const std::string& line : std::exchange(ui_.log.typed, {})) console(line);
   while (running() && !ui_.status) {
     // A script may insert steps behind the one that is running.
     const Step step = steps_.front();

@@ -54,7 +54,8 @@ commands::WorkspaceEvents Ui::events() {
             if (picture_size) picture_size.emplace(width, height);
           },
       .written = [this](const std::string& name) { notice("Saved " + name, 6); },
-      .set_with = [this](const std::string& key, const std::string& value) { return set_with(key, value); },
+      .set_with = [this](const std::string& key,
+                         const std::string& value) { return accuracy.set_with(key, value); },
       .exposes_at_load = [this] { return !scripted; },
   };
 }
@@ -81,19 +82,6 @@ void Ui::say_blocked() {
   if (work.now - blocked_said_ < 20) return;
   blocked_said_ = work.now;
   notice("A surface is in the way. Hold Alt to pass through it.", 4);
-}
-
-std::vector<std::pair<std::string, std::string>> Ui::set_with(const std::string& key,
-                                                              const std::string& value) {
-  // The target's line stays in place when the sampling mode changes.
-  if (key == "sampling.target_error") what_if_asked = false;
-  if (key != "sampling.mode" || value == open.setting(key)) return {};
-  if (value == "uniform") {
-    what_if = open.setting_real("sampling.target_error"), what_if_asked = false;
-  } else if (std::exchange(what_if_asked, false)) {
-    return {{"sampling.target_error", fmt::format("{:.4g}", what_if)}};
-  }
-  return {};
 }
 
 double Ui::busy_seconds() const {
@@ -192,7 +180,7 @@ void Ui::drop(const std::string& file) {
 }
 
 void Ui::print(log::Level level, const std::string& text) {
-  log.push_back({level, work.now, text});
+  log.lines.push_back({level, work.now, text});
   wake();
 }
 

@@ -4,16 +4,15 @@
 #include <deque>
 #include <functional>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <set>
 
-#include "accuracy_plot.h"
+#include "accuracy_view.h"
 #include "actions.h"
-#include "base/log.h"
 #include "commands/workspace.h"
 #include "lamp_handles.h"
 #include "layout.h"
+#include "log_view.h"
 #include "solvers/info.h"
 
 namespace lucerna::ui {
@@ -29,27 +28,6 @@ inline constexpr const char* k_scene_side = "scene";
 
 inline constexpr size_t k_recent_files = 8;  ///< number of recent files kept
 
-struct LogLine {
-  log::Level level;
-  double time;  ///< seconds since the window opened
-  std::string text;
-};
-
-/// Receives log lines from any thread.
-class LogInbox {
- public:
-  LogInbox();
-  ~LogInbox();
-  LogInbox(const LogInbox&) = delete;
-  LogInbox& operator=(const LogInbox&) = delete;
-  std::vector<LogLine> take();
-
- private:
-  std::mutex mutex_;
-  std::vector<LogLine> lines_;
-  int token_ = 0;
-};
-
 struct Dialog {
   enum class Purpose { none, open, save, script, reference, solver_load, solver_save };
   Purpose purpose = Purpose::none;
@@ -61,15 +39,6 @@ struct Dialog {
   int marked = -1;        ///< entry of the completion list
   bool pictures = false;  ///< shows the program's scenes
   bool as_shown = true;   ///< a PNG is saved as the window shows it
-};
-
-/// The line under the log.
-struct Console {
-  std::string text;
-  std::vector<std::string> history;
-  int at = -1;         ///< shown entry of the history, or -1
-  bool focus = false;  ///< takes the keyboard in the next frame
-  bool active = false;
 };
 
 /// The window's state over a workspace.
@@ -87,7 +56,7 @@ struct Ui {
   static double time();  ///< seconds since the window opened
 
   Flight flight;
-  Actions actions{work, flight, [this] { wake(); }};
+  Actions actions{work, flight, [this](int frames) { wake(frames); }};
   // The same, in short.
   template <class... A>
   void act(const std::string& command, const A&... words) {
@@ -95,9 +64,6 @@ struct Ui {
   }
   void act_line(const std::string& line) { actions.act_line(line); }
   void toggle(const std::string& key) { actions.toggle(key); }
-
-  /// Lines typed at the console, for the runner.
-  std::vector<std::string> typed;
 
   std::set<int> chorded;  ///< GLFW keys whose last press was with Ctrl: they do not fly
   /// True if the selection is new since the last call and was not made in the list (`chosen_in_list`): its
@@ -148,11 +114,8 @@ struct Ui {
   Layout layout;                         ///< as chosen
   Layout shown;                          ///< as it fits this frame
   std::map<std::string, bool> sections;  ///< open or not, by title
-  std::deque<LogLine> log;
-  bool log_follows = true;
-  std::array<bool, 4> log_levels{false, true, true, true};
+  LogView log;
   std::vector<std::string> errors;  ///< the strip's, newest last
-  Console console;
   Dialog dialog;
   bool help = false;
   bool scene_panel_to_top = false;  ///< another scene: its panel is not scrolled
@@ -188,17 +151,7 @@ struct Ui {
   uint64_t inspections_known = 0;
   bool script_asked = false;
 
-  // Accuracy.
-  Runs runs;
-  double what_if = 0.01;  ///< relative error of the forecast in uniform sampling
-  /// `what_if` was set after the target: adaptive sampling starts with it.
-  bool what_if_asked = false;
-  /// Position of the target line: the setting in adaptive sampling, `what_if` in uniform sampling.
-  double target() const;
-  /// Forecast of the seconds of rendering to reach it.
-  std::optional<stats::Band> forecast();
-  std::optional<PlotRange> held_range;  ///< fixed range of the plot while the target is dragged
-  float held_offset = 0;                ///< of the pointer from the line
+  AccuracyView accuracy{open};
 
   // Requests to the loop.
   std::vector<std::pair<int, int>> keys;  ///< pressed since the last frame: GLFW key and modifiers
@@ -239,17 +192,10 @@ struct Ui {
   /// What the window does about changes of the workspace.
   commands::WorkspaceEvents events();
   void scene_changed();
-  /// Settings that change together with one.
-  std::vector<std::pair<std::string, std::string>> set_with(const std::string& key, const std::string& value);
 
   Selection revealed_;
   double wheeled_ = -10, blocked_said_ = -60;
   uint64_t wheel_gesture_ = 0;
-  struct {
-    std::shared_ptr<const session::Accuracy> of;
-    double target = 0;
-    std::optional<stats::Band> band;
-  } forecast_;
 };
 
 /// Handles pressed keys and draws all parts of the window; once per frame.
@@ -266,9 +212,11 @@ void draw_scene_panel(Ui& ui, const Area& area);
 void draw_solver_panel(Ui& ui, const solvers::SolverInfo& solver, const Area& area);
 void draw_toolbar(Ui& ui, const Area& area);
 void draw_picture(Ui& ui, const Area& area);
-void draw_accuracy(Ui& ui, const Area& area);
+void draw_accuracy(Actions& actions, const commands::OpenScene& open, AccuracyView& view, bool expanded,
+                   const Area& area);
 void draw_passes(const commands::OpenScene& open, bool expanded, const Area& area);
-void draw_log(Ui& ui, const Area& area);
+void draw_log(Actions& actions, const commands::Registry& registry, LogView& log, bool expanded,
+              const Area& area);
 /// What can be opened while there is no picture; part of draw_picture. Draws nothing during a load.
 void draw_empty_state(Ui& ui, const Area& area);
 /// Progress, errors and first steps over the picture, notices beside `legend`; part of draw_picture.

@@ -94,8 +94,8 @@ class Viewer {
     ui_.work.now = ui_.time();
     for (LogLine& line : inbox_.take()) {
       if (line.level == log::Level::error) ui_.fail(line.text), ++ui_.work.error_count;
-      ui_.log.push_back(std::move(line));
-      if (ui_.log.size() > k_log_lines) ui_.log.pop_front();
+      ui_.log.lines.push_back(std::move(line));
+      if (ui_.log.lines.size() > k_log_lines) ui_.log.lines.pop_front();
       ui_.wake(2);
     }
     const auto snapshot = ui_.open.snapshot;
@@ -105,7 +105,7 @@ class Viewer {
     if (snapshot != ui_.open.snapshot) {
       ui_.wake(1);
       fresh_picture_ = ui_.open.snapshot != nullptr;
-      if (ui_.open.snapshot) ui_.runs.follow(*ui_.open.snapshot, ui_.open.scene);
+      if (ui_.open.snapshot) ui_.accuracy.runs.follow(*ui_.open.snapshot, ui_.open.scene);
     }
     if (scene != ui_.open.scene) {
       ui_.wake(1);
@@ -264,9 +264,9 @@ void draw_parts(Ui& ui) {
       draw_solver_panel(ui, *solver, side);
     else
       draw_scene_panel(ui, side);
-    draw_accuracy(ui, areas.accuracy);
+    draw_accuracy(ui.actions, ui.open, ui.accuracy, ui.shown.bottom_open, areas.accuracy);
     draw_passes(ui.open, ui.shown.bottom_open, areas.passes);
-    draw_log(ui, areas.log);
+    draw_log(ui.actions, ui.work.registry, ui.log, ui.shown.bottom_open, areas.log);
   }
   draw_picture(ui, areas.picture);
   draw_dialogs(ui);

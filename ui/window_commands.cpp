@@ -117,9 +117,9 @@ void add_accuracy_commands(Ui& ui, const Add& add) {
       "In uniform sampling: shows the cost of this error as seen. In adaptive sampling sampling.target_error "
       "is used instead; it starts with the last value given here.",
       {{.name = "error", .type = Type::real, .lo = 0.0001, .hi = 10}},
-      [&ui](const Arguments& a) { ui.what_if = a.real("error"), ui.what_if_asked = true; });
+      [&ui](const Arguments& a) { ui.accuracy.set_what_if(a.real("error")); });
   add("accuracy.clear_runs", "Removes the lines of earlier renders from the Accuracy plot.", {},
-      [&ui](const Arguments&) { ui.runs.clear(); });
+      [&ui](const Arguments&) { ui.accuracy.runs.clear(); });
 }
 
 /// The window as a whole, and its cards of explanation.
@@ -211,9 +211,9 @@ void add_log_commands(Ui& ui, const Add& add) {
       "log.copy", "Copies the displayed lines to the clipboard.", {},
       [&ui](const Arguments&) {
         std::string all;
-        for (const LogLine& line : ui.log) {
+        for (const LogLine& line : ui.log.lines) {
           const auto level = static_cast<size_t>(line.level);
-          if (ui.log_levels[level])
+          if (ui.log.levels[level])
             all += fmt::format("{:.2f} {} {}\n", line.time, k_levels[level], line.text);
         }
         ImGui::SetClipboardText(all.c_str());
@@ -224,16 +224,16 @@ void add_log_commands(Ui& ui, const Add& add) {
       [&ui](const Arguments&) {
         ui.layout.panels = true;
         set_open(ui.layout, "bottom", true);
-        ui.console.focus = true;
+        ui.log.console.focus = true;
       },
       false);
   add(
-      "log.clear", "Clears the log.", {}, [&ui](const Arguments&) { ui.log.clear(); }, false);
+      "log.clear", "Clears the log.", {}, [&ui](const Arguments&) { ui.log.lines.clear(); }, false);
   add("log.show", "Shows or hides the lines of a level.",
       {{.name = "level", .type = Type::choice, .choices = k_levels, .which = true}, on()},
       [&ui](const Arguments& a) {
         const auto level = std::find(k_levels.begin(), k_levels.end(), a.text("level")) - k_levels.begin();
-        ui.log_levels[static_cast<size_t>(level)] = a.boolean("on");
+        ui.log.levels[static_cast<size_t>(level)] = a.boolean("on");
       });
 }
 

@@ -217,7 +217,7 @@ TEST_CASE("the what-if target stays when the sampling mode changes, in one step 
   act("accuracy.what_if 0.023");
   act("set sampling.mode adaptive");
   CHECK(target() == Approx(0.023));
-  CHECK(window.target() == Approx(0.023));
+  CHECK(window.accuracy.target() == Approx(0.023));
   act("undo");
   CHECK(window.open.setting("sampling.mode") == "uniform");
   CHECK(target() == Approx(0.05));
@@ -228,5 +228,5 @@ TEST_CASE("the what-if target stays when the sampling mode changes, in one step 
   CHECK(target() == Approx(0.2));
   // Back to uniform: the line stays.
   act("set sampling.mode uniform");
-  CHECK(window.target() == Approx(0.2));
+  CHECK(window.accuracy.target() == Approx(0.2));
 }
