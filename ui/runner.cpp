@@ -103,7 +103,8 @@ void Runner::add_script_commands() {
        .run =
            [this](const Arguments& a) {
              settled_ = 0;
-             if (!in_script_) ui_.status = a.has("status") ? static_cast<int>(a.integer("status")) : 0;
+             if (!in_script_)
+               ui_.requests.status = a.has("status") ? static_cast<int>(a.integer("status")) : 0;
            },
        .done =
            [this](const Arguments& a) {
@@ -114,7 +115,9 @@ void Runner::add_script_commands() {
              settled_ = settled ? settled_ + 1 : 0;
              if (settled_ < 2) return false;
              const bool complains = ui_.work.error_count > root(*steps_.front().call).errors;
-             ui_.status = a.has("status") ? static_cast<int>(a.integer("status")) : complains ? 1 : 0;
+             ui_.requests.status = a.has("status") ? static_cast<int>(a.integer("status"))
+                                   : complains     ? 1
+                                                   : 0;
              return true;
            },
        .recorded = false});
@@ -126,13 +129,13 @@ void Runner::add_script_commands() {
            {{.name = "file", .type = Type::file, .choices = {".png"}, .optional = true, .writes = true}},
        .run =
            [this](const Arguments& a) {
-             ui_.shot = {a.has("file") ? checked_target(a.text("file")) : free_name(), 3};
+             ui_.requests.shot = {a.has("file") ? checked_target(a.text("file")) : free_name(), 3};
              ui_.wake(4);
            },
        .done =
            [this](const Arguments&) {
-             if (ui_.shot.failed) throw Error("", "nothing was written");
-             return ui_.shot.file.empty();
+             if (ui_.requests.shot.failed) throw Error("", "nothing was written");
+             return ui_.requests.shot.file.empty();
            },
        .recorded = false});
   registry.add(
@@ -158,7 +161,7 @@ void Runner::add_mouse_commands() {
   registry.add({.name = "drop",
                 .help = "Acts as if the file were dropped on the window.",
                 .parameters = {{.name = "file", .type = Type::file}},
-                .run = [this](const Arguments& a) { ui_.drops.push_back(a.text("file")); },
+                .run = [this](const Arguments& a) { ui_.requests.drops.push_back(a.text("file")); },
                 .done = drawn(),
                 .recorded = false});
   registry.add({.name = "mouse.move",
@@ -167,7 +170,7 @@ void Runner::add_mouse_commands() {
                                {.name = "y", .type = Type::real, .unit = "pixels"}},
                 .run =
                     [this](const Arguments& a) {
-                      ui_.inputs.push_back({a.number("x"), a.number("y")});
+                      ui_.requests.inputs.push_back({a.number("x"), a.number("y")});
                     },
                 .done = drawn(),
                 .recorded = false});
@@ -176,48 +179,51 @@ void Runner::add_mouse_commands() {
         {.name = down ? "mouse.down" : "mouse.up",
          .help = down ? "In a script: presses a mouse button." : "In a script: releases a mouse button.",
          .parameters = {{.name = "button", .type = Type::choice, .choices = k_buttons, .optional = true}},
-         .run = [this,
-                 down](const Arguments& a) { ui_.inputs.push_back({.button = button_of(a), .down = down}); },
+         .run =
+             [this, down](const Arguments& a) {
+               ui_.requests.inputs.push_back({.button = button_of(a), .down = down});
+             },
          .done = drawn(),
          .recorded = false});
   registry.add({.name = "mouse.wheel",
                 .help = "In a script: turns the wheel.",
                 .parameters = {{.name = "notches", .type = Type::real, .lo = -100, .hi = 100}},
-                .run = [this](const Arguments& a) { ui_.wheel += a.number("notches"); },
+                .run = [this](const Arguments& a) { ui_.requests.wheel += a.number("notches"); },
                 .done = drawn(),
                 .recorded = false});
 }
 
 void Runner::add_key_commands() {
   auto& registry = ui_.work.registry;
-  registry.add({.name = "key",
-                .help = "In a script: presses a key, such as f, f12, tab, ctrl+z.",
-                .parameters = {{.name = "name"}},
-                .check = [](const Arguments& a) { key_of(a.text("name")); },
-                .run = [this](const Arguments& a) { ui_.key_strokes.push_back(key_of(a.text("name"))); },
-                .done = drawn(),
-                .recorded = false});
+  registry.add(
+      {.name = "key",
+       .help = "In a script: presses a key, such as f, f12, tab, ctrl+z.",
+       .parameters = {{.name = "name"}},
+       .check = [](const Arguments& a) { key_of(a.text("name")); },
+       .run = [this](const Arguments& a) { ui_.requests.key_strokes.push_back(key_of(a.text("name"))); },
+       .done = drawn(),
+       .recorded = false});
   registry.add({.name = "key.hold",
                 .help = "In a script: holds a key down, such as w or ctrl, shift, alt; or releases it.",
                 .parameters = {{.name = "name"}, {.name = "down", .type = Type::boolean}},
                 .check = [](const Arguments& a) { held_key_of(a.text("name")); },
                 .run =
                     [this](const Arguments& a) {
-                      ui_.key_holds.emplace_back(held_key_of(a.text("name")), a.boolean("down"));
+                      ui_.requests.key_holds.emplace_back(held_key_of(a.text("name")), a.boolean("down"));
                     },
                 .done = drawn(),
                 .recorded = false});
   registry.add({.name = "type",
                 .help = "In a script: types a text.",
                 .parameters = {{.name = "text"}},
-                .run = [this](const Arguments& a) { ui_.keyboard += a.text("text"); },
+                .run = [this](const Arguments& a) { ui_.requests.keyboard += a.text("text"); },
                 .done = drawn(),
                 .recorded = false});
 }
 
 void Runner::advance() {
   for (const std::string& line : std::exchange(ui_.log.typed, {})) console(line);
-  while (running() && !ui_.status) {
+  while (running() && !ui_.requests.status) {
     // A script may insert steps behind the one that is running.
     const Step step = steps_.front();
     if (!current_.command && waits_for_earlier(step)) {
@@ -278,7 +284,7 @@ bool Runner::carry_out(const Step& step) {
 
 void Runner::give_up(const Step& step) {
   const Call& script = root(*step.call);
-  if (script.own) ui_.status = 1;
+  if (script.own) ui_.requests.status = 1;
   current_ = {};
   measure_.reset();
   std::erase_if(steps_, [&, script = &script](const Step& s) { return &root(*s.call) == script; });

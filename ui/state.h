@@ -13,6 +13,7 @@
 #include "lamp_handles.h"
 #include "layout.h"
 #include "log_view.h"
+#include "requests.h"
 #include "solvers/info.h"
 
 namespace lucerna::ui {
@@ -153,32 +154,13 @@ struct Ui {
 
   AccuracyView accuracy{open};
 
-  // Requests to the loop.
+  // Keys, frames, and requests to the loop.
   std::vector<std::pair<int, int>> keys;  ///< pressed since the last frame: GLFW key and modifiers
   bool pressed(int key,
                int mods = 0) const;  ///< among `keys`, with exactly these modifiers (Shift is not looked at)
   int frames_wanted = 3;             ///< to draw even if nothing happens
   bool moving = false;               ///< an animation is on screen
-  std::optional<int> status;         ///< exit status, if the program must end
-  struct Shot {
-    std::string file;     ///< "" for none
-    int settle = 0;       ///< frames to draw before it is taken
-    bool failed = false;  ///< the last one could not be written
-  } shot;
-  std::optional<std::pair<int, int>> size;  ///< window size wanted
-  std::optional<float> scale;               ///< requested scale of text and controls
-  /// Mouse and keys moved by a script.
-  struct Input {
-    float x = 0, y = 0;  ///< window pixels
-    int button = -1;     ///< -1: the pointer moves; otherwise the button changes, where the pointer is
-    bool down = false;
-  };
-  std::vector<Input> inputs;
-  std::vector<std::pair<int, bool>> key_holds;   ///< GLFW keys that go down and stay, or come up
-  float wheel = 0;                               ///< notches that it is turned
-  std::vector<std::pair<int, int>> key_strokes;  ///< GLFW keys with their modifiers
-  std::string keyboard;                          ///< text typed
-  std::vector<std::string> drops;                ///< files that a script drops on the window
+  Requests requests;
   void wake(int frames = 2) { frames_wanted = frames_wanted < frames ? frames : frames_wanted; }
 
   /// A file was dropped on the window.

@@ -46,16 +46,16 @@ class Viewer {
 
   int run() {
     const auto interrupted = [&] { return options_.interrupted && options_.interrupted(); };
-    while (!window_.closing() && !ui_.status && !interrupted()) {
+    while (!window_.closing() && !ui_.requests.status && !interrupted()) {
       pause_until_needed();
       collect();
       if (memory_) memory_->follow(ui_.work.now);
       runner_.advance();
       inject();
-      if (ui_.status) break;
+      if (ui_.requests.status) break;
       if (ui_.frames_wanted > 0) draw();
     }
-    return ui_.status.value_or(0);
+    return ui_.requests.status.value_or(0);
   }
 
  private:
@@ -123,18 +123,19 @@ class Viewer {
 
   /// A script's mouse, keyboard and window input takes the same path as a user's.
   void inject() {
-    if (ui_.size) window_.set_size(ui_.size->first, ui_.size->second), ui_.size.reset();
-    if (ui_.scale) window_.set_scale(*ui_.scale), ui_.scale.reset();
-    for (const Ui::Input& input : std::exchange(ui_.inputs, {}))
+    if (ui_.requests.size)
+      window_.set_size(ui_.requests.size->first, ui_.requests.size->second), ui_.requests.size.reset();
+    if (ui_.requests.scale) window_.set_scale(*ui_.requests.scale), ui_.requests.scale.reset();
+    for (const Requests::Input& input : std::exchange(ui_.requests.inputs, {}))
       if (input.button < 0)
         window_.move_mouse(input.x, input.y);
       else
         window_.press_mouse(input.button, input.down);
-    for (const auto& [key, down] : std::exchange(ui_.key_holds, {})) window_.hold_key(key, down);
-    if (ui_.wheel != 0) window_.turn_wheel(std::exchange(ui_.wheel, 0.0f));
-    for (const auto& [key, mods] : std::exchange(ui_.key_strokes, {})) window_.press_key(key, mods);
-    if (!ui_.keyboard.empty()) window_.type(std::exchange(ui_.keyboard, {}));
-    for (const std::string& file : std::exchange(ui_.drops, {})) window_.drop(file);
+    for (const auto& [key, down] : std::exchange(ui_.requests.key_holds, {})) window_.hold_key(key, down);
+    if (ui_.requests.wheel != 0) window_.turn_wheel(std::exchange(ui_.requests.wheel, 0.0f));
+    for (const auto& [key, mods] : std::exchange(ui_.requests.key_strokes, {})) window_.press_key(key, mods);
+    if (!ui_.requests.keyboard.empty()) window_.type(std::exchange(ui_.requests.keyboard, {}));
+    for (const std::string& file : std::exchange(ui_.requests.drops, {})) window_.drop(file);
   }
 
   /// A selection survives edits, but not the removal of its object.
@@ -167,11 +168,11 @@ class Viewer {
     if (ui_.frames_to_settle > 0) --ui_.frames_to_settle, ui_.wake(1);
     ImGui::PopFont();
     window_.end_frame();
-    if (!ui_.shot.file.empty()) {
+    if (!ui_.requests.shot.file.empty()) {
       ui_.wake(2);
       // Waits until the picture shows earlier commands, unless a scene is loading.
       const bool waits = ui_.open.snapshot && ui_.open.snapshot->activity.empty() && !ui_.open.up_to_date();
-      if (!waits && ui_.shot.settle-- <= 0) screenshot(std::exchange(ui_.shot.file, {}));
+      if (!waits && ui_.requests.shot.settle-- <= 0) screenshot(std::exchange(ui_.requests.shot.file, {}));
     }
     window_.present();
     const double now = ui_.time();
@@ -210,7 +211,7 @@ class Viewer {
       log::info("window saved as {}", absolute_path(file).string());
     } catch (const std::exception& error) {
       log::error("{}", error.what());
-      ui_.shot.failed = true;
+      ui_.requests.shot.failed = true;
     }
   }
 

@@ -128,11 +128,11 @@ void add_frame_commands(Ui& ui, const Add& add) {
       {{.name = "width", .type = Type::integer, .lo = 640, .hi = 16384, .unit = "pixels"},
        {.name = "height", .type = Type::integer, .lo = 400, .hi = 16384, .unit = "pixels"}},
       [&ui](const Arguments& a) {
-        ui.size = {static_cast<int>(a.integer("width")), static_cast<int>(a.integer("height"))};
+        ui.requests.size = {static_cast<int>(a.integer("width")), static_cast<int>(a.integer("height"))};
       });
   add("window.scale", "Sets the scale of text and controls; 0: the desktop's.",
       {{.name = "scale", .type = Type::real, .lo = 0, .hi = 4}},
-      [&ui](const Arguments& a) { ui.scale = a.number("scale"); });
+      [&ui](const Arguments& a) { ui.requests.scale = a.number("scale"); });
   add(
       "window.keys", "Shows the page of keys and mouse.", {}, [&ui](const Arguments&) { ui.help = true; },
       false);
