@@ -53,6 +53,7 @@ void main() {
   Moments even, odd;
   even.aa = even.ab = even.bb = odd.aa = odd.ab = odd.bb = mat4(0.0);
   even.ya = even.yb = odd.ya = odd.yb = mat3x4(0.0);
+  vec2 most = vec2(0.0);  // weight of a neighbour, even and odd
   float z = max(window.surface.depth, 1e-20);
   for (int y = -k_reach; y <= k_reach; ++y)
     for (int x = -k_reach; x <= k_reach; ++x) {
@@ -63,14 +64,24 @@ void main() {
       FilterLight light = filter_light(texelFetch(filter_data, there)), g = filter_light(texelFetch(filter_guides, there));
       float alike = inside ? filter_alike(window.surface, s, vec2(step), window.slope) : 0.0;
       // Almost similar surfaces count where there are no similar ones.
-      alike = inside ? max(alike, k_filter_unlike * pow(alike, 0.05)) : 0.0;
+      alike = inside ? max(alike, k_filter_unlike * max(pow(alike, 0.05), k_filter_least_alike)) : 0.0;
       float v = square(g.deviation) + square(g.in_both);
       float by_odd = alike * closeness(guide.odd, g.odd, variance, v), by_even = alike * closeness(guide.even, g.even, variance, v);
       vec4 a = vec4(1.0, vec2(x, y) / float(k_reach), luminance(window.surface.albedo) / luminance(s.albedo) - 1.0);
       vec4 b = vec4(s.normal - window.surface.normal, (s.depth - window.surface.depth) / (0.1 * z));
       if (s.covered == 0.0 || window.surface.covered == 0.0) b = vec4(0.0);
+      if (x == 0 && y == 0) continue;
       add(even, by_odd, a, b, light.even);
       add(odd, by_even, a, b, light.odd);
+      most = max(most, vec2(by_odd, by_even));
     }
+  // The pixel itself has the weight of its most similar neighbour, and more if its noise is far below the light. So the noise of
+  // a pixel that is unlike all others is not kept.
+  FilterLight own = filter_light(texelFetch(filter_data, int(pixel)));
+  float signal = 0.5 * (dot(guide.even, guide.even) + dot(guide.odd, guide.odd));
+  float certain = signal / (signal + k_filter_certain * square(own.deviation) + 1e-20);
+  vec2 weight = mix(max(most, vec2(k_filter_least_own)), vec2(1.0), certain);
+  add(even, weight.x, vec4(1.0, vec3(0.0)), vec4(0.0), own.even);
+  add(odd, weight.y, vec4(1.0, vec3(0.0)), vec4(0.0), own.odd);
   fitted[pixel] = filter_texel(FilterLight(max(solve(even), vec3(0.0)), max(solve(odd), vec3(0.0)), 0.0, 0.0));
 }
