@@ -218,8 +218,8 @@ void find_exposure(session::Renderer& r, const std::vector<session::SettingChang
 constexpr double k_preparing = 0.5;
 
 /// The target of --error for the filtered picture. Filters at growing numbers of samples, which depend on
-/// errors only, not on times: equal renders end equally. A filtering costs about as much as one or two
-/// samples a pixel, together at most about a tenth of the time.
+/// errors only, not on times: equal renders end equally. A filtering costs as much as one to eight samples
+/// a pixel, together a tenth to a fifth of the time.
 class FilteredGoal {
  public:
   explicit FilteredGoal(const RenderArguments& a)
