@@ -148,7 +148,9 @@ void Program::add_render() {
       "relative to the light around each pixel; pixels that the exposure (film.ev) shows as white or black "
       "have none. A render ends at the first of --error, --samples and --time that it reaches. With --time "
       "the others apply only if given; without it the number of samples always does (with --error "
-      "sampling.max_samples)");
+      "sampling.max_samples). With --filter: target error of the filtered picture, over its mean luminance; "
+      "all "
+      "pixels then get the same number of samples");
   render_->add_option("--samples", r.samples, "samples per pixel; with --error, the maximum")
       ->check(CLI::Range(int64_t(1), int64_t(1) << 20));
   render_->add_option("--time", r.seconds,

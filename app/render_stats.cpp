@@ -63,7 +63,7 @@ nlohmann::ordered_json make_filtered(session::Renderer& r, const session::Filter
   const film::ImageError samples = r.image_error();
   nlohmann::ordered_json j;
   j["rms"] = error_sum(f.rms, samples.records_rms, samples.interpolation_rms);
-  j["of_mean"] = error_sum(f.relative(), samples.relative_records(), samples.relative_interpolation());
+  j["of_mean"] = filtered_error(r, filtered);
   j["filter"] = {{"rms", f.rms}, {"of_mean", f.relative()}};
   j["filter"]["tile_median"] = f.tile_median;
   j["filter"]["tile_worst_decile"] = f.tile_worst_tenth;
@@ -166,6 +166,11 @@ nlohmann::ordered_json make_forecast(const stats::Ledger& ledger) {
 }
 
 }  // namespace
+
+double filtered_error(session::Renderer& r, const session::Filtered& filtered) {
+  const film::ImageError samples = r.image_error();
+  return error_sum(filtered.error.relative(), samples.relative_records(), samples.relative_interpolation());
+}
 
 void report_unreached(const schedule::AdaptiveSchedule& s, const std::string& advice) {
   const std::vector<uint32_t> list = unreached(s);

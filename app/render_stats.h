@@ -11,6 +11,10 @@ namespace lucerna::app {
 /// statistics. `wall`: seconds of rendering.
 nlohmann::ordered_json make_stats(session::Renderer& renderer, double wall);
 
+/// Error of a filtered picture over its mean luminance: noise and bias of the filter, and the error of
+/// lookups.
+double filtered_error(session::Renderer& renderer, const session::Filtered& filtered);
+
 /// Warns of tiles above the target error with the maximum of samples, by cause. `advice`: remedies if records
 /// are the cause.
 void report_unreached(const schedule::AdaptiveSchedule& schedule, const std::string& advice);

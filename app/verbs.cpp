@@ -51,9 +51,20 @@ int devices(bool json) {
   return 0;
 }
 
+namespace {
+/// True for the integer formats, whose values have the curve of the display.
+bool is_encoded(const std::string& file) {
+  std::string extension = std::filesystem::path(file).extension().string();
+  for (char& c : extension) c = char(std::tolower(static_cast<unsigned char>(c)));
+  return extension != ".exr" && extension != ".hdr" && extension != ".pfm";
+}
+}  // namespace
+
 int compare(const CompareArguments& a) {
   const film::FilmImage first = film::read_exr(a.a), second = film::read_exr(a.b);
-  const film::Comparison c = film::compare(first, second, a.layer);
+  film::CompareOptions options;
+  options.encoded = is_encoded(a.a) && is_encoded(a.b);
+  const film::Comparison c = film::compare(first, second, a.layer, options);
   std::printf("%s\n", (a.json ? film::to_json(c) : film::to_text(c)).c_str());
   if (a.max_relmse < 0) return 0;
   // Values that are not finite have no bounded error: the figures exclude them.

@@ -20,13 +20,20 @@ LUCERNA_CONST float k_filter_least_albedo = 0.04f;
 LUCERNA_CONST float k_filter_confirmed = 1.5f;
 /// Differences of light, in standard deviations, that count as 1.
 LUCERNA_CONST float k_filter_strength = 0.8f;
+LUCERNA_CONST float k_filter_strength_direct = 0.7f;  ///< likewise, of primary light
 /// Relative differences that count as 0, whatever the noise.
 LUCERNA_CONST float k_filter_equal = 0.002f;
 /// Regularization of slopes, over the sum of the weights.
 LUCERNA_CONST float k_filter_ridge = 0.01f;
+LUCERNA_CONST float k_filter_ridge_smooth = 0.03f;  ///< likewise, of secondary and tertiary light
 LUCERNA_CONST float k_filter_ridge_albedo = 0.0003f;  ///< likewise, of the slope with the surface's colour
 /// Weight of a pixel whose surface is almost similar: used where none is more similar.
 LUCERNA_CONST float k_filter_unlike = 0.03f;
+/// Of secondary and tertiary light: minimum factor on k_filter_unlike; square of the ratio of light to noise at which a pixel's
+/// own weight is half way between that of its most similar neighbour and 1; and its minimum weight.
+LUCERNA_CONST float k_filter_least_alike = 0.2f;
+LUCERNA_CONST float k_filter_certain = 100.0f;
+LUCERNA_CONST float k_filter_least_own = 1e-4f;
 /// Standard deviations by which the other half must contradict a fit before its share is reduced.
 LUCERNA_CONST float k_filter_doubt = 3.5f;
 /// Half side [pixels] of the window over which a fit is judged, and the falloff of its weights.

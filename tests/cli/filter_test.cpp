@@ -90,3 +90,30 @@ TEST_CASE("--filter: one sample per pixel has no noise estimate") {
   const film::FilmImage a = film::read_exr(f / "a.exr");
   for (const char* k : {"R", "G", "B"}) CHECK(*a.find("filtered." + std::string(k)) == *a.find(k));
 }
+
+TEST_CASE("--filter --error: the render ends when the filtered picture's error is at the target") {
+  const test::Folder f;
+  const int most = 4096;
+  std::vector<double> samples;
+  for (const auto& [name, target] : {std::pair("rough", 0.2), {"fine", 0.05}, {"again", 0.05}}) {
+    const Run r = render(f, name, "--filter --error " + std::to_string(target), most);
+    INFO(r.out);
+    REQUIRE(r.status == 0);
+    const nlohmann::json j = figures(f, name);
+    CHECK(j["filtered"]["of_mean"] <= target);
+    CHECK(j["filtered"]["of_mean"] < j["error"]["of_mean"]);
+    CHECK(j["samples"] < most);
+    CHECK(j["filtered"]["target_error"] == target);
+    CHECK(j["filtered"]["reached"] == true);
+    samples.push_back(j["samples"]);
+  }
+  CHECK(samples[0] < samples[1]);
+  CHECK(film::read_exr(f / "fine.exr").channels == film::read_exr(f / "again.exr").channels);
+
+  const Run r = render(f, "capped", "--filter --error 0.0001");
+  CHECK(r.status == 0);
+  CHECK_THAT(r.out, Contains("after 16 samples, over the error of 0.0001") && Contains("--samples N"));
+  CHECK(figures(f, "capped")["samples"] == 16);
+  CHECK(figures(f, "capped")["filtered"]["reached"] == false);
+  CHECK(figures(f, "capped")["filtered"]["of_mean"] > 0.0001);
+}

@@ -160,6 +160,28 @@ TEST_CASE("the filter removes an outlier, and keeps light that both halves have"
     }
 }
 
+TEST_CASE("the filter removes noise from pixels that show two surfaces, unlike all around them") {
+  // The edge of a near surface before a far one, oblique, so that pixels show different shares of both.
+  test::Stage stage(64, 64);
+  Noise noise;
+  std::uniform_real_distribution<float> inside(0, 1);
+  const auto edge = [](float y) { return 20 + 0.37f * y; };
+  stage.sample(stage.film, 16, [&](uint32_t x, uint32_t y) {
+    Sample s{vec3(noise())};
+    if (float(x) + inside(noise.random) > edge(float(y))) s.depth = 40, s.normal = vec3(1, 0, 0);
+    return s;
+  });
+  const Filtered f = filter(stage);
+  const std::vector<double> before = Filtered::red(f.samples), after = Filtered::red(f.filtered);
+  double noisy = 0, left = 0;
+  for (uint32_t y = 0; y < 64; ++y) {
+    const size_t i = y * 64 + size_t(edge(float(y)));
+    noisy += std::pow(before[i] - 1, 2) / 64, left += std::pow(after[i] - 1, 2) / 64;
+  }
+  INFO(std::sqrt(noisy) << " -> " << std::sqrt(left));
+  CHECK(left < noisy / 9);
+}
+
 TEST_CASE("the filter treats components separately, including one that is off") {
   std::vector<std::vector<vec3>> alone;
   for (const bool both : {false, true}) {

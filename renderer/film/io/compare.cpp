@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
+#include "base/color.h"
 #include "base/json_text.h"
 
 namespace lucerna::film {
@@ -117,6 +118,20 @@ nlohmann::json numbers(const std::vector<double>& values) {
   return list;
 }
 
+double mean_flip(const Planes& planes, uint32_t width, size_t pixels, bool encoded) {
+  const auto colours = [&](const std::vector<const float*>& channels) {
+    std::vector<vec3> c(pixels);
+    for (size_t p = 0; p < pixels; ++p) {
+      c[p] = {channels[0][p], channels[1][p], channels[2][p]};
+      for (int k = 0; encoded && k < 3; ++k) c[p][k] = linear_from_srgb(std::clamp(c[p][k], 0.0f, 1.0f));
+    }
+    return c;
+  };
+  const std::vector<vec3> a = colours(planes.a), b = colours(planes.b);
+  const std::vector<float> flips = encoded ? flip(width, a, b) : flip_hdr(width, a, b);
+  return std::accumulate(flips.begin(), flips.end(), 0.0) / double(pixels);
+}
+
 uint8_t srgb_byte(float linear) {
   const float x = std::clamp(linear, 0.0f, 1.0f);
   const float encoded = x <= 0.0031308f ? 12.92f * x : 1.055f * std::pow(x, 1 / 2.4f) - 0.055f;
@@ -191,6 +206,9 @@ Comparison compare(const FilmImage& a, const FilmImage& b, const std::string& la
   result.p99.absolute = percentile(absolute, 0.99);
   result.p99.relative = percentile(relative, 0.99);
 
+  const size_t all = size_t{a.width} * a.height;
+  if (count == 3 && result.pixels == all) result.flip = mean_flip(planes, a.width, all, options.encoded);
+
   std::vector<double> ratios;
   for (size_t i = 0; i < block_a.size(); ++i)
     if (block_b[i] > 0) ratios.push_back(block_a[i] / block_b[i]);
@@ -222,6 +240,7 @@ std::string to_json(const Comparison& c) {
   json["relmse"] = number(c.relmse);
   json["rmse_trimmed"] = number(c.trimmed.rmse);
   json["relmse_trimmed"] = number(c.trimmed.relmse);
+  json["flip"] = c.flip ? number(*c.flip) : nlohmann::json(nullptr);
   json["p99_absolute"] = number(c.p99.absolute);
   json["p99_relative"] = number(c.p99.relative);
   json["max_absolute"] = number(c.largest.absolute);
@@ -250,6 +269,7 @@ std::string to_text(const Comparison& c) {
                         c.mean_ratio[i]);
   text += fmt::format("  RMSE          {:.6g}   trimmed {:.6g}\n", c.rmse, c.trimmed.rmse);
   text += fmt::format("  relative MSE  {:.6g}   trimmed {:.6g}\n", c.relmse, c.trimmed.relmse);
+  if (c.flip) text += fmt::format("  FLIP          {:.6g}\n", *c.flip);
   text += fmt::format("  99 % of pixels differ by at most {:.6g} (relative {:.6g})\n", c.p99.absolute,
                       c.p99.relative);
   text +=

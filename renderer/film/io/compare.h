@@ -1,9 +1,11 @@
 #pragma once
 // Difference of an image from a reference: the figures of `lucerna compare`, also for stochastic images.
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "film/io/flip.h"
 #include "film/io/image_file.h"
 
 namespace lucerna::film {
@@ -11,6 +13,8 @@ namespace lucerna::film {
 struct CompareOptions {
   double epsilon = 0.01;         ///< regularization of relative measures, in squared units of the layer; > 0
   double trimmed_share = 0.001;  ///< share of the worst pixels that the trimmed measures drop; 0..1
+  /// True if the values are display colours in the sRGB encoding, as in PNG files; false: linear light.
+  bool encoded = false;
   uint32_t block = 16;  ///< side of the blocks, pixels; > 0 (blocks at the right and bottom may be smaller)
 };
 
@@ -49,6 +53,9 @@ struct Comparison {
     double absolute = 0;               ///< mean_C |a - b|
     std::array<uint32_t, 2> at{0, 0};  ///< its pixel, from the top left
   } largest;
+  /// Mean over all pixels of flip_hdr(), of flip() where values are encoded; without a value unless all
+  /// values are finite and the layer has three channels.
+  std::optional<double> flip;
   struct {
     uint64_t count = 0;                   ///< with light in b (sum over pixels and C above 0)
     double p05 = 1, median = 1, p95 = 1;  ///< of sum a / sum b over those

@@ -7,6 +7,9 @@ uniform samplerBuffer filter_data, filter_surfaces, filter_guides;
 layout(scalar) writeonly buffer FilterFitted { vec4 fitted[]; };
 #include "film/filter/window.glsl"
 
+// True for secondary and tertiary light, which has few edges but those of surfaces; direct light and caustics have their own.
+bool is_smooth() { return push.component == 1u || push.component == 2u; }
+
 // Moments of eight regressors, in two groups of four, and of light.
 struct Moments {
   mat4 aa, ab, bb;
@@ -22,7 +25,7 @@ void add(inout Moments m, float w, vec4 a, vec4 b, vec3 y) {
 }
 // The light where all regressors but the constant are 0: normal equations, half of the unknowns eliminated.
 vec3 solve(Moments m) {
-  float ridge = k_filter_ridge * m.aa[0][0];
+  float ridge = (is_smooth() ? k_filter_ridge_smooth : k_filter_ridge) * m.aa[0][0];
   m.aa[1][1] += ridge;
   m.aa[2][2] += ridge;
   m.aa[3][3] += k_filter_ridge_albedo * m.aa[0][0];
@@ -36,9 +39,10 @@ vec3 solve(Moments m) {
 }
 
 float closeness(vec3 a, vec3 b, float va, float vb) {
+  float strength = push.component == 0u ? k_filter_strength_direct : k_filter_strength;
   vec3 d = a - b;
   float tolerance = square(k_filter_equal) * max(dot(a, a), dot(b, b));
-  float distance = (dot(d, d) - va - min(va, vb)) / (square(k_filter_strength) * (va + vb) + tolerance + 1e-20);
+  float distance = (dot(d, d) - va - min(va, vb)) / (square(strength) * (va + vb) + tolerance + 1e-20);
   return exp2(-max(distance, 0.0));
 }
 
@@ -53,6 +57,7 @@ void main() {
   Moments even, odd;
   even.aa = even.ab = even.bb = odd.aa = odd.ab = odd.bb = mat4(0.0);
   even.ya = even.yb = odd.ya = odd.yb = mat3x4(0.0);
+  vec2 most = vec2(0.0);  // weight of a neighbour, even and odd
   float z = max(window.surface.depth, 1e-20);
   for (int y = -k_reach; y <= k_reach; ++y)
     for (int x = -k_reach; x <= k_reach; ++x) {
@@ -63,14 +68,24 @@ void main() {
       FilterLight light = filter_light(texelFetch(filter_data, there)), g = filter_light(texelFetch(filter_guides, there));
       float alike = inside ? filter_alike(window.surface, s, vec2(step), window.slope) : 0.0;
       // Almost similar surfaces count where there are no similar ones.
-      alike = inside ? max(alike, k_filter_unlike * pow(alike, 0.05)) : 0.0;
+      alike = inside ? max(alike, k_filter_unlike * max(pow(alike, 0.05), is_smooth() ? k_filter_least_alike : 0.0)) : 0.0;
       float v = square(g.deviation) + square(g.in_both);
       float by_odd = alike * closeness(guide.odd, g.odd, variance, v), by_even = alike * closeness(guide.even, g.even, variance, v);
       vec4 a = vec4(1.0, vec2(x, y) / float(k_reach), luminance(window.surface.albedo) / luminance(s.albedo) - 1.0);
       vec4 b = vec4(s.normal - window.surface.normal, (s.depth - window.surface.depth) / (0.1 * z));
       if (s.covered == 0.0 || window.surface.covered == 0.0) b = vec4(0.0);
+      if (x == 0 && y == 0) continue;
       add(even, by_odd, a, b, light.even);
       add(odd, by_even, a, b, light.odd);
+      most = max(most, vec2(by_odd, by_even));
     }
+  // In smooth light the pixel itself has the weight of its most similar neighbour, and more if its noise is far below the light.
+  // A pixel unlike all others would keep its noise if its own weight were 1.
+  FilterLight own = filter_light(texelFetch(filter_data, int(pixel)));
+  float signal = 0.5 * (dot(guide.even, guide.even) + dot(guide.odd, guide.odd));
+  float certain = is_smooth() ? signal / (signal + k_filter_certain * square(own.deviation) + 1e-20) : 1.0;
+  vec2 weight = mix(max(most, vec2(k_filter_least_own)), vec2(1.0), certain);
+  add(even, weight.x, vec4(1.0, vec3(0.0)), vec4(0.0), own.even);
+  add(odd, weight.y, vec4(1.0, vec3(0.0)), vec4(0.0), own.odd);
   fitted[pixel] = filter_texel(FilterLight(max(solve(even), vec3(0.0)), max(solve(odd), vec3(0.0)), 0.0, 0.0));
 }
