@@ -40,8 +40,8 @@ class DraftPlan {
   /// A first preview sample comes at once, then a few more, because the picture's first samples fill it from
   /// one side to the other. While waiting, the preview is refined: two fine samples at once, then most of the
   /// time until `error`, estimated for the shown picture, suffices to judge a room, for some seconds at most;
-  /// then a third of the time, so that the picture gets better until it is replaced. `sight`: the visible surfaces are not known yet; the
-  /// first preview sample does not wait for them.
+  /// then a third of the time, so that the picture gets better until it is replaced. `sight`: the visible
+  /// surfaces are not known yet; the first preview sample does not wait for them.
   Next next(bool preparing, bool filled, bool sight = false, std::optional<double> error = {}) const {
     if (filled) return Next::nothing;
     const bool coarse = !fine_first_ || !preparing;
