@@ -32,6 +32,7 @@
 #include "session/lights_view.h"
 #include "session/relight.h"
 #include "session/sampling.h"
+#include "session/window_filter.h"
 #include "session/world.h"
 #include "stats/forecast.h"
 #include "stats/ledger.h"
@@ -200,11 +201,10 @@ class Renderer {
   const Filtered& filter();
   /// Result of filter() for the present picture; null: none.
   const Filtered* filtered() const;
-  /// True if the next step() filters the picture for the window (RendererOptions::interactive): after some
-  /// samples, again after twice as many, and at the end. Sampling waits meanwhile.
+  /// True if the next step() filters the picture for the window (WindowFilter).
   bool filter_due() const;
   /// True if shown_picture() has a new filtered picture since the last call.
-  bool filter_news() { return std::exchange(filter_news_, false); }
+  bool filter_news() { return window_filter_ && window_filter_->news(); }
   /// Writes film_image() as EXR, or the picture with exposure and tone curve as PNG; `as_shown`: including
   /// the preview's filter, if on.
   void save(const std::filesystem::path& file, bool as_shown = false);
@@ -317,9 +317,7 @@ class Renderer {
   std::vector<uint8_t> picture_of(const Filtered& filtered, const film::View& view,
                                   const std::function<bool()>& cancel);
   FilterJob filter_job() const;
-  /// One work item of the window's filtered picture. Disabled if memory does not suffice.
-  void filter_piece(const std::function<bool()>& cancel);
-  void judge_filtered();
+  WindowFilter::Progress filter_progress() const;
   /// The window's filtered picture, if that view shows it; else null.
   const Filtered* shown_filtered(const film::View& view) const;
   void forget_filtered();
@@ -373,18 +371,11 @@ class Renderer {
   std::unique_ptr<Engine> engine_;              ///< null before the first scene; destroyed before the world
   KeptSolvers kept_;
   std::unique_ptr<film::Film> film_, coarse_;
-  std::optional<Filtered> filtered_;              ///< by filter()
-  std::unique_ptr<PictureFilter> window_filter_;  ///< made at the first use
-  std::optional<Filtered> shown_filtered_;        ///< its latest result for this picture
-  bool filter_fails_ = false, filter_news_ = false;
-  uint64_t filtered_paths_ = 0;  ///< of the latest result, shown or not; 0: none
-  uint64_t judged_paths_ = 0;    ///< at the latest error estimate of shown_filtered_
-  double filter_s_ = 0,
-         filter_piece_s_ = 0;                ///< filtering time: of the latest result, and of the current one
-  double filtered_at_s_ = 0;                 ///< render_s_ then
-  std::unique_ptr<Display> display_;         ///< null in batch
-  std::unique_ptr<LightsView> lights_view_;  ///< null until it is shown
-  std::unique_ptr<overlay::Sheet> sheet_;    ///< null until something is drawn
+  std::optional<Filtered> filtered_;             ///< by filter()
+  std::unique_ptr<WindowFilter> window_filter_;  ///< null in batch
+  std::unique_ptr<Display> display_;             ///< null in batch
+  std::unique_ptr<LightsView> lights_view_;      ///< null until it is shown
+  std::unique_ptr<overlay::Sheet> sheet_;        ///< null until something is drawn
   uint32_t window_scale_ = 1;
   bool waits_for_overlay_ = false;  ///< pictures wait for the surfaces of overlays
   bool overlay_fails_ = false;      ///< no memory for these

@@ -1,25 +1,12 @@
 // Filtered pictures: a finished one on request, and the window's between its samples.
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
-#include "base/log.h"
 #include "session/renderer.h"
 
 namespace lucerna::session {
 
 namespace {
-
-// Samples of every pixel before the window's picture is first filtered; before that it shows a preview.
-constexpr uint32_t k_first_samples = 8;
-// The window's picture is filtered again after this factor in samples, and this factor of the filtering time
-// in tracing time.
-constexpr uint64_t k_more_samples = 2;
-constexpr double k_more_seconds = 3;
-// Growth of the number of samples after which the filtered picture's error is estimated again.
-constexpr double k_more_to_judge = 1.2;
-// Share of light from before an edit from which on a preview may be kept in place of a filtered picture.
-constexpr double k_some_stale = 0.05;
 
 /// Errors of what tiles look up. All samples share them, so samples cannot measure them.
 film::ShownError lookup_errors(const std::vector<film::TileError>& tiles) {
@@ -62,68 +49,27 @@ FilterJob Renderer::filter_job() const {
 
 const Filtered* Renderer::shown_filtered(const film::View& v) const {
   const bool shows =
-      shown_filtered_ && v.layer < shared::k_layer_albedo && settings_.text("preview.filter") == "auto";
-  return shows ? &*shown_filtered_ : nullptr;
+      window_filter_ && v.layer < shared::k_layer_albedo && settings_.text("preview.filter") == "auto";
+  return shows ? window_filter_->result() : nullptr;
+}
+
+WindowFilter::Progress Renderer::filter_progress() const {
+  return {.samples = samples(),
+          .paths = stats().paths,
+          .render_s = render_s_,
+          .done = done(),
+          .prepares = preparing() || engine_->learns(samples())};
 }
 
 bool Renderer::filter_due() const {
-  if (!engine_ || !film_ || !display_ || filter_fails_ || mix_pending_ ||
-      view().layer >= shared::k_layer_albedo || settings_.text("preview.filter") != "auto" ||
-      !film_->fits_storage_buffers())
-    return false;
-  if (window_filter_ && window_filter_->working()) return true;
-  const uint64_t paths = stats().paths;
-  if (samples() < 2 || filtered_paths_ == paths) return false;
-  if (done()) return true;
-  if (preparing() || engine_->learns(samples())) return false;
-  return filtered_paths_ > 0 ? paths >= k_more_samples * filtered_paths_ &&
-                                   render_s_ - filtered_at_s_ >= k_more_seconds * filter_s_
-                             : samples() >= k_first_samples;
-}
-
-void Renderer::filter_piece(const std::function<bool()>& cancel) {
-  const Timer timer;
-  try {
-    if (!window_filter_) window_filter_ = std::make_unique<PictureFilter>(*device_, *compiler_);
-    if (!window_filter_->working()) {
-      window_filter_->begin(filter_job());
-      filter_piece_s_ = 0;
-    }
-    window_filter_->step(*engine_, picture_view(), display_->sight(), cancel);
-  } catch (const Error& e) {
-    log::warning("{}; the window shows pictures with their noise", e.what());
-    filter_fails_ = true;
-    return;
-  }
-  filter_piece_s_ += timer.seconds();
-  if (window_filter_->working()) return;
-  Filtered next = window_filter_->take();
-  filter_s_ = filter_piece_s_, filtered_at_s_ = render_s_;
-  filtered_paths_ = judged_paths_ = next.paths;
-  // Light from before an edit may be better than what few samples can show.
-  const film::PreviewShares preview = shown_filtered_ ? film::PreviewShares{} : display_->shares();
-  engine_->wavefront().uncounted(
-      [&] { display_->show_filtered(engine_->wavefront().stream(), *film_, next.error, view()); });
-  const bool worse = preview.stale > k_some_stale && preview.error &&
-                     display_->filtered_error()->median > preview.error->median;
-  if (worse && !done()) return;
-  shown_filtered_ = std::move(next);
-  filter_news_ = true;
-}
-
-void Renderer::judge_filtered() {
-  if (!shown_filtered_ || !display_ || mix_pending_) return;
-  const double pixels = double(film_->width()) * film_->height(), paths = double(stats().paths);
-  if (paths < k_more_to_judge * double(judged_paths_) || paths < double(judged_paths_) + pixels) return;
-  engine_->wavefront().uncounted([&] { display_->judge_filtered(engine_->wavefront().stream(), *film_); });
-  judged_paths_ = stats().paths;
+  return engine_ && film_ && window_filter_ && !mix_pending_ && view().layer < shared::k_layer_albedo &&
+         settings_.text("preview.filter") == "auto" && film_->fits_storage_buffers() &&
+         window_filter_->due(filter_progress());
 }
 
 void Renderer::forget_filtered() {
   filtered_.reset();
-  shown_filtered_.reset();
-  filtered_paths_ = 0;
-  if (window_filter_) window_filter_->stop();
+  if (window_filter_) window_filter_->forget();
 }
 
 film::PreviewShares Renderer::preview_shares() const {
