@@ -12,6 +12,7 @@ layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
 const float k_far = 1e8;       // where there is no surface
 const float k_off = 0.02;      // tolerance of the distance from a plane, over the depth: depths are means over a pixel
 const float k_least = 0.02;    // least weight of pixels of the same place
+const int k_around = 3;        // pixels to search where there are none: pixels at borders show two surfaces
 
 // A point relative to the present camera, from its position in a picture of that camera (-1..1) and its depth.
 vec3 point_at(PreviewCamera camera, bool parallel, vec2 p, float depth) {
@@ -19,6 +20,27 @@ vec3 point_at(PreviewCamera camera, bool parallel, vec2 p, float depth) {
   return camera.origin - push.now.origin + (parallel ? ray + depth * camera.forward : depth * (ray + camera.forward));
 }
 vec2 position(vec2 pixel, vec2 size) { return vec2(2.0, -2.0) * pixel / size + vec2(-1.0, 1.0); }
+
+PreviewLight light;
+float weights = 0.0;
+
+// Adds a pixel of the previous picture, as far as it shows the surface `here` at `point`.
+void add(PreviewSurface here, vec3 point, float far, ivec2 at, float weight) {
+  ivec2 size = ivec2(push.width, push.height);
+  if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) return;
+  int pixel = at.y * size.x + at.x;
+  PreviewSurface was = preview_surface(texelFetch(from_surfaces, pixel));
+  PreviewLight l = preview_light(from_texels, pixel);
+  if (was.depth < 0.0 || !preview_lit(l, was)) return;
+  // A film's picture does not say which surfaces emit.
+  was.emits = here.emits;
+  vec3 offset = point_at(push.before, (push.orthographic & 1u) != 0u, position(vec2(at) + 0.5, vec2(size)), was.depth) - point;
+  float w = weight * preview_alike(here, was, offset, k_off * far);
+  vec3 modulation = preview_modulation(was);
+  for (uint c = 0u; c < k_component_count; ++c)
+    light.of[c] += w * vec4(l.of[c].rgb / modulation, max(l.of[c].w, 0.0) / luminance(modulation));
+  weights += w;
+}
 
 void main() {
   uint index = global_index();
@@ -33,30 +55,24 @@ void main() {
   vec2 q = ratio * vec2(dot(from_before, push.before.right) / dot(push.before.right, push.before.right),
                         dot(from_before, push.before.up) / dot(push.before.up, push.before.up));
   vec2 size = vec2(push.width, push.height), there = (q * vec2(0.5, -0.5) + 0.5) * size - 0.5;
-  PreviewLight light;
   for (uint c = 0u; c < k_component_count; ++c) light.of[c] = vec4(0.0);
-  float weights = 0.0;
   bool visible = here.depth >= 0.0 && depth > 0.0 && all(greaterThan(there, vec2(-1.0))) && all(lessThan(there, size));
   ivec2 base = ivec2(floor(there));
   vec2 f = there - vec2(base);
-  vec3 m = preview_modulation(here);
   for (int k = 0; visible && k < 4; ++k) {
-    ivec2 corner = ivec2(k & 1, k >> 1), at = base + corner;
-    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(size)))) continue;
-    int pixel = at.y * int(push.width) + at.x;
-    PreviewSurface was = preview_surface(texelFetch(from_surfaces, pixel));
-    PreviewLight l = preview_light(from_texels, pixel);
-    if (was.depth < 0.0 || !preview_lit(l, was)) continue;
-    // A film's picture does not say which surfaces emit.
-    was.emits = here.emits;
-    vec3 offset = point_at(push.before, parallel_before, position(vec2(at) + 0.5, size), was.depth) - point;
+    ivec2 corner = ivec2(k & 1, k >> 1);
     vec2 g = mix(1.0 - f, f, vec2(corner));
-    float w = (g.x * g.y + 1e-3) * preview_alike(here, was, offset, k_off * far);
-    vec3 modulation = preview_modulation(was);
-    for (uint c = 0u; c < k_component_count; ++c)
-      light.of[c] += w * vec4(l.of[c].rgb / modulation, max(l.of[c].w, 0.0) / luminance(modulation));
-    weights += w;
+    add(here, point, far, base + corner, g.x * g.y + 1e-3);
   }
+  if (visible && weights <= k_least) {
+    const int across = 2 * k_around + 1;
+    for (int k = 0; k < across * across; ++k) {
+      ivec2 at = ivec2(round(there)) + ivec2(k % across, k / across) - k_around;
+      vec2 away = vec2(at) - there;
+      add(here, point, far, at, exp2(-0.5 * dot(away, away)));
+    }
+  }
+  vec3 m = preview_modulation(here);
   bool known = weights > k_least;
   float inverse = 1.0 / max(weights, 1e-20);
   for (uint c = 0u; c < k_component_count; ++c)
