@@ -12,7 +12,8 @@ layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
 const float k_far = 1e8;       // where there is no surface
 const float k_off = 0.02;      // tolerance of the distance from a plane, over the depth: depths are means over a pixel
 const float k_least = 0.02;    // least weight of pixels of the same place
-const int k_around = 3;        // pixels to search where there are none: pixels at borders show two surfaces
+const float k_negligible = 1e-4;
+const int k_around = 2;        // pixels to search where there are none: pixels at borders show two surfaces
 
 // A point relative to the present camera, from its position in a picture of that camera (-1..1) and its depth.
 vec3 point_at(PreviewCamera camera, bool parallel, vec2 p, float depth) {
@@ -30,12 +31,14 @@ void add(PreviewSurface here, vec3 point, float far, ivec2 at, float weight) {
   if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) return;
   int pixel = at.y * size.x + at.x;
   PreviewSurface was = preview_surface(texelFetch(from_surfaces, pixel));
-  PreviewLight l = preview_light(from_texels, pixel);
-  if (was.depth < 0.0 || !preview_lit(l, was)) return;
+  if (was.depth < 0.0) return;
   // A film's picture does not say which surfaces emit.
   was.emits = here.emits;
   vec3 offset = point_at(push.before, (push.orthographic & 1u) != 0u, position(vec2(at) + 0.5, vec2(size)), was.depth) - point;
   float w = weight * preview_alike(here, was, offset, k_off * far);
+  if (w < k_negligible) return;
+  PreviewLight l = preview_light(from_texels, pixel);
+  if (!preview_lit(l, was)) return;
   vec3 modulation = preview_modulation(was);
   for (uint c = 0u; c < k_component_count; ++c)
     light.of[c] += w * vec4(l.of[c].rgb / modulation, max(l.of[c].w, 0.0) / luminance(modulation));
