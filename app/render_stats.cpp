@@ -57,13 +57,17 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   return j;
 }
 
+double filtered_error(const film::ImageError& samples, const film::FilterError& filter) {
+  return error_sum(filter.relative(), samples.relative_records(), samples.relative_interpolation());
+}
+
 /// Errors of the filtered picture: its noise and bias, and the error of its lookups.
 nlohmann::ordered_json make_filtered(session::Renderer& r, const session::Filtered& filtered) {
   const film::FilterError& f = filtered.error;
   const film::ImageError samples = r.image_error();
   nlohmann::ordered_json j;
   j["rms"] = error_sum(f.rms, samples.records_rms, samples.interpolation_rms);
-  j["of_mean"] = filtered_error(r, filtered);
+  j["of_mean"] = filtered_error(samples, f);
   j["filter"] = {{"rms", f.rms}, {"of_mean", f.relative()}};
   j["filter"]["tile_median"] = f.tile_median;
   j["filter"]["tile_worst_decile"] = f.tile_worst_tenth;
@@ -168,8 +172,7 @@ nlohmann::ordered_json make_forecast(const stats::Ledger& ledger) {
 }  // namespace
 
 double filtered_error(session::Renderer& r, const session::Filtered& filtered) {
-  const film::ImageError samples = r.image_error();
-  return error_sum(filtered.error.relative(), samples.relative_records(), samples.relative_interpolation());
+  return filtered_error(r.image_error(), filtered.error);
 }
 
 void report_unreached(const schedule::AdaptiveSchedule& s, const std::string& advice) {

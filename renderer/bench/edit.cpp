@@ -56,10 +56,13 @@ std::optional<uint32_t> brightest_emitter(const Scene& s) {
       s, [](const scene::Material& x) { return x.unlit ? 0.0 : double(luminance(x.emission)); });
 }
 
+/// Fixed, so that the amounts of a seed stay the same when there are more edits.
+constexpr uint64_t k_draws_per_seed = 8;
+
 /// Amounts of edits.
 class Draw {
  public:
-  Draw(Edit edit, uint64_t seed) : fixed_(seed == 0), bits_(seed * 8 + size_t(edit)) {}
+  Draw(Edit edit, uint64_t seed) : fixed_(seed == 0), bits_(seed * k_draws_per_seed + size_t(edit)) {}
 
   /// In lo..hi, or `usual` for seed 0.
   float between(float lo, float hi, float usual) {

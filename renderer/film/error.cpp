@@ -222,9 +222,7 @@ void mark_heavy_tails(std::span<TileError> tiles, uint32_t across, double lumina
     }
 }
 
-namespace {
-template <class Of>
-TileSpread spread_of(std::span<const TileError> tiles, const Of& of) {
+TileSpread tile_spread(std::span<const TileError> tiles, const std::function<double(const TileError&)>& of) {
   TileSpread spread;
   if (tiles.empty()) return spread;
   std::vector<double> sorted;
@@ -235,15 +233,6 @@ TileSpread spread_of(std::span<const TileError> tiles, const Of& of) {
   spread.worst_tenth = sorted[sorted.size() * 9 / 10];
   spread.worst = sorted.back();
   return spread;
-}
-}  // namespace
-
-TileSpread tile_spread(std::span<const TileError> tiles) {
-  return spread_of(tiles, [](const TileError& t) { return t.relative_sum(); });
-}
-
-TileSpread tile_spread(std::span<const TileError> tiles, double TileError::*part) {
-  return spread_of(tiles, [part](const TileError& t) { return t.*part; });
 }
 
 ImageError image_error(std::span<const shared::BlockError> blocks) {

@@ -22,6 +22,7 @@
 // tile as 1, the picture by the share of such pixels.
 #include <array>
 #include <cmath>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -125,9 +126,9 @@ struct TileSpread {
   double worst = 0;
   size_t heavy_tailed = 0;  ///< number of marked tiles
 };
-/// Distribution of TileError::relative_sum(), or of one of its parts; all 0 without tiles.
-TileSpread tile_spread(std::span<const TileError> tiles);
-TileSpread tile_spread(std::span<const TileError> tiles, double TileError::*part);
+/// Distribution of TileError::relative_sum(), or of one of its parts or a function; all 0 without tiles.
+TileSpread tile_spread(std::span<const TileError> tiles,
+                       const std::function<double(const TileError&)>& of = &TileError::relative_sum);
 
 /// Error of a whole picture; [0]: sum of the components, [1..4]: components.
 struct ImageError {

@@ -239,8 +239,12 @@ void Preview::warm(gpu::Stream& stream, const Film& film) {
 
 void Preview::recall(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera) {
   show(stream, film, history(stream, camera),
-       {width_, height_, 0, shown_components(view), view.curve, history_.scale_for(view), 0, 0, 0,
-        view.tint_former});
+       {.width = width_,
+        .height = height_,
+        .show = shown_components(view),
+        .curve = view.curve,
+        .history_scale = history_.scale_for(view),
+        .tint = view.tint_former});
 }
 
 void Preview::recall_on(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera,
@@ -250,8 +254,13 @@ void Preview::recall_on(gpu::Stream& stream, const Film& film, const View& view,
   gpu::make_texel_room(device_, draft_.surfaces, "preview draft surfaces", count * 16);
   fetch(stream, camera, seen, width, height, draft_, true);
   show(stream, film, draft_,
-       {width, height, 0, shown_components(view), view.curve, history_.scale_for(view), 1, 0, 0,
-        view.tint_former});
+       {.width = width,
+        .height = height,
+        .show = shown_components(view),
+        .curve = view.curve,
+        .history_scale = history_.scale_for(view),
+        .seen = 1,
+        .tint = view.tint_former});
 }
 
 void Preview::take(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera,

@@ -1,5 +1,4 @@
 // Filtered pictures: a finished one on request, and the window's between its samples.
-#include <algorithm>
 #include <cmath>
 
 #include "session/renderer.h"
@@ -10,12 +9,10 @@ namespace {
 
 /// Errors of what tiles look up. All samples share them, so samples cannot measure them.
 film::ShownError lookup_errors(const std::vector<film::TileError>& tiles) {
-  std::vector<double> errors;
-  for (const film::TileError& t : tiles)
-    errors.push_back(std::hypot(double(t.relative_records), double(t.relative_interpolation)));
-  if (errors.empty()) return {};
-  std::sort(errors.begin(), errors.end());
-  return {errors[errors.size() / 2], errors[errors.size() * 9 / 10]};
+  const film::TileSpread spread = film::tile_spread(tiles, [](const film::TileError& t) {
+    return std::hypot(t.relative_records, t.relative_interpolation);
+  });
+  return {spread.median, spread.worst_tenth};
 }
 
 }  // namespace
@@ -40,10 +37,9 @@ const Filtered* Renderer::filtered() const {
 }
 
 FilterJob Renderer::filter_job() const {
-  constexpr uint32_t k_by_way = 1u << 1 | 1u << 2;  // secondary and tertiary: the components of records
   uint32_t looked_up = 0;
-  for (const auto& solver : engine_->solvers())
-    looked_up |= engine_->plan().components_of(solver->info()) & k_by_way;
+  for (const auto& solver : engine_->solvers()) looked_up |= engine_->plan().components_of(solver->info());
+  looked_up &= paths::k_secondary_bit | paths::k_tertiary_bit;  // the components of records
   return {*film_, tile_side(), seen_range().floor, stats().paths, looked_up};
 }
 

@@ -75,6 +75,23 @@ vec4 preview_texel(PreviewSurface s) {
 // Whether a pixel has information about the light: it was shown or has samples.
 bool preview_lit(PreviewLight l, PreviewSurface s) { return l.of[0].w >= 0.0 || s.samples > 0.0; }
 
+// Centre of a pixel in a picture, -1..1 to the right and up.
+vec2 preview_position(uvec2 pixel, vec2 size) { return vec2(2.0, -2.0) * (vec2(pixel) + 0.5) / size + vec2(-1.0, 1.0); }
+// The point at that position and depth, from the camera's origin; `parallel`: orthographic.
+vec3 preview_point(PreviewCamera camera, bool parallel, vec2 position, float depth) {
+  vec3 ray = position.x * camera.right + position.y * camera.up;
+  return parallel ? ray + depth * camera.forward : depth * (ray + camera.forward);
+}
+// Where a point from the camera's origin is in a picture [pixels], if its depth is above 0.
+vec2 preview_projection(PreviewCamera camera, bool parallel, vec3 point, vec2 size, out float depth) {
+  depth = dot(point, camera.forward);
+  float ratio = parallel ? 1.0 : 1.0 / depth;
+  vec2 q = ratio * vec2(dot(point, camera.right) / dot(camera.right, camera.right), dot(point, camera.up) / dot(camera.up, camera.up));
+  return (q * vec2(0.5, -0.5) + 0.5) * size;
+}
+// Depth of a point where there is no surface.
+const float k_preview_far = 1e8;
+
 // Change of light by component, interpolated between the centres of blocks (film/preview_change.comp); 1 without blocks.
 vec4 preview_change(samplerBuffer ratios, uvec2 blocks, vec2 cell) {
   if (blocks.x == 0u) return vec4(1.0);

@@ -9,23 +9,15 @@ uniform samplerBuffer from_texels, from_surfaces, seen_surfaces;
 layout(scalar) writeonly buffer Packed { vec4 packed[]; };
 layout(scalar) writeonly buffer PackedSurfaces { vec4 packed_surfaces[]; };
 
-const float k_far = 1e8;       // where there is no surface
 const float k_off = 0.02;      // tolerance of the distance from a plane, over the depth: depths are means over a pixel
 const float k_least = 0.02;    // least weight of pixels of the same place
 const float k_negligible = 1e-4;
 const int k_around = 2;        // pixels to search where there are none: pixels at borders show two surfaces
 
-// A point relative to the present camera, from its position in a picture of that camera (-1..1) and its depth.
-vec3 point_at(PreviewCamera camera, bool parallel, vec2 p, float depth) {
-  vec3 ray = p.x * camera.right + p.y * camera.up;
-  return camera.origin - push.now.origin + (parallel ? ray + depth * camera.forward : depth * (ray + camera.forward));
-}
-vec2 position(vec2 pixel, vec2 size) { return vec2(2.0, -2.0) * pixel / size + vec2(-1.0, 1.0); }
-
 PreviewLight light;
 float weights = 0.0;
 
-// Adds a pixel of the previous picture, as far as it shows the surface `here` at `point`.
+// Adds a pixel of the previous picture, as far as it shows the surface `here` at `point`, from that picture's camera.
 void add(PreviewSurface here, vec3 point, float far, ivec2 at, float weight) {
   ivec2 size = ivec2(push.width, push.height);
   if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) return;
@@ -34,7 +26,8 @@ void add(PreviewSurface here, vec3 point, float far, ivec2 at, float weight) {
   if (was.depth < 0.0) return;
   // A film's picture does not say which surfaces emit.
   was.emits = here.emits;
-  vec3 offset = point_at(push.before, (push.orthographic & 1u) != 0u, position(vec2(at) + 0.5, vec2(size)), was.depth) - point;
+  vec2 p = preview_position(uvec2(at), vec2(size));
+  vec3 offset = preview_point(push.before, (push.orthographic & 1u) != 0u, p, was.depth) - point;
   float w = weight * preview_alike(here, was, offset, k_off * far);
   if (w < k_negligible) return;
   PreviewLight l = preview_light(from_texels, pixel);
@@ -51,13 +44,10 @@ void main() {
   bool parallel_before = (push.orthographic & 1u) != 0u, parallel_now = (push.orthographic & 2u) != 0u;
   vec4 texel = texelFetch(seen_surfaces, int(index));
   PreviewSurface here = preview_surface(texel);
-  vec2 p = position(vec2(index % push.across, index / push.across) + 0.5, vec2(push.across, push.down));
-  float far = here.depth > 0.0 ? here.depth : k_far;
-  vec3 point = point_at(push.now, parallel_now, p, far), from_before = point + push.now.origin - push.before.origin;
-  float depth = dot(from_before, push.before.forward), ratio = parallel_before ? 1.0 : 1.0 / depth;
-  vec2 q = ratio * vec2(dot(from_before, push.before.right) / dot(push.before.right, push.before.right),
-                        dot(from_before, push.before.up) / dot(push.before.up, push.before.up));
-  vec2 size = vec2(push.width, push.height), there = (q * vec2(0.5, -0.5) + 0.5) * size - 0.5;
+  vec2 p = preview_position(uvec2(index % push.across, index / push.across), vec2(push.across, push.down));
+  float far = here.depth > 0.0 ? here.depth : k_preview_far, depth;
+  vec3 point = push.now.origin - push.before.origin + preview_point(push.now, parallel_now, p, far);
+  vec2 size = vec2(push.width, push.height), there = preview_projection(push.before, parallel_before, point, size, depth) - 0.5;
   for (uint c = 0u; c < k_component_count; ++c) light.of[c] = vec4(0.0);
   bool visible = here.depth >= 0.0 && depth > 0.0 && all(greaterThan(there, vec2(-1.0))) && all(lessThan(there, size));
   ivec2 base = ivec2(floor(there));

@@ -8,34 +8,25 @@ uniform samplerBuffer from_surfaces;
 layout(scalar) buffer NearestDepth { uint nearest_depth[]; };  // bits of a float above 0
 layout(scalar) buffer NearestPixel { uint nearest_pixel[]; };
 
-const float k_far = 1e8;  // where there is no surface
-
 const float k_widest = 4.0;   // pixels
 
 // Projection of a previous pixel: its centre [pixels], depth (0: outside) and width [pixels].
 vec2 moved(uint pixel, out float depth, out float width) {
   float from = texelFetch(from_surfaces, int(pixel)).x;
   if (from <= k_preview_about) from = k_preview_about - from;
-  vec2 p = vec2(2.0, -2.0) * (vec2(pixel % push.width, pixel / push.width) + 0.5) / vec2(push.width, push.height) +
-           vec2(-1.0, 1.0);
-  float far = from > 0.0 ? from : k_far;
-  vec3 ray = p.x * push.before.right + p.y * push.before.up;
-  bool parallel = (push.orthographic & 1u) != 0u;
-  vec3 point = push.before.origin - push.now.origin +
-               (parallel ? ray + far * push.before.forward : far * (ray + push.before.forward));
-  depth = dot(point, push.now.forward);
+  vec2 size = vec2(push.width, push.height), p = preview_position(uvec2(pixel % push.width, pixel / push.width), size);
+  float far = from > 0.0 ? from : k_preview_far;
+  bool parallel = (push.orthographic & 1u) != 0u, parallel_now = (push.orthographic & 2u) != 0u;
+  vec3 point = push.before.origin - push.now.origin + preview_point(push.before, parallel, p, far);
+  vec2 there = preview_projection(push.now, parallel_now, point, size, depth);
   width = 1.0;
   if (depth <= 0.0 || from < 0.0) {
     depth = 0.0;
     return vec2(0.0);
   }
-  bool parallel_now = (push.orthographic & 2u) != 0u;
-  float ratio = parallel_now ? 1.0 : 1.0 / depth;
-  vec2 q = ratio * vec2(dot(point, push.now.right) / dot(push.now.right, push.now.right),
-                        dot(point, push.now.up) / dot(push.now.up, push.now.up));
-  float size = length(push.before.up) * (parallel ? 1.0 : far), size_now = length(push.now.up) * (parallel_now ? 1.0 : depth);
-  width = clamp(size / size_now, 1.0, k_widest);
-  return (q * vec2(0.5, -0.5) + 0.5) * vec2(push.width, push.height);
+  float extent = length(push.before.up) * (parallel ? 1.0 : far), extent_now = length(push.now.up) * (parallel_now ? 1.0 : depth);
+  width = clamp(extent / extent_now, 1.0, k_widest);
+  return there;
 }
 
 void main() {
