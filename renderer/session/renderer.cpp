@@ -68,7 +68,8 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
   rest();
   // Everything that can fail happens before the old scene is released.
   scene::check_range(camera);
-  const plan::Plan plan = plan::make_plan(settings);
+  plan::SceneFacts facts = plan::facts_of(*scene);
+  const plan::Plan plan = plan::make_plan(facts, settings);
   Relight relight = make_relight(plan, settings, scene, width_, height_);
   World world = make_world(*device_, std::move(scene), relight.lit, settings.text("tracer"),
                            wanted_separation(plan, settings, relight), progress);
@@ -84,9 +85,15 @@ void Renderer::install(std::shared_ptr<const scene::Scene> scene, plan::Settings
   world_ = std::move(world);
   settings_ = std::move(settings);
   camera_ = std::move(camera);
+  facts_ = std::move(facts), findings_.reset(), pilot_.reset();
   take(std::move(relight));
   notify_settings_changed();
   restart(changes);
+}
+
+const std::array<plan::Choice, paths::k_component_count>& Renderer::choices() const {
+  static const std::array<plan::Choice, paths::k_component_count> none{};
+  return engine_ ? engine_->plan().choices : none;
 }
 
 Relight Renderer::make_relight(const plan::Plan& plan, const plan::Settings& settings,
@@ -410,7 +417,8 @@ void Renderer::apply_settings() {
 }
 
 bool Renderer::apply_plan(scene::Changes& changes) {
-  const plan::Plan plan = plan::make_plan(settings_);
+  const plan::Plan plan =
+      plan::make_plan(facts_, settings_, findings_ ? &*findings_ : nullptr, seconds_limit_);
   Relight relight = make_relight(plan, settings_, world_.scene, width_, height_);
   const upload::LightSeparation separation = wanted_separation(plan, settings_, relight);
   // If groups are not separate, a mix is an edit of all lamps.

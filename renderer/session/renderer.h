@@ -30,6 +30,7 @@
 #include "session/kept_solvers.h"
 #include "session/lights_edit.h"
 #include "session/lights_view.h"
+#include "session/pilot.h"
 #include "session/relight.h"
 #include "session/sampling.h"
 #include "session/window_filter.h"
@@ -134,6 +135,15 @@ class Renderer {
   /// Errors not contained in these, which only estimate noise: plan::Plan::bias of the current settings;
   /// nullopt before the first scene.
   std::optional<double> bias(size_t component) const;
+  /// What the scene calls for.
+  const plan::SceneFacts& facts() const { return facts_; }
+  /// Solver of each component, and why it was chosen if the setting is auto; empty before the first scene.
+  const std::array<plan::Choice, paths::k_component_count>& choices() const;
+  /// The pilot's findings, once solvers have been chosen by it.
+  const std::optional<solvers::Findings>& findings() const { return findings_; }
+  /// Rendering will end after this many seconds: solvers with the setting auto are chosen for that. Call
+  /// before the first step().
+  void expect_seconds(std::optional<double> seconds) { seconds_limit_ = seconds; }
   /// Runs one work item; cancellable between bounces. False if there is nothing to do, if cancelled, or if
   /// preparation waits.
   bool step(const std::function<bool()>& cancel = {});
@@ -344,6 +354,8 @@ class Renderer {
   /// Error and everything stays unchanged.
   bool apply_plan(scene::Changes& changes);
   void notify_settings_changed();  ///< informs the solvers
+  /// Runs a part of the pilot, and then chooses the solvers. False if cancelled.
+  bool run_pilot(const std::function<bool()>& cancel);
   bool render_item(const std::function<bool()>& cancel);
   /// If refining lookup data reduces the picture's squared error more than as many samples: runs one work
   /// item of it. True if it did.
@@ -368,7 +380,11 @@ class Renderer {
   std::vector<vec3> mixed_;                         ///< weights of the last mix
   Timer since_mix_;
   std::shared_ptr<const scene::Scene> loaded_;  ///< as passed to set_scene()
-  std::unique_ptr<Engine> engine_;              ///< null before the first scene; destroyed before the world
+  plan::SceneFacts facts_;                      ///< of the scene as it was installed
+  std::unique_ptr<Pilot> pilot_;                ///< while it runs
+  std::optional<solvers::Findings> findings_;   ///< of this scene's pilot
+  std::optional<double> seconds_limit_;
+  std::unique_ptr<Engine> engine_;  ///< null before the first scene; destroyed before the world
   KeptSolvers kept_;
   std::unique_ptr<film::Film> film_, coarse_;
   std::optional<Filtered> filtered_;             ///< by filter()

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "base/log.h"
 #include "session/renderer.h"
 
 namespace lucerna::session {
@@ -19,7 +20,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   clock_.go();
   const Timer timer;
   engine_->begin_samples(picture_view());
-  const bool prepares = preparing(), learns = engine_->learns(samples());
+  const bool prepares = preparing() || engine_->plan().undecided, learns = engine_->learns(samples());
   const bool progress = render_item(cancel);
   if (window_filter_ && !mix_pending_) window_filter_->judge(*engine_, *display_, *film_, stats().paths);
   render_s_ += timer.seconds();
@@ -39,6 +40,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
 bool Renderer::render_item(const std::function<bool()>& cancel) {
   const PictureView view = picture_view();
   transport::Wavefront& wavefront = engine_->wavefront();
+  if (engine_->plan().undecided) return run_pilot(cancel);
   if (engine_->learns(samples())) return engine_->learn(view, cancel);
   if (solvers::Solver* next = engine_->unready()) {
     const bool rounds = engine_->in_rounds(), went = engine_->prepare(*next, view, cancel);
@@ -88,6 +90,35 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
   if (wavefront.run(item, *film_, cancel)) return true;
   sampling_.uniform() = before;
   return false;
+}
+
+bool Renderer::run_pilot(const std::function<bool()>& cancel) {
+  if (!pilot_) pilot_ = std::make_unique<Pilot>(*device_, *engine_, width_, height_);
+  if (!pilot_->step(*engine_, picture_view(), cancel)) return false;
+  if (!pilot_->done()) return true;
+  findings_ = pilot_->findings();
+  pilot_.reset();
+  const std::array<plan::Choice, 4> before = engine_->plan().choices;
+  scene::Changes changes;
+  try {
+    apply_plan(changes);
+  } catch (const Error& e) {
+    log::warning("components: paths compute what is chosen automatically: {}", e.what());
+    plan::Plan paths = engine_->plan();
+    paths.undecided = false;
+    engine_->set_plan(paths);
+  }
+  const std::array<plan::Choice, 4>& now = engine_->plan().choices;
+  for (size_t c = 0; c < now.size(); ++c) {
+    const std::string key = std::string("components.") + paths::k_component_names[c];
+    if (now[c].reason != before[c].reason) log::info("{}: {}: {}", key, now[c].solver, now[c].reason);
+    if (now[c].solver != before[c].solver) changes.settings.insert(key);
+  }
+  // Nothing but paths: the picture goes on as it was begun.
+  if (changes.settings.empty()) return true;
+  notify_settings_changed();
+  restart(changes);
+  return true;
 }
 
 std::optional<bool> Renderer::prepare_round(const schedule::WorkItem& item,
