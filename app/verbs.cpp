@@ -6,23 +6,8 @@
 #include "base/json_text.h"
 #include "film/io/compare.h"
 #include "gpu/device.h"
-#include "plan/facts_text.h"
-#include "scene/io/load.h"
 
 namespace lucerna::app {
-
-int info(const std::string& file, bool json, const scene::LoadOptions& scenes) {
-  const scene::Scene scene = scene::load(file, scenes);
-  const plan::SceneFacts facts = plan::facts_of(scene);
-  if (json) {
-    nlohmann::ordered_json all = scene::describe(scene);
-    all["effects"] = plan::effects_json(facts);
-    std::printf("%s\n", json_text(all, 2).c_str());
-  } else {
-    std::printf("%s%s", scene::describe_text(scene).c_str(), plan::effects_text(facts).c_str());
-  }
-  return 0;
-}
 
 int devices(bool json) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();

@@ -29,7 +29,15 @@ struct RenderArguments {
 };
 int render(const RenderArguments& arguments);
 
-int info(const std::string& scene, bool json, const scene::LoadOptions& scenes);
+struct InfoArguments {
+  std::string scene;
+  bool json = false;
+  bool pilot = false;  ///< runs the pilot that chooses solvers; needs a device. Below: for its picture
+  std::string size = "1280x720", camera, device;
+  std::vector<std::string> set;
+  scene::LoadOptions scenes;
+};
+int info(const InfoArguments& arguments);
 int devices(bool json);
 
 struct BenchRaysArguments {

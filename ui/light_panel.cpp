@@ -22,10 +22,13 @@ const char* meaning(int component) {
   return texts[component];
 }
 
-/// The meaning of a value of a component's setting: a solver's name, two joined by a plus, or off.
+/// The meaning of a value of a component's setting: a solver's name, two joined by a plus, auto, or off.
 std::string solver_help(int component, const std::string& value) {
   if (value == "off")
     return "Off: the component is missing; its paths are traced only where other components need them.";
+  if (value == plan::k_auto)
+    return "Auto: chosen once for the scene, by what it contains and by a short pilot of path tracing. Edits "
+           "do not change the choice; choosing another solver and then auto does.";
   const size_t plus = value.find('+');
   const solvers::SolverInfo* solver = solvers::find(value.substr(0, plus));
   std::string first = solver ? solver->help : "";
@@ -93,7 +96,9 @@ void component_row(Ui& ui, int c, float width) {
         option->help + (static_cast<size_t>(chosen) < helps.size() ? " " + helps[size_t(chosen)] : "");
     if (choice("##solver", "", option->choices, chosen, solver_width, helps))
       ui.act("set", key, option->choices[static_cast<size_t>(chosen)]);
-    tooltip(help);
+    tooltip(status && !status->reason.empty()
+                ? fmt::format("{}\n\nChosen: {}. {}.", help, status->solver, status->reason)
+                : help);
   }
   const float right = at.x + width;
   const bool known = status && !off && ui.open.snapshot->samples > 0;

@@ -17,6 +17,7 @@ using solvers::Findings, solvers::Prospect, solvers::SolverInfo;
 
 constexpr size_t k_count = paths::k_component_count;
 constexpr double k_least_sample = 0.1;  // of the cost of a path-traced sample
+constexpr double k_most_samples = 1e7;
 constexpr double k_never = std::numeric_limits<double>::max();
 
 std::string key_of(size_t component) {
@@ -55,16 +56,26 @@ struct Combination {
   std::vector<const SolverInfo*> solvers;
   Prospect sum{.sample = 1};
 
+  double sample_cost() const { return std::max(sum.sample, k_least_sample); }
+  /// Error as seen with that many samples.
+  double error(double samples) const {
+    return std::hypot(std::sqrt(sum.variance / samples), prepared_error(sum, samples)) + sum.floor;
+  }
   /// Squared error after that cost, k_never before the first sample.
   double squared_error(double cost) const {
-    const double samples = (cost - sum.preparation) / std::max(sum.sample, k_least_sample);
-    return samples >= 1 ? sum.variance / samples + sum.floor * sum.floor : k_never;
+    const double samples = (cost - sum.preparation) / sample_cost();
+    return samples >= 1 ? error(samples) * error(samples) : k_never;
   }
   /// Cost until the error is reached, k_never if it is not.
-  double cost(double error) const {
-    const double left = error * error - sum.floor * sum.floor;
-    if (!(left > 0)) return k_never;
-    return sum.preparation + std::max(sum.sample, k_least_sample) * std::max(sum.variance / left, 1.0);
+  double cost(double target) const {
+    double low = 1, high = k_most_samples;
+    if (error(high) > target) return k_never;
+    // The error falls with the samples.
+    while (high > 1.001 * low) {
+      const double middle = std::sqrt(low * high);
+      (error(middle) > target ? low : high) = middle;
+    }
+    return sum.preparation + sample_cost() * high;
   }
   double badness(const Goal& goal) const {
     return goal.error ? cost(*goal.error) : squared_error(goal.samples);
@@ -94,7 +105,9 @@ std::optional<Combination> combine(const Findings& findings, uint32_t decided, c
     all.sum.preparation += p->preparation;
     all.sum.sample += p->sample;
     all.sum.variance += p->variance;
-    all.sum.floor = std::hypot(all.sum.floor, p->floor);
+    if (p->prepared > all.sum.prepared) all.sum.refined = p->refined;
+    all.sum.prepared = std::hypot(all.sum.prepared, p->prepared);
+    all.sum.floor += p->floor;
   }
   return all;
 }
@@ -206,6 +219,30 @@ std::array<Choice, 4> choose(const SceneFacts& facts, const Settings& settings, 
       if ((slots[s].components >> c & 1u) != 0) choices[c] = choice;
   }
   return choices;
+}
+
+std::optional<double> predicted_cost(const Findings& findings, const std::array<Choice, 4>& choices,
+                                     double error) {
+  uint32_t traced = 0;
+  std::vector<Slot> slots;
+  std::vector<const SolverInfo*> by;
+  for (size_t c = 0; c < k_count; ++c) {
+    const SolverInfo* solver = solvers::find(choices[c].solver);
+    if (choices[c].solver == "off") continue;
+    if (!solver || (!solver->unbiased && !solver->prospect)) return std::nullopt;
+    const auto at = std::find(by.begin(), by.end(), solver);
+    if (solver->unbiased) {
+      traced |= 1u << c;
+    } else if (at != by.end()) {
+      slots[size_t(at - by.begin())].components |= 1u << c;
+    } else {
+      slots.push_back({.components = 1u << c});
+      by.push_back(solver);
+    }
+  }
+  const std::optional<Combination> all = combine(findings, traced, slots, by);
+  const double cost = all ? all->cost(error) : k_never;
+  return cost == k_never ? std::nullopt : std::optional(cost);
 }
 
 bool undecided(const SceneFacts& facts, const Settings& settings) {

@@ -4,9 +4,9 @@
 //
 // Every solver predicts a prospect (solvers/prospect.h): cost of preparation and samples, variance, and error
 // that samples do not reduce. Costs and variances of components add up, so the error of every combination
-// follows, for a given cost: error^2 = variance / samples + floor^2. The choice is the combination with the
-// least cost for the goal's error or, without one, with the least error for the goal's cost; paths unless
-// another combination is clearly ahead (k_clearly).
+// follows, for a given cost: (error - floor)^2 = variance / samples + prepared(samples)^2. The choice is the
+// combination with the least cost for the goal's error or, without one, with the least error for the goal's
+// cost; paths unless another combination is clearly ahead (k_clearly).
 #include <array>
 #include <optional>
 #include <string>
@@ -41,6 +41,11 @@ inline constexpr double k_clearly = 1.25;
 /// `findings`: null before the pilot: only facts decide, and undecided components are traced by paths.
 std::array<Choice, 4> choose(const SceneFacts& facts, const Settings& settings,
                              const solvers::Findings* findings, const Goal& goal);
+
+/// Cost until the error as seen is reached, in path-traced samples, with these choices (of choose());
+/// nullopt: it is not reached, or a solver states no prospect.
+std::optional<double> predicted_cost(const solvers::Findings& findings, const std::array<Choice, 4>& choices,
+                                     double error);
 
 /// True if a component's choice waits for findings.
 bool undecided(const SceneFacts& facts, const Settings& settings);

@@ -144,6 +144,8 @@ class Renderer {
   /// Rendering will end after this many seconds: solvers with the setting auto are chosen for that. Call
   /// before the first step().
   void expect_seconds(std::optional<double> seconds) { seconds_limit_ = seconds; }
+  /// True while a pilot must run before solvers are chosen (components.X=auto).
+  bool choosing() const { return engine_ && engine_->plan().undecided; }
   /// Runs one work item; cancellable between bounces. False if there is nothing to do, if cancelled, or if
   /// preparation waits.
   bool step(const std::function<bool()>& cancel = {});

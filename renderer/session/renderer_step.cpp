@@ -20,7 +20,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   clock_.go();
   const Timer timer;
   engine_->begin_samples(picture_view());
-  const bool prepares = preparing() || engine_->plan().undecided, learns = engine_->learns(samples());
+  const bool prepares = preparing() || choosing(), learns = engine_->learns(samples());
   const bool progress = render_item(cancel);
   if (window_filter_ && !mix_pending_) window_filter_->judge(*engine_, *display_, *film_, stats().paths);
   render_s_ += timer.seconds();
@@ -40,7 +40,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
 bool Renderer::render_item(const std::function<bool()>& cancel) {
   const PictureView view = picture_view();
   transport::Wavefront& wavefront = engine_->wavefront();
-  if (engine_->plan().undecided) return run_pilot(cancel);
+  if (choosing()) return run_pilot(cancel);
   if (engine_->learns(samples())) return engine_->learn(view, cancel);
   if (solvers::Solver* next = engine_->unready()) {
     const bool rounds = engine_->in_rounds(), went = engine_->prepare(*next, view, cancel);

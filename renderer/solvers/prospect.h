@@ -3,6 +3,7 @@
 // (components.X=auto, plan/choose.h). Costs are in samples: the cost of one path-traced sample of every
 // pixel.
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
@@ -24,8 +25,17 @@ struct Prospect {
   double preparation = 0;  ///< cost before the first sample
   double sample = 0;       ///< change of the cost of a sample; below 0: paths end sooner
   double variance = 0;     ///< of these components, as Findings::Component::variance
-  double floor = 0;        ///< error as seen that samples do not reduce, such as a bias
+  /// Error as seen of the prepared data, which all samples share. Refinement reduces it in the course of
+  /// `refined` samples and more: prepared_error().
+  double prepared = 0, refined = 1;
+  double floor = 0;  ///< error as seen that neither reduces: a bias
 };
+
+/// Prospect::prepared after that many samples: measured, its square falls a little slower than the samples
+/// grow, because rays go first where they help most.
+inline double prepared_error(const Prospect& p, double samples) {
+  return p.prepared * std::pow(1 + samples / p.refined, -0.4);
+}
 
 /// Prospect for these components (bits); nullopt: not suited.
 using PredictProspect = std::optional<Prospect> (*)(const Findings& findings, uint32_t components);

@@ -9,9 +9,10 @@ namespace lucerna::irradiance_cache {
 namespace {
 
 // Measured with the default settings in pictures of k_pixels pixels, on the program's interiors and others
-// (lucerna bench auto): cost of building, in samples; share of the interreflection's variance that lookups
-// leave; and the error of records and interpolation.
-constexpr double k_building = 90, k_pixels = 320 * 180, k_left = 0.02, k_floor = 0.06;
+// (lucerna bench auto). Cost of building, in samples; share of the interreflection's variance that lookups
+// leave; error of the records, and samples after which refinement has reduced it; error of interpolation.
+constexpr double k_pixels = 320 * 180;
+constexpr double k_building = 90, k_left = 0.02, k_records = 0.075, k_refined = 128, k_interpolation = 0.025;
 
 }  // namespace
 
@@ -21,10 +22,14 @@ std::optional<solvers::Prospect> prospect(const solvers::Findings& findings, uin
   double variance = 0;
   for (size_t c = 0; c < findings.components.size(); ++c)
     if ((components >> c & 1u) != 0) variance += findings.components[c].variance;
-  // Records are as far apart in pixels in a large picture as in a small one, up to their largest radius.
-  return solvers::Prospect{.preparation = k_building * std::sqrt(k_pixels / std::max(findings.pixels, 1.0)),
+  // In a large picture, records are as far apart in pixels, up to their largest radius: more of them, but
+  // fewer for each pixel, and less is interpolated between them.
+  const double size = std::sqrt(k_pixels / std::max(findings.pixels, 1.0));
+  return solvers::Prospect{.preparation = k_building * size,
                            .variance = k_left * variance,
-                           .floor = k_floor};
+                           .prepared = k_records,
+                           .refined = k_refined,
+                           .floor = k_interpolation * size};
 }
 
 }  // namespace lucerna::irradiance_cache
