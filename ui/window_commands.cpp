@@ -138,7 +138,8 @@ void add_frame_commands(Ui& ui, const Add& add) {
       false);
 
   add(
-      "window.welcome", "Shows the first steps.", {}, [&ui](const Arguments&) { ui.welcome = true; }, false);
+      "window.welcome", "Shows the first steps.", {}, [&ui](const Arguments&) { ui.cards.welcome = true; },
+      false);
 }
 
 /// The picture's size, and its marks.
@@ -200,8 +201,8 @@ void add_dialog_commands(Ui& ui, const Add& add) {
       [&ui](const Arguments&) {
         if (ui.dialog.purpose != Dialog::Purpose::none)
           ui.dialog = {};
-        else if (!ui.errors.empty())
-          ui.errors.pop_back();
+        else if (!ui.cards.errors.empty())
+          ui.cards.errors.pop_back();
       },
       false);
 }

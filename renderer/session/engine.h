@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "film/developer.h"
@@ -60,7 +61,7 @@ class Engine {
   /// True if kernels and solvers can be reused for another plan and these settings of the same world.
   bool serves(const plan::Plan& plan, const plan::Settings& settings, const World& world) const;
   /// Switches to a plan that it serves.
-  void set_plan(const plan::Plan& plan) { plan_ = plan; }
+  void set_plan(plan::Plan plan) { plan_ = std::move(plan); }
   const plan::Plan& plan() const { return plan_; }
   /// True if a solver of this engine took over the predecessor's work when the engine was made.
   bool took_up(const solvers::Solver& predecessor) const;
