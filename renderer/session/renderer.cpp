@@ -11,7 +11,6 @@
 #include "scene/light_factor.h"
 #include "scene/range.h"
 #include "session/found_portals.h"
-#include "shaders/shared/film.h"
 
 namespace lucerna::session {
 

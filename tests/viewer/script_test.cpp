@@ -64,14 +64,15 @@ TEST_CASE("the busy card names the running command, not a finished one") {
   session::fake::busy_ms = 150, session::fake::drawing_ms = 300;
   for (const char* line : {"film.ev 1", "window.fold left true", "image.save slow.exr"})
     window.work.run(line);
+  const auto& busy = window.cards.busy;
   std::vector<std::string> texts;
   const auto begin = std::chrono::steady_clock::now();
-  while (texts.empty() || window.busy.command != 0) {
+  while (texts.empty() || busy.command != 0) {
     window.work.refresh(window.time());
     window.follow_busy();
-    const std::string text = window.busy.command == 0 ? "" : window.busy.done ? "drawing" : window.busy.text;
+    const std::string text = busy.command == 0 ? "" : busy.done ? "drawing" : busy.text;
     // A finished command is not shown.
-    if (!window.busy.done && window.busy.command != 0) CHECK(session.commands_done() <= window.busy.command);
+    if (!busy.done && busy.command != 0) CHECK(session.commands_done() <= busy.command);
     if (!text.empty() && (texts.empty() || texts.back() != text)) texts.push_back(text);
     REQUIRE(std::chrono::steady_clock::now() - begin < std::chrono::seconds(20));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));

@@ -477,9 +477,10 @@ TEST_CASE("Ctrl+S pressed and released within a frame, or released after Ctrl, d
 TEST_CASE("unsupported features of a scene are reported over the picture") {
   Walk walk;
   open_hall(walk);
-  CHECK(walk.ui().note.text.empty());
+  CHECK(walk.ui().cards.note.text.empty());
   walk.act("scene.open sheen.gltf");
-  CHECK_THAT(walk.ui().note.text, Catch::Contains("Not supported") && Catch::Contains("KHR_materials_sheen"));
+  CHECK_THAT(walk.ui().cards.note.text,
+             Catch::Contains("Not supported") && Catch::Contains("KHR_materials_sheen"));
 }
 
 TEST_CASE("a saved file is named over the picture, with its form") {
@@ -490,11 +491,11 @@ TEST_CASE("a saved file is named over the picture, with its form") {
                                    {"image.save a.exr", "Saved a.exr"}}) {
     walk.act(line);
     walk.settle();
-    CHECK(walk.ui().note.text == said);
+    CHECK(walk.ui().cards.note.text == said);
   }
-  walk.ui().note.text.clear();
+  walk.ui().cards.note.text.clear();
   walk.act("image.save missing/a.png");
-  CHECK(walk.ui().note.text.empty());
+  CHECK(walk.ui().cards.note.text.empty());
 }
 
 TEST_CASE(
