@@ -13,6 +13,7 @@
 #include "base/log.h"
 #include "bench/matrix.h"
 #include "plan/settings.h"
+#include "scene/range.h"
 #include "solvers/registry.h"
 #include "ui/script.h"
 #include "ui/viewer.h"
@@ -142,6 +143,17 @@ void Program::add_render() {
       ->allow_extra_args(false);
   render_->add_option("--size", r.size, "picture, WIDTHxHEIGHT")->capture_default_str();
   render_->add_option("--camera", r.camera, "name of a scene camera, or its number from 1");
+  render_
+      ->add_option("--f-number", r.f_number, "gives the camera a lens, for depth of field; film 36 mm wide")
+      ->check(finite() & CLI::Range(scene::k_least_f_number, scene::k_max_f_number));
+  render_
+      ->add_option(
+          "--focus", r.focus,
+          "metres to the lens's plane of focus, along the view axis; by default the scene's, or else "
+          "to the surface in the middle of the picture")
+      ->check(finite() & CLI::Range(scene::k_least_focus, scene::k_max_coordinate));
+  render_->add_option("--blades", r.blades, "corners of the lens's aperture, at least 3; 0: round")
+      ->check(CLI::Range(int64_t(0), int64_t(scene::k_max_blades)));
   render_->add_option(
       "--error", r.error,
       "target error as seen of every tile, such as 0.02: tiles above it get more samples. The error is "

@@ -213,6 +213,8 @@ void handle_keys(Ui& ui) {
       ui.welcome = false;
     else if (ui.dropper)
       ui.act("exposure.dropper", false);
+    else if (ui.focusing)
+      ui.act("camera.focusing", false);
     else if (ui.open.loading())
       ui.act("scene.cancel");
     else if (!ui.errors.empty())

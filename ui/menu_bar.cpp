@@ -309,6 +309,10 @@ void camera_menu(Ui& ui) {
   if (entry("Walk along the floor", "H", "W A S D walk at eye height instead of flying.", ui.camera.walking,
             view))
     ui.act("camera.walking", !ui.camera.walking);
+  const bool lens = view && !ui.camera.view->camera.orthographic;
+  if (entry("Focus by a click", nullptr, "The next click in the picture puts the plane of focus there.",
+            ui.focusing, lens))
+    ui.act("camera.focusing", !ui.focusing);
   divide();
   if (entry("Bookmark this view", "Ctrl+B", "Saves the view for this scene, also for later runs.", false,
             view))

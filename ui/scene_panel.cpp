@@ -12,6 +12,7 @@
 #include "panel_block.h"
 #include "scene/display_name.h"
 #include "scene/lamp.h"
+#include "scene/range.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -74,6 +75,54 @@ void show_row(float y) {
     ImGui::SetScrollFromPosY(y - window.y, 0.5f);
 }
 
+void depth_of_field(Ui& ui, const scene::Lens& lens) {
+  const bool on = lens.f_number > 0;
+  if (button("##depth_of_field", "Depth of field", on, ImGui::CalcItemWidth())) {
+    if (on)
+      ui.act("camera.pinhole");
+    else
+      ui.act("camera.f_number", 2.8f);
+  }
+  tooltip("A lens instead of a pinhole: surfaces before and behind the plane of focus blur.");
+  if (!on) return;
+  float f_number = lens.f_number, focus = lens.focus_distance, rotation = lens.rotation * 180 / k_pi;
+  auto blades = static_cast<float>(lens.blades);
+  if (slider("##f_number", "f-number", f_number,
+             {.lo = 0.5f,
+              .hi = 32,
+              .log = true,
+              .decimals = 2,
+              .typed_lo = scene::k_least_f_number,
+              .typed_hi = scene::k_max_f_number}))
+    ui.act("camera.f_number", f_number);
+  tooltip("Focal length over the diameter of the lens, for film 36 mm wide. Smaller blurs more.");
+  if (slider("##focus", "Focus", focus,
+             {.lo = 0.05f,
+              .hi = 100,
+              .log = true,
+              .decimals = 3,
+              .unit = "m",
+              .typed_lo = scene::k_least_focus,
+              .typed_hi = 1e6f}))
+    ui.act("camera.focus_distance", focus);
+  tooltip("Distance of the plane of focus along the view axis.");
+  const float half = 0.5f * (ImGui::CalcItemWidth() - px(4));
+  if (button("##focusing", "Focus by a click", ui.focusing, half)) ui.act("camera.focusing", !ui.focusing);
+  tooltip("The next click in the picture puts the plane of focus there.");
+  ImGui::SameLine(0, px(4));
+  if (button("##show_focus", "Show", ui.open.setting_on("overlay.focus"), half)) ui.toggle("overlay.focus");
+  tooltip(plan::find_option("overlay.focus")->help);
+  if (slider("##blades", "Blades", blades, {.lo = 0, .hi = 12, .decimals = 0, .step = 1, .at_zero = "round"}))
+    ui.act("camera.blades", static_cast<int>(blades < 0.5f ? 0 : std::max(3.0f, blades)));
+  tooltip("Corners of the aperture, which bright points out of focus take the shape of.");
+  if (lens.blades > 0) {
+    if (slider("##rotation", "Rotation", rotation,
+               {.lo = -180, .hi = 180, .decimals = 0, .unit = "\xC2\xB0"}))
+      ui.act("camera.blades", lens.blades, named("rotation", rotation));
+    tooltip("Rotation of the aperture.");
+  }
+}
+
 void cameras(Ui& ui) {
   const auto& list = ui.open.scene->cameras;
   if (list.empty()) quiet_line("The scene has no camera");
@@ -104,6 +153,7 @@ void cameras(Ui& ui) {
     tooltip(fmt::format("Focal length for a frame 36 mm wide; the vertical field of view is {:.1f}\xC2\xB0.",
                         view.camera.yfov * 180 / k_pi));
   }
+  if (!view.camera.orthographic) depth_of_field(ui, view.camera.lens);
   float speed = ui.camera.speed;
   if (slider("##speed", "Fly speed", speed,
              {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m/s"}))

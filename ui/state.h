@@ -84,6 +84,10 @@ struct Ui {
   } drag;
   /// True: the next click in the picture sets the exposure.
   bool dropper = false;
+  /// ... sets the plane of focus.
+  bool focusing = false;
+  /// ... does not select.
+  bool click_taken() const { return dropper || focusing; }
 
   /// A sentence over the picture that disappears by itself.
   struct {

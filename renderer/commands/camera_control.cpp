@@ -153,7 +153,7 @@ float yfov_from_focal_length(float millimetres, float aspect) {
 
 bool same_view(const scene::Camera& a, const scene::Camera& b) {
   return a.to_world == b.to_world && a.orthographic == b.orthographic && a.yfov == b.yfov &&
-         a.xmag == b.xmag && a.ymag == b.ymag && a.aspect == b.aspect;
+         a.xmag == b.xmag && a.ymag == b.ymag && a.aspect == b.aspect && a.lens == b.lens;
 }
 
 }  // namespace lucerna::commands

@@ -47,6 +47,17 @@ void check_range(const Camera& c) {
                 k_max_yfov);
   }
   if (!within(c.aspect, 0, 1e4f)) throw_error(where, "its aspect is {:.4g}, expected 0 to 10000", c.aspect);
+  const Lens& lens = c.lens;
+  if (lens.f_number != 0 && !within(lens.f_number, k_least_f_number, k_max_f_number))
+    throw_error(where, "its f-number is {:.4g}, expected {} to {}, or 0 for a pinhole", lens.f_number,
+                k_least_f_number, k_max_f_number);
+  if (lens.f_number != 0 && !within(lens.focus_distance, k_least_focus, k_max_coordinate))
+    throw_error(where, "its plane of focus is {:.4g} m ahead, expected {} to {:.0g}", lens.focus_distance,
+                k_least_focus, k_max_coordinate);
+  if (lens.blades != 0 && (lens.blades < 3 || lens.blades > k_max_blades))
+    throw_error(where, "its aperture has {} blades, expected 3 to {}, or 0 for a round one", lens.blades,
+                k_max_blades);
+  if (!std::isfinite(lens.rotation)) throw_error(where, "the rotation of its aperture is not finite");
 }
 
 void check_range(const Light& l) {

@@ -236,6 +236,7 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
   if (sheet_ &&
       (changes.edits.contains(scene::Change::shape) || changes.edits.contains(scene::Change::shaders)))
     sheet_->forget();
+  begun_lens_ = camera_.lens;
   draft_preparing_ = false;
   if (!known) path_pace_.reset();
   ++restarts_;
@@ -255,6 +256,8 @@ bool Renderer::keeps_light(const scene::Changes& changes) const {
     const OptionInfo* option = plan::find_option(key);
     return option && option->same_light;
   };
+  // Through another lens, pixels mix the light of other surfaces.
+  if (camera_.lens != begun_lens_) return false;
   return std::all_of(changes.edits.begin(), changes.edits.end(),
                      [](scene::Change edit) {
                        return edit == scene::Change::camera || edit == scene::Change::size;

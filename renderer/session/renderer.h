@@ -27,6 +27,7 @@
 #include "session/display.h"
 #include "session/engine.h"
 #include "session/filtered.h"
+#include "session/focus_view.h"
 #include "session/kept_solvers.h"
 #include "session/lights_edit.h"
 #include "session/lights_view.h"
@@ -323,6 +324,7 @@ class Renderer {
   void forget_filtered();
   /// Draws the views of learned lights.
   void draw_lights(const std::function<bool()>& cancel);
+  void draw_focus(const std::function<bool()>& cancel);
   void mark_tiles(const film::View& view);
   bool previewed(const film::View& view) const;  ///< true if the window shows a preview in that view
   film::HeatScale heat_scale(uint32_t layer) const;
@@ -375,6 +377,7 @@ class Renderer {
   std::unique_ptr<WindowFilter> window_filter_;  ///< null in batch
   std::unique_ptr<Display> display_;             ///< null in batch
   std::unique_ptr<LightsView> lights_view_;      ///< null until it is shown
+  std::unique_ptr<FocusView> focus_view_;        ///< likewise
   std::unique_ptr<overlay::Sheet> sheet_;        ///< null until something is drawn
   uint32_t window_scale_ = 1;
   bool waits_for_overlay_ = false;  ///< pictures wait for the surfaces of overlays
@@ -387,6 +390,7 @@ class Renderer {
   double coarse_s_ = 0;                         ///< of the coarse preview samples since they began
   std::optional<stats::SamplePace> path_pace_;  ///< for a picture of one pixel
   scene::Camera camera_;
+  scene::Lens begun_lens_;  ///< of the picture begun last
   uint32_t width_ = 1280, height_ = 720;
   Sampling sampling_;
   film::SeenRange seen_;  ///< seen_range() of the errors in the adaptive schedule

@@ -66,7 +66,7 @@ bool Renderer::draws_over() const {
     return option.key.starts_with("overlay.") && owner && engine_->find(owner->name) &&
            settings_.text(option.key) != option.fallback;
   };
-  return looked_at_ || LightsView::shown(settings_) ||
+  return looked_at_ || LightsView::shown(settings_) || FocusView::shown(settings_) ||
          std::any_of(plan::options().begin(), plan::options().end(), on);
 }
 
@@ -115,6 +115,7 @@ std::vector<uint8_t> Renderer::finished_picture(const film::View& v, const std::
       },
       cancel);
   draw_lights(cancel);
+  draw_focus(cancel);
   if (sheet().scale() == 1) return film_->read_picture();
   std::vector<uint8_t> pixels(uint64_t{width_} * height_ * sheet().scale() * sheet().scale() * 4);
   sheet().picture(*film_).read(pixels.data(), pixels.size());
@@ -130,6 +131,16 @@ void Renderer::draw_lights(const std::function<bool()>& cancel) {
   lights_view_->draw(
       {engine_->wavefront(), *film_, *coarse_, sheet(), cancel}, engine_->wavefront().learning(), world_.flat,
       engine_->frame(picture_view(), film_->width(), film_->height()), *world_.scene, settings_, looked_at_);
+}
+
+void Renderer::draw_focus(const std::function<bool()>& cancel) {
+  if (!engine_ || !film_ || !FocusView::shown(settings_)) {
+    if (focus_view_) focus_view_->forget();
+    return;
+  }
+  if (!focus_view_) focus_view_ = std::make_unique<FocusView>(*device_, *compiler_);
+  focus_view_->draw({engine_->wavefront(), *film_, *coarse_, sheet(), cancel},
+                    engine_->frame(picture_view(), film_->width(), film_->height()));
 }
 
 bool Renderer::previewed(const film::View& v) const {

@@ -69,6 +69,8 @@ std::vector<std::shared_ptr<const solvers::Report>> Renderer::reports() {
   });
   if (lights_view_ && lights_view_->report())
     all.push_back(std::make_shared<const solvers::Report>(*lights_view_->report()));
+  if (focus_view_ && focus_view_->report())
+    all.push_back(std::make_shared<const solvers::Report>(*focus_view_->report()));
   return all;
 }
 

@@ -9,6 +9,12 @@
 
 namespace lucerna::transport {
 
+float lens_radius(const scene::Camera& camera, float half_width) {
+  if (camera.orthographic || camera.lens.f_number == 0) return 0;
+  const float focal_length = 0.5f * scene::k_film_width / half_width;
+  return 0.5f * focal_length / camera.lens.f_number;
+}
+
 shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& camera,
                          const paths::Automaton& automaton, const FrameOptions& options) {
   shared::Frame f{};
@@ -21,6 +27,10 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.camera_up = up * half_h;
   f.camera_forward = -glm::normalize(vec3(m[2]));
   f.orthographic = camera.orthographic;
+  f.lens_radius = lens_radius(camera, half_w);
+  f.focus_distance = camera.lens.focus_distance;
+  f.lens_blades = camera.lens.blades;
+  f.lens_rotation = camera.lens.rotation;
   f.width = options.width;
   f.height = options.height;
   f.seed = options.seed;
@@ -37,7 +47,7 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.most_branches = ~0u;
   f.scene_radius = flat.scene_radius;
   Box start;
-  start.grow(f.camera_origin);
+  start.grow(f.camera_origin - vec3(f.lens_radius)), start.grow(f.camera_origin + vec3(f.lens_radius));
   if (camera.orthographic)
     for (const float x : {-1.0f, 1.0f})
       for (const float y : {-1.0f, 1.0f}) start.grow(f.camera_origin + x * f.camera_right + y * f.camera_up);

@@ -13,6 +13,7 @@ using namespace shared;
 
 struct Wavefront::Impl {
   gpu::Device& device;
+  gpu::ShaderCompiler& compiler;
   gpu::Stream stream;
   HostTrace host_trace;
   uint32_t slots;
@@ -28,6 +29,9 @@ struct Wavefront::Impl {
   gpu::Buffer frame, blocks, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states,
       counters, branching, branching_queue;
   std::array<gpu::Buffer, 2> queues, shadow_queues;
+  gpu::Defines camera_defines;
+  gpu::Kernel camera_lens;  // compiled at the first frame with a lens
+  bool through_lens = false;
   gpu::Kernel camera, shade, shadow, film_add, film_add_images, lanes_add, lanes_add_images, groups_add,
       groups_add_images, unmixed_add, unmixed_add_images, trace_closest, trace_any, trace_non_opaque;
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
@@ -37,8 +41,9 @@ struct Wavefront::Impl {
   std::shared_ptr<LightLearning> learning;
   TransportStats stats;
 
-  Impl(gpu::Device& d, uint32_t n, const upload::Effects& effects, HostTrace trace)
+  Impl(gpu::Device& d, gpu::ShaderCompiler& c, uint32_t n, const upload::Effects& effects, HostTrace trace)
       : device(d),
+        compiler(c),
         stream(d),
         host_trace(std::move(trace)),
         slots(n),
@@ -220,13 +225,15 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
                      uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines,
                      std::function<void(gpu::Resources&)> bind_lookup, const HitClassRules& rules,
                      std::shared_ptr<LightLearning> learning)
-    : impl_(std::make_unique<Impl>(device, slots, scene.effects(), std::move(host_trace))) {
+    : impl_(std::make_unique<Impl>(device, compiler, slots, scene.effects(), std::move(host_trace))) {
   Impl& w = *impl_;
   const Timer timer;
   gpu::Defines defines = scene.defines();
   for (const auto& [name, value] : extra_defines) defines[name] = value;
   w.writes_bias = defines.contains("LUCERNA_LOOKUP_BIAS");
   w.camera = gpu::Kernel(device, compiler, "transport/camera.comp", defines);
+  w.camera_defines = defines;
+  w.camera_defines["LUCERNA_THIN_LENS"] = "1";
   w.shade = gpu::Kernel(device, compiler, "transport/shade.comp", defines);
   w.shadow = gpu::Kernel(device, compiler, "transport/shadow.comp", defines);
   gpu::Defines adding = defines;
@@ -280,6 +287,10 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
 Wavefront::~Wavefront() = default;
 
 void Wavefront::set_frame(const Frame& frame, uint32_t enabled) {
+  Impl& w = *impl_;
+  w.through_lens = frame.lens_radius > 0;
+  if (w.through_lens && !w.camera_lens)
+    w.camera_lens = gpu::Kernel(w.device, w.compiler, "transport/camera.comp", w.camera_defines);
   Frame known = frame;
   if (impl_->learning) impl_->learning->describe(known);
   impl_->frame.write(&known, sizeof known);
@@ -347,7 +358,10 @@ bool Wavefront::probe(const schedule::WorkItem& item, const std::function<bool()
   if (count > w.slots) throw_error("transport", "work item of {} paths, room for {}", count, w.slots);
   w.blocks.write(std::span<const WorkBlock>(item.blocks));
   const TransportPush push{count, 0, static_cast<uint32_t>(item.blocks.size()) * 64, 0};
-  const auto begin = [&] { w.stream.dispatch(w.camera, w.main[0], push, Impl::workgroups(count), "camera"); };
+  const auto begin = [&] {
+    w.stream.dispatch(w.through_lens ? w.camera_lens : w.camera, w.main[0], push, Impl::workgroups(count),
+                      "camera");
+  };
   return w.trace_paths(count, {.begin = begin, .first_hits = {}, .end = {}}, cancel);
 }
 

@@ -113,6 +113,10 @@ struct Frame {
   uint orthographic;
   vec3 camera_forward;     ///< unit
   uint seed;
+  float lens_radius;       ///< of the circle around the lens [m]; 0: a pinhole, which kernels without LUCERNA_THIN_LENS assume
+  float focus_distance;    ///< of the plane of focus, along camera_forward [m]
+  uint lens_blades;        ///< corners of the lens; 0: round
+  float lens_rotation;     ///< of its first corner, from camera_right towards camera_up
   vec3 environment_radiance;  ///< factor of the environment map
   uint light_count;
   uint first_lamp, lamp_count;  ///< lamps among the lights, for resampling (LUCERNA_LAMP_CANDIDATES)
