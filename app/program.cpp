@@ -152,6 +152,12 @@ void Program::add_render() {
           "metres to the lens's plane of focus, along the view axis; by default the scene's, or else "
           "to the surface in the middle of the picture")
       ->check(finite() & CLI::Range(scene::k_least_focus, scene::k_max_coordinate));
+  render_->add_flag("--upright", r.upright,
+                    "level the camera and shift the lens so that the middle of the picture stays: vertical lines "
+                    "become vertical");
+  render_->add_option("--shift", r.shift, "RIGHT UP, shift of the lens in widths and heights of the picture")
+      ->expected(2)
+      ->check(finite() & CLI::Range(-scene::k_max_shift, scene::k_max_shift));
   render_->add_option("--blades", r.blades, "corners of the lens's aperture, at least 3; 0: round")
       ->check(CLI::Range(int64_t(0), int64_t(scene::k_max_blades)));
   render_->add_option(

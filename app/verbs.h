@@ -24,6 +24,8 @@ struct RenderArguments {
   int64_t seed = -1;
   std::optional<double> f_number, focus;  ///< of the camera's lens
   std::optional<int64_t> blades;
+  bool upright = false;
+  std::vector<double> shift;  ///< right, up; empty: the scene's
   std::vector<std::string> set;  ///< key=value
   bool quiet = false;
   bool filter = false;        ///< files contain the filtered picture too

@@ -313,6 +313,11 @@ void camera_menu(Ui& ui) {
   if (entry("Focus by a click", nullptr, "The next click in the picture puts the plane of focus there.",
             ui.focusing, lens))
     ui.act("camera.focusing", !ui.focusing);
+  if (entry("Make upright", nullptr,
+            "Levels the camera and shifts the lens so that the picture's middle stays: vertical lines become "
+            "vertical.",
+            false, lens))
+    ui.act("camera.upright");
   divide();
   if (entry("Bookmark this view", "Ctrl+B", "Saves the view for this scene, also for later runs.", false,
             view))

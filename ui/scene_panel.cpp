@@ -75,6 +75,24 @@ void show_row(float y) {
     ImGui::SetScrollFromPosY(y - window.y, 0.5f);
 }
 
+void lens_shift(Ui& ui, const scene::Camera& camera) {
+  if (button("##upright", "Make upright", false, ImGui::CalcItemWidth())) ui.act("camera.upright");
+  tooltip(
+      "Levels the camera and shifts the lens so that the picture's middle stays: vertical lines become "
+      "vertical.");
+  if (camera.shift == vec2(0)) return;
+  vec2 shift = camera.shift;
+  const Slider how{.lo = -1, .hi = 1, .decimals = 3, .bar = false, .sign = true, .typed_lo = -scene::k_max_shift,
+                   .typed_hi = scene::k_max_shift};
+  bool moved = slider("##shift_up", "Shift up", shift.y, how);
+  tooltip("Heights of the picture by which its middle is above the view axis.");
+  moved |= slider("##shift_right", "Shift right", shift.x, how);
+  tooltip("Widths of the picture by which its middle is to the right of the view axis.");
+  if (moved) ui.act("camera.shift", shift.x, shift.y);
+  if (button("##no_shift", "Remove shift", false, ImGui::CalcItemWidth())) ui.act("camera.shift", 0, 0);
+  tooltip("Puts the middle of the picture on the view axis again.");
+}
+
 void depth_of_field(Ui& ui, const scene::Lens& lens) {
   const bool on = lens.f_number > 0;
   if (button("##depth_of_field", "Depth of field", on, ImGui::CalcItemWidth())) {
@@ -153,7 +171,10 @@ void cameras(Ui& ui) {
     tooltip(fmt::format("Focal length for a frame 36 mm wide; the vertical field of view is {:.1f}\xC2\xB0.",
                         view.camera.yfov * 180 / k_pi));
   }
-  if (!view.camera.orthographic) depth_of_field(ui, view.camera.lens);
+  if (!view.camera.orthographic) {
+    lens_shift(ui, view.camera);
+    depth_of_field(ui, view.camera.lens);
+  }
   float speed = ui.camera.speed;
   if (slider("##speed", "Fly speed", speed,
              {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m/s"}))

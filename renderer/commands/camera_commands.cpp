@@ -134,7 +134,7 @@ void Motions::add_motions() {
           if (!std::exchange(v.camera.orthographic, true)) v.camera.ymag = 1, v.camera.xmag = camera.aspect;
           set_height(v.camera, a.number("height"));
         }
-        set_lens(v.camera.lens, a);
+        set_lens(v.camera, a);
         focus_somewhere(open, v, camera.aspect);
       });
   add("camera.frame",

@@ -124,8 +124,8 @@ void add_bookmark_commands(Workspace& work) {
            throw Error("", fmt::format("there are {} bookmarks; camera.forget takes one away", here.size()));
          const Viewpoint& view = *work.camera.view;
          std::string text = Navigation::place_line(view);
-         if (!view.camera.orthographic)
-           text += " " + named("fov", view.camera.yfov * 180 / k_pi).text + lens_words(view.camera.lens);
+         if (!view.camera.orthographic) text += " " + named("fov", view.camera.yfov * 180 / k_pi).text;
+         text += lens_words(view.camera);
          here[name] = text;
        }});
   work.registry.add({.name = "camera.go",

@@ -1,4 +1,4 @@
-// Commands of the camera's lens: depth of field.
+// Commands of the camera's lens: depth of field and shift.
 #include <cmath>
 
 #include "base/error.h"
@@ -22,8 +22,8 @@ std::optional<float> depth_at(const scene::Scene& scene, const scene::Camera& ca
   return glm::dot(hit->position - eye_of(camera), forward_of(camera));
 }
 
-void needs_perspective(const scene::Camera& camera) {
-  if (camera.orthographic) throw Error("", "the camera is orthographic, without depth of field");
+void needs_perspective(const scene::Camera& camera, const char* what) {
+  if (camera.orthographic) throw Error("", fmt::format("the camera is orthographic, without {}", what));
 }
 
 }  // namespace
@@ -47,10 +47,13 @@ std::vector<Parameter> lens_parameters() {
       {.name = "pinhole",
        .type = Type::boolean,
        .help = "true: no lens, everything is sharp",
-       .optional = true}};
+       .optional = true},
+          real("shift_right", "of the lens", -scene::k_max_shift, scene::k_max_shift, "picture widths"),
+          real("shift_up", "of the lens", -scene::k_max_shift, scene::k_max_shift, "picture heights")};
 }
 
-void set_lens(scene::Lens& lens, const Arguments& a) {
+void set_lens(scene::Camera& camera, const Arguments& a) {
+  scene::Lens& lens = camera.lens;
   if (a.has("blades") && (a.integer("blades") == 1 || a.integer("blades") == 2))
     throw Error("",
                 fmt::format("blades: {}; expected 0, or 3 to {}", a.integer("blades"), scene::k_max_blades));
@@ -61,6 +64,8 @@ void set_lens(scene::Lens& lens, const Arguments& a) {
   if (a.has("blades")) lens.blades = uint32_t(a.integer("blades"));
   if (a.has("rotation")) lens.rotation = k_degree * a.number("rotation");
   if (pinhole) lens.f_number = 0;
+  if (a.has("shift_right")) camera.shift.x = a.number("shift_right");
+  if (a.has("shift_up")) camera.shift.y = a.number("shift_up");
 }
 
 void focus_somewhere(const OpenScene& open, Viewpoint& view, float aspect) {
@@ -70,10 +75,12 @@ void focus_somewhere(const OpenScene& open, Viewpoint& view, float aspect) {
   lens.focus_distance = std::max(depth.value_or(view.distance), scene::k_least_focus);
 }
 
-std::string lens_words(const scene::Lens& lens) {
-  if (lens.f_number == 0) return " pinhole=true";
-  std::string text =
-      " " + named("f_number", lens.f_number).text + " " + named("focus", lens.focus_distance).text;
+std::string lens_words(const scene::Camera& camera) {
+  const scene::Lens& lens = camera.lens;
+  std::string text = " " + named("shift_right", camera.shift.x).text + " " + named("shift_up", camera.shift.y).text;
+  if (camera.orthographic) return text;
+  if (lens.f_number == 0) return text + " pinhole=true";
+  text += " " + named("f_number", lens.f_number).text + " " + named("focus", lens.focus_distance).text;
   text += " " + named("blades", lens.blades).text;
   if (lens.blades != 0) text += " " + named("rotation", lens.rotation / k_degree).text;
   return text;
@@ -90,7 +97,7 @@ void add_lens_commands(Registry& registry, const OpenScene& open, Navigation& ca
                       [&open, &camera, act = std::move(act)](const Arguments& a) {
                         camera.needs_view();
                         Viewpoint view = *camera.view;
-                        needs_perspective(view.camera);
+                        needs_perspective(view.camera, "depth of field");
                         act(view, a);
                         focus_somewhere(open, view, camera.aspect);
                         camera.take_view(view);
@@ -98,7 +105,7 @@ void add_lens_commands(Registry& registry, const OpenScene& open, Navigation& ca
                   .moves = true});
   };
   const std::vector<Parameter> all = lens_parameters();
-  const auto set = [](Viewpoint& v, const Arguments& a) { set_lens(v.camera.lens, a); };
+  const auto set = [](Viewpoint& v, const Arguments& a) { set_lens(v.camera, a); };
   add("camera.f_number",
       "Gives the camera a lens: surfaces before and behind the plane of focus blur, the more the smaller the "
       "number. Focuses on the middle of the picture if no focus was set. The film is 36 mm wide.",
@@ -118,6 +125,36 @@ void add_lens_commands(Registry& registry, const OpenScene& open, Navigation& ca
         if (!depth) throw Error("", "there is no surface at that point to focus on");
         v.camera.lens.focus_distance = std::max(*depth, scene::k_least_focus);
       });
+  const auto shift = [](Parameter p, const char* name) {
+    p.name = name, p.optional = false;
+    return p;
+  };
+  registry.add({.name = "camera.shift",
+                .help = "Shifts the lens: the picture's middle moves away from the view axis, and vertical lines stay "
+                        "parallel.",
+                .parameters = {shift(all[5], "right"), shift(all[6], "up")},
+                .run =
+                    [&camera](const Arguments& a) {
+                      camera.needs_view();
+                      Viewpoint view = *camera.view;
+                      view.camera.shift = {a.number("right"), a.number("up")};
+                      camera.take_view(view);
+                    },
+                .moves = true});
+  registry.add({.name = "camera.upright",
+                .help = "Levels the camera, so that vertical lines are vertical in the picture, and shifts the lens so "
+                        "that the picture's middle stays: two-point perspective.",
+                .parameters = {},
+                .run =
+                    [&camera](const Arguments&) {
+                      camera.needs_view();
+                      Viewpoint view = *camera.view;
+                      needs_perspective(view.camera, "a lens shift that levels it");
+                      if (!upright(view, camera.aspect))
+                        throw Error("", "the camera looks too steeply up or down, by more than 80 degrees");
+                      camera.take_view(view);
+                    },
+                .moves = true});
 }
 
 }  // namespace lucerna::commands

@@ -47,6 +47,9 @@ void check_range(const Camera& c) {
                 k_max_yfov);
   }
   if (!within(c.aspect, 0, 1e4f)) throw_error(where, "its aspect is {:.4g}, expected 0 to 10000", c.aspect);
+  if (!within(std::abs(c.shift.x), 0, k_max_shift) || !within(std::abs(c.shift.y), 0, k_max_shift))
+    throw_error(where, "its lens shift is {:.4g} widths and {:.4g} heights, expected -{} to {}", c.shift.x, c.shift.y,
+                k_max_shift, k_max_shift);
   const Lens& lens = c.lens;
   if (lens.f_number != 0 && !within(lens.f_number, k_least_f_number, k_max_f_number))
     throw_error(where, "its f-number is {:.4g}, expected {} to {}, or 0 for a pinhole", lens.f_number,

@@ -130,6 +130,8 @@ struct Camera {
   float xmag = 1, ymag = 1;  ///< orthographic half sizes, metres
   float aspect = 0;          ///< width / height; 0: that of the picture
   Lens lens{};               ///< not used by orthographic cameras
+  /// Lens shift: moves the picture's middle from the view axis, right in its widths and up in its heights.
+  vec2 shift{0};
 };
 
 enum class LightKind : uint32_t { point, spot, directional };

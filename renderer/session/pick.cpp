@@ -56,7 +56,7 @@ PickRay pick_ray(const scene::Camera& camera, float x, float y, float aspect) {
   const vec3 right = glm::normalize(vec3(m[0])), up = glm::normalize(vec3(m[1]));
   const vec3 forward = -glm::normalize(vec3(m[2]));
   const float half = camera.orthographic ? camera.ymag : std::tan(0.5f * camera.yfov);
-  const vec3 offset = (2 * x - 1) * half * aspect * right + (1 - 2 * y) * half * up;
+  const vec3 offset = (2 * (x + camera.shift.x) - 1) * half * aspect * right + (1 - 2 * (y - camera.shift.y)) * half * up;
   if (camera.orthographic) return {vec3(m[3]) + offset, forward};
   return {vec3(m[3]), glm::normalize(forward + offset)};
 }

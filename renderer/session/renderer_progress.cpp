@@ -14,6 +14,7 @@ std::string Renderer::view_text() const {
   text += fmt::format(" aspect {:.5g} at", camera_.aspect);
   for (int column = 0; column < 4; ++column)
     for (int row = 0; row < 3; ++row) text += fmt::format(" {:.5g}", camera_.to_world[column][row] + 0.0f);
+  if (camera_.shift != vec2(0)) text += fmt::format(" shift {:.5g} {:.5g}", camera_.shift.x, camera_.shift.y);
   if (const scene::Lens& lens = camera_.lens; !camera_.orthographic && lens.f_number != 0)
     text += fmt::format(" lens f/{:.5g} focus {:.5g} blades {} rotation {:.5g}", lens.f_number,
                         lens.focus_distance, lens.blades, lens.blades == 0 ? 0 : lens.rotation);

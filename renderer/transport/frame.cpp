@@ -25,7 +25,12 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.camera_origin = vec3(m[3]);
   f.camera_right = right * half_w;
   f.camera_up = up * half_h;
-  f.camera_forward = -glm::normalize(vec3(m[2]));
+  f.camera_axis = -glm::normalize(vec3(m[2]));
+  f.camera_forward = f.camera_axis;
+  if (camera.shift != vec2(0)) {
+    const vec3 aside = 2 * (camera.shift.x * f.camera_right + camera.shift.y * f.camera_up);
+    (camera.orthographic ? f.camera_origin : f.camera_forward) += aside;
+  }
   f.orthographic = camera.orthographic;
   f.lens_radius = lens_radius(camera, half_w);
   f.focus_distance = camera.lens.focus_distance;

@@ -37,11 +37,13 @@ Seen camera_sees(vec3 x, vec3 eye) {
 #if LUCERNA_THIN_LENS
   off -= eye;
 #endif
-  float z = dot(off, frame.camera_forward), d = length(off);
+  float z = dot(off, frame.camera_axis), d = length(off);
   bool parallel = frame.orthographic != 0u;
+  vec3 aside = frame.camera_forward - frame.camera_axis;
   float right2 = dot(frame.camera_right, frame.camera_right), up2 = dot(frame.camera_up, frame.camera_up);
   float scale = parallel ? 1.0 : 1.0 / max(z, 1e-30);
   vec2 ndc = vec2(dot(off, frame.camera_right) / right2, -dot(off, frame.camera_up) / up2) * scale;
+  ndc -= vec2(dot(aside, frame.camera_right) / right2, -dot(aside, frame.camera_up) / up2);
 #if LUCERNA_THIN_LENS
   ndc += vec2(dot(eye, frame.camera_right) / right2, -dot(eye, frame.camera_up) / up2) / frame.focus_distance;
 #endif
@@ -51,7 +53,7 @@ Seen camera_sees(vec3 x, vec3 eye) {
   s.inside = z > 0.0 && at.x >= 0.0 && at.y >= 0.0 && at.x < float(frame.width) && at.y < float(frame.height);
   s.pixel = s.inside ? uint(at.y) * frame.width + uint(at.x) - splat_frame.first : 0u;
   s.inside = s.inside && s.pixel < splat_frame.pixels;
-  s.towards = parallel ? -frame.camera_forward : -off / max(d, 1e-30);
+  s.towards = parallel ? -frame.camera_axis : -off / max(d, 1e-30);
   s.distance = parallel ? z : d;
   s.per_cosine = (parallel ? 1.0 : d / (z * z * z)) / area;
   return s;

@@ -21,7 +21,7 @@ void main() {
   color = sharp ? mix(color, push.tint * mix(0.25, 1.0, grey), k_tint) : k_dim * color;
   if (s.solid) {
     mat2x3 steps = pixel_steps(s, push.width, push.height);
-    float change = length(frame.camera_forward * steps);  // of the depth in a pixel
+    float change = length(frame.camera_axis * steps);  // of the depth in a pixel
     float away = abs(s.depth - push.focus) / max(change, 1e-20);
     color = mix(color, push.line, clamp(k_half_line + 0.5 - away, 0.0, 1.0));
   }

@@ -111,8 +111,9 @@ struct Frame {
   uint height;
   vec3 camera_up;          ///< likewise, half the height
   uint orthographic;
-  vec3 camera_forward;     ///< unit
+  vec3 camera_forward;     ///< to the middle of the picture; its part along camera_axis is 1 (lens shift)
   uint seed;
+  vec3 camera_axis;        ///< unit, across camera_right and camera_up; depths are along it
   float lens_radius;       ///< of the circle around the lens [m]; 0: a pinhole, which kernels without LUCERNA_THIN_LENS assume
   float focus_distance;    ///< of the plane of focus, along camera_forward [m]
   uint lens_blades;        ///< corners of the lens; 0: round

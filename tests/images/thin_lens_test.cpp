@@ -108,7 +108,7 @@ TEST_CASE("the blur of a round aperture is an even disc, and in the plane of foc
   CHECK(focused.sum == Approx(sharp.sum).epsilon(0.01));
 }
 
-TEST_CASE("light tracing and paths see the same picture through a lens") {
+TEST_CASE("light tracing and paths see the same picture through a lens, shifted or not") {
   // A floor of dark and light squares under a beam of the sun, straight or turned by a mirror.
   scene::Scene straight = test::turned_sun(vec3(1));
   straight.meshes.clear(), straight.instances.clear();
@@ -121,7 +121,10 @@ TEST_CASE("light tracing and paths see the same picture through a lens") {
   scene::Camera& camera = straight.cameras[0];
   camera.to_world = glm::inverse(glm::lookAt(vec3(0.3f, 0.9f, 0.8f), vec3(0.1f, 0, 0), vec3(0, 1, 0)));
   camera.yfov = 0.8f;
-  camera.lens = {.f_number = 0.2f, .focus_distance = 0.6f, .blades = 3, .rotation = 0.4f};
+  const scene::Lens lens{.f_number = 0.2f, .focus_distance = 0.6f, .blades = 3, .rotation = 0.4f};
+  const auto [has_lens, shift] =
+      GENERATE(std::pair(true, vec2(0)), std::pair(true, vec2(0.2f, -0.3f)), std::pair(false, vec2(-0.3f, 0.1f)));
+  camera.lens = has_lens ? lens : scene::Lens{}, camera.shift = shift;
   scene::Scene mirrored = straight;
   test::add_quad(mirrored, {-1, 3, -1}, {2, -2, 0}, {0, 0, 2}, 1);
   straight.lights[0].direction = {0, -1, 0};

@@ -182,7 +182,7 @@ std::vector<SharedStruct> structs() {
       SHARED("ray.h", Ray, origin, tmax, direction, slot),
       SHARED("ray.h", Hit, t, prim, u, v),
       SHARED("scene.h", Frame, camera_origin, width, camera_right, height, camera_up, orthographic,
-             camera_forward, seed, lens_radius, focus_distance, lens_blades, lens_rotation,
+             camera_forward, seed, camera_axis, lens_radius, focus_distance, lens_blades, lens_rotation,
              environment_radiance, light_count, first_lamp, lamp_count, lamp_pmf, environment_width,
              environment_height, environment_rotation, environment_light_pmf, max_depth, roulette_depth,
              most_branches, scene_radius, camera_in_solids, sky_group, sun_group, learned_origin,

@@ -1,6 +1,7 @@
 // links: commands
 // The camera's lens by commands: undone, kept in bookmarks, focused by a place in the picture, refused where
 // it makes no sense.
+#include "session/pick.h"
 #include "unit/workspace_bench.h"
 
 using namespace lucerna;
@@ -68,6 +69,51 @@ TEST_CASE(
   sky.run("camera.place 2,2.5,-3 2,4,-3 0,0,1");
   sky.run("camera.f_number 4");
   CHECK(lens_of(sky).focus_distance == Approx(1.5f));
+}
+
+TEST_CASE("an upright camera is level, with the middle of the picture where it was") {
+  WorkspaceBench b;
+  b.open();
+  b.run("camera.place 1,1.7,6 1.5,4,2 0.2,1,0 fov=50");
+  b.run("camera.f_number 2"), b.run("camera.focus_distance 3");
+  const scene::Camera before = b.work.camera.view->camera;
+  const float aspect = b.work.camera.aspect;
+  const auto ray = [&](const scene::Camera& c, float x, float y) {
+    return session::pick_ray(c, x, y, aspect).direction;
+  };
+  const auto column = [&](const scene::Camera& c, float x) {  // heading of rays of one column: least and most
+    float lo = 10, hi = -10;
+    for (const float y : {0.05f, 0.5f, 0.95f}) {
+      const vec3 d = ray(c, x, y);
+      lo = std::min(lo, std::atan2(d.x, -d.z)), hi = std::max(hi, std::atan2(d.x, -d.z));
+    }
+    return hi - lo;
+  };
+  CHECK(column(before, 0.1f) > 0.05f);
+  b.run("camera.upright");
+  const scene::Camera after = b.work.camera.view->camera;
+  for (const float x : {0.1f, 0.5f, 0.8f}) CHECK(column(after, x) < 1e-5f);
+  CHECK(glm::distance(ray(before, 0.5f, 0.5f), ray(after, 0.5f, 0.5f)) < 1e-5f);
+  // At the same scale around the middle.
+  CHECK(glm::distance(ray(after, 0.51f, 0.5f), ray(after, 0.49f, 0.5f)) ==
+        Approx(glm::distance(ray(before, 0.51f, 0.5f), ray(before, 0.49f, 0.5f))).epsilon(0.01));
+  // Focused on the same point of the middle's ray.
+  CHECK(after.lens.focus_distance / glm::dot(ray(after, 0.5f, 0.5f), forward_of(after)) == Approx(3).epsilon(1e-4));
+  b.run("camera.bookmark upright");
+  b.run("camera.shift 0 0");
+  CHECK(b.work.camera.view->camera.shift == vec2(0));
+  b.run("undo");
+  CHECK(b.work.camera.view->camera.shift == after.shift);
+  b.run("camera.shift -0.25 0.5");
+  CHECK(b.work.camera.view->camera.shift == vec2(-0.25f, 0.5f));
+  b.run("camera.go upright");
+  CHECK(b.work.camera.view->camera.shift == after.shift);
+  b.run("camera.place 1,1.7,6 1,9,5.5 0,1,0 shift_right=0 shift_up=0");
+  CHECK_THAT(b.failure("camera.upright"), Contains("too steeply"));
+  for (const char* line : {"camera.shift nan 0", "camera.shift 0 21", "camera.shift 0"}) {
+    INFO(line);
+    CHECK_FALSE(b.failure(line).empty());
+  }
 }
 
 TEST_CASE("bookmarks keep the lens") {

@@ -373,6 +373,8 @@ class Walker {
       lens.blades = static_cast<uint32_t>(blades);
     }
     lens.rotation = static_cast<float>(own->number("aperture_rotation", 0));
+    camera.shift.x = static_cast<float>(own->number("shift_right", 0));
+    camera.shift.y = static_cast<float>(own->number("shift_up", 0));
   }
 
   // Fills what a glTF camera says of its lens; negative xmag and ymag, which mirror the picture, stay so.
