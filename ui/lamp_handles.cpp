@@ -171,6 +171,7 @@ void drag_lamp(Ui& ui, const Area& shown) {
     const session::Probe* rays = ui.camera.probe();
     if (!rays) return;
     const session::PickRay ray = session::pick_ray(ui.camera.view->camera, at.x, at.y, ui.camera.aspect);
+    if (ray.direction == vec3(0)) return;
     const auto hit = rays->nearest(ray.origin, ray.direction);
     const vec3 from = ui.open.light(handle.light).position;
     // Without a surface there, at the previous distance.

@@ -82,7 +82,12 @@ void lens_shift(Ui& ui, const scene::Camera& camera) {
       "vertical.");
   if (camera.shift == vec2(0)) return;
   vec2 shift = camera.shift;
-  const Slider how{.lo = -1, .hi = 1, .decimals = 3, .bar = false, .sign = true, .typed_lo = -scene::k_max_shift,
+  const Slider how{.lo = -1,
+                   .hi = 1,
+                   .decimals = 3,
+                   .bar = false,
+                   .sign = true,
+                   .typed_lo = -scene::k_max_shift,
                    .typed_hi = scene::k_max_shift};
   bool moved = slider("##shift_up", "Shift up", shift.y, how);
   tooltip("Heights of the picture by which its middle is above the view axis.");
@@ -91,6 +96,31 @@ void lens_shift(Ui& ui, const scene::Camera& camera) {
   if (moved) ui.act("camera.shift", shift.x, shift.y);
   if (button("##no_shift", "Remove shift", false, ImGui::CalcItemWidth())) ui.act("camera.shift", 0, 0);
   tooltip("Puts the middle of the picture on the view axis again.");
+}
+
+void section_plane(Ui& ui, const Viewpoint& view) {
+  const scene::Section& section = view.camera.section;
+  if (button("##section", "Section plane", section.cuts(), ImGui::CalcItemWidth())) {
+    const vec3 ahead = commands::forward_of(view.camera);
+    if (section.cuts())
+      ui.act("camera.no_section");
+    else
+      ui.act("camera.section", commands::eye_of(view.camera) + 0.5f * view.distance * ahead, ahead);
+  }
+  tooltip("Cuts the view by a plane across it: the camera sees only what lies behind. Light is not cut.");
+  if (!section.cuts()) return;
+  float offset = section.offset;
+  const float reach = 2 * view.extent;
+  if (slider("##offset", "Plane at", offset,
+             {.lo = -reach,
+              .hi = reach,
+              .decimals = 3,
+              .unit = "m",
+              .bar = false,
+              .typed_lo = -1e6f,
+              .typed_hi = 1e6f}))
+    ui.act("camera.section", offset * section.normal, section.normal);
+  tooltip("Distance of the plane from the scene's origin, along the view that it was placed in.");
 }
 
 void depth_of_field(Ui& ui, const scene::Lens& lens) {
@@ -175,6 +205,7 @@ void cameras(Ui& ui) {
     lens_shift(ui, view.camera);
     depth_of_field(ui, view.camera.lens);
   }
+  section_plane(ui, view);
   float speed = ui.camera.speed;
   if (slider("##speed", "Fly speed", speed,
              {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m/s"}))

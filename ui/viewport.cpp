@@ -132,6 +132,7 @@ std::optional<vec3> under_pointer(Ui& ui, const Area& shown) {
   const float y = (at.y - shown.lo.y) / std::max(1.0f, shown.height());
   if (!rays || !ui.camera.view || x < 0 || x > 1 || y < 0 || y > 1) return std::nullopt;
   const session::PickRay ray = session::pick_ray(ui.camera.view->camera, x, y, ui.camera.aspect);
+  if (ray.direction == vec3(0)) return std::nullopt;
   const auto hit = rays->nearest(ray.origin, ray.direction);
   if (!hit) return std::nullopt;
   return hit->position;

@@ -133,7 +133,8 @@ void frame(Viewpoint& view, const Box& box, float aspect) {
     view.distance = 1.05f * radius / std::sin(std::min(half_x, half_y));
   }
   // The box's centre in the middle of the picture, which a lens shift moves away from the view axis.
-  const float half = view.camera.orthographic ? view.camera.ymag : view.distance * std::tan(0.5f * view.camera.yfov);
+  const float half =
+      view.camera.orthographic ? view.camera.ymag : view.distance * std::tan(0.5f * view.camera.yfov);
   const vec2 aside = 2 * half * view.camera.shift * vec2(aspect, 1);
   view.camera.to_world =
       placed(view.camera.to_world, box.centre() - view.distance * forward_of(view.camera) -
@@ -152,7 +153,8 @@ bool upright(Viewpoint& view, float aspect) {
   const vec3 level(axis.x / flat, 0, axis.z / flat), right(-level.z, 0, level.x);
   const float ahead = glm::dot(middle, level);
   if (!(ahead > std::cos(k_most) * glm::length(middle))) return false;
-  // Seen under the same angle around the middle: lengths in the plane of the picture grow with the ray's own length.
+  // Seen under the same angle around the middle: lengths in the plane of the picture grow with the ray's own
+  // length.
   const float wider = 1 / ahead;
   const float yfov = 2 * std::atan(half.y * wider);
   const vec2 now_half = half * wider;
@@ -185,7 +187,8 @@ float yfov_from_focal_length(float millimetres, float aspect) {
 
 bool same_view(const scene::Camera& a, const scene::Camera& b) {
   return a.to_world == b.to_world && a.orthographic == b.orthographic && a.yfov == b.yfov &&
-         a.xmag == b.xmag && a.ymag == b.ymag && a.aspect == b.aspect && a.lens == b.lens && a.shift == b.shift;
+         a.xmag == b.xmag && a.ymag == b.ymag && a.aspect == b.aspect && a.lens == b.lens &&
+         a.shift == b.shift && a.section == b.section;
 }
 
 }  // namespace lucerna::commands

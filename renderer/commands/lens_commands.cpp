@@ -48,8 +48,8 @@ std::vector<Parameter> lens_parameters() {
        .type = Type::boolean,
        .help = "true: no lens, everything is sharp",
        .optional = true},
-          real("shift_right", "of the lens", -scene::k_max_shift, scene::k_max_shift, "picture widths"),
-          real("shift_up", "of the lens", -scene::k_max_shift, scene::k_max_shift, "picture heights")};
+      real("shift_right", "of the lens", -scene::k_max_shift, scene::k_max_shift, "picture widths"),
+      real("shift_up", "of the lens", -scene::k_max_shift, scene::k_max_shift, "picture heights")};
 }
 
 void set_lens(scene::Camera& camera, const Arguments& a) {
@@ -77,7 +77,8 @@ void focus_somewhere(const OpenScene& open, Viewpoint& view, float aspect) {
 
 std::string lens_words(const scene::Camera& camera) {
   const scene::Lens& lens = camera.lens;
-  std::string text = " " + named("shift_right", camera.shift.x).text + " " + named("shift_up", camera.shift.y).text;
+  std::string text =
+      " " + named("shift_right", camera.shift.x).text + " " + named("shift_up", camera.shift.y).text;
   if (camera.orthographic) return text;
   if (lens.f_number == 0) return text + " pinhole=true";
   text += " " + named("f_number", lens.f_number).text + " " + named("focus", lens.focus_distance).text;
@@ -129,29 +130,63 @@ void add_lens_commands(Registry& registry, const OpenScene& open, Navigation& ca
     p.name = name, p.optional = false;
     return p;
   };
-  registry.add({.name = "camera.shift",
-                .help = "Shifts the lens: the picture's middle moves away from the view axis, and vertical lines stay "
-                        "parallel.",
-                .parameters = {shift(all[5], "right"), shift(all[6], "up")},
-                .run =
-                    [&camera](const Arguments& a) {
-                      camera.needs_view();
-                      Viewpoint view = *camera.view;
-                      view.camera.shift = {a.number("right"), a.number("up")};
-                      camera.take_view(view);
-                    },
-                .moves = true});
-  registry.add({.name = "camera.upright",
-                .help = "Levels the camera, so that vertical lines are vertical in the picture, and shifts the lens so "
-                        "that the picture's middle stays: two-point perspective.",
+  registry.add(
+      {.name = "camera.shift",
+       .help = "Shifts the lens: the picture's middle moves away from the view axis, and vertical lines stay "
+               "parallel.",
+       .parameters = {shift(all[5], "right"), shift(all[6], "up")},
+       .run =
+           [&camera](const Arguments& a) {
+             camera.needs_view();
+             Viewpoint view = *camera.view;
+             view.camera.shift = {a.number("right"), a.number("up")};
+             camera.take_view(view);
+           },
+       .moves = true});
+  registry.add(
+      {.name = "camera.upright",
+       .help =
+           "Levels the camera, so that vertical lines are vertical in the picture, and shifts the lens so "
+           "that the picture's middle stays: two-point perspective.",
+       .parameters = {},
+       .run =
+           [&camera](const Arguments&) {
+             camera.needs_view();
+             Viewpoint view = *camera.view;
+             needs_perspective(view.camera, "a lens shift that levels it");
+             if (!upright(view, camera.aspect))
+               throw Error("", "the camera looks too steeply up or down, by more than 80 degrees");
+             camera.take_view(view);
+           },
+       .moves = true});
+  const auto part = [](const char* name, const char* help, const char* unit) {
+    return Parameter{.name = name, .type = Type::vector, .help = help, .lo = -1e9, .hi = 1e9, .unit = unit};
+  };
+  registry.add(
+      {.name = "camera.section",
+       .help = "Cuts the view by a plane: the camera sees only what lies behind it. Light is not cut.",
+       .parameters = {part("point", "of the plane", "m"),
+                      part("normal", "of the plane, into the part that stays visible; any length", "")},
+       .run =
+           [&camera](const Arguments& a) {
+             camera.needs_view();
+             const vec3 normal = a.vector("normal");
+             if (!(glm::length(normal) > 1e-6f)) throw Error("", "normal: its length is 0");
+             Viewpoint view = *camera.view;
+             scene::Section& section = view.camera.section;
+             section.normal = glm::normalize(normal);
+             section.offset = glm::dot(section.normal, a.vector("point"));
+             camera.take_view(view);
+           },
+       .moves = true});
+  registry.add({.name = "camera.no_section",
+                .help = "Shows the whole view again, without a plane that cuts it.",
                 .parameters = {},
                 .run =
                     [&camera](const Arguments&) {
                       camera.needs_view();
                       Viewpoint view = *camera.view;
-                      needs_perspective(view.camera, "a lens shift that levels it");
-                      if (!upright(view, camera.aspect))
-                        throw Error("", "the camera looks too steeply up or down, by more than 80 degrees");
+                      view.camera.section = {};
                       camera.take_view(view);
                     },
                 .moves = true});

@@ -118,6 +118,14 @@ struct Lens {
   float rotation = 0;   ///< of the first corner, from the camera's right towards up, radians
   bool operator==(const Lens&) const = default;
 };
+/// Plane that cuts the view, and not the light: camera rays that start before it begin on it.
+struct Section {
+  vec3 normal{0};    ///< unit, into the part that stays visible; 0: there is none
+  float offset = 0;  ///< of the plane along it, metres
+  bool operator==(const Section&) const = default;
+  bool cuts() const { return normal != vec3(0); }
+};
+
 inline constexpr float k_film_width = 0.036f;  ///< metres
 
 /// Looks down its -Z, +Y up. Perspective: yfov in radians, of the picture's height. Orthographic: half
@@ -132,6 +140,7 @@ struct Camera {
   Lens lens{};               ///< not used by orthographic cameras
   /// Lens shift: moves the picture's middle from the view axis, right in its widths and up in its heights.
   vec2 shift{0};
+  Section section{};  ///< in the world
 };
 
 enum class LightKind : uint32_t { point, spot, directional };

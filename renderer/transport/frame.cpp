@@ -32,6 +32,7 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
     (camera.orthographic ? f.camera_origin : f.camera_forward) += aside;
   }
   f.orthographic = camera.orthographic;
+  f.section_normal = camera.section.normal, f.section_offset = camera.section.offset;
   f.lens_radius = lens_radius(camera, half_w);
   f.focus_distance = camera.lens.focus_distance;
   f.lens_blades = camera.lens.blades;
@@ -56,6 +57,10 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   if (camera.orthographic)
     for (const float x : {-1.0f, 1.0f})
       for (const float y : {-1.0f, 1.0f}) start.grow(f.camera_origin + x * f.camera_right + y * f.camera_up);
+  // On a plane that cuts the view, paths may start anywhere.
+  if (camera.section.cuts())
+    start.grow(flat.scene_centre - vec3(flat.scene_radius)),
+        start.grow(flat.scene_centre + vec3(flat.scene_radius));
   f.camera_in_solids = upload::meets_solids(flat, start);
   if (flat.groups) f.sky_group = flat.groups->sky, f.sun_group = flat.groups->sun;
   const bool met = flat.effects.emissive || flat.environment_radiance != vec3(0);

@@ -93,6 +93,16 @@ void main() {
 #endif
   Seen seen = camera_sees(v.surface.position, eye);
   wanted = wanted && seen.inside;
+#if LUCERNA_SECTION
+  // What the plane cuts off is not visible; what lies behind it is, whatever is before the plane.
+  float behind = dot(v.surface.position, frame.section_normal) - frame.section_offset;
+  float nearing = -dot(seen.towards, frame.section_normal);
+  bool cut = seen.distance * nearing > behind;  // the eye is before the plane
+  if (cut) {
+    wanted = wanted && behind >= 0.0;
+    seen.distance = min(seen.distance, behind / max(nearing, 1e-30));
+  }
+#endif
   // Alpha coverage: the visible share of the surface.
   vec3 light = v.coverage * v.arriving * reflected_to_eye(v.surface, seen.towards, -ray.direction) *
                (abs(dot(seen.towards, v.surface.normal_g)) * seen.per_cosine);

@@ -38,6 +38,14 @@ void main() {
   ray.direction = normalize(frame.camera_forward + shift - from / frame.focus_distance);
 #endif
   ray.tmax = inside ? k_infinity : -1.0;
+#if LUCERNA_SECTION
+  // The ray starts on the plane. Without a way through it, it ends at once, without a hit.
+  float cut = section_distance(ray.origin, ray.direction);
+  if (cut >= k_infinity)
+    ray.tmax = -1.0;
+  else
+    ray.origin += cut * ray.direction;
+#endif
   ray.slot = slot;
   store_ray(slot, ray);
   PathState p;

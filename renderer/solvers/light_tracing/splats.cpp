@@ -20,18 +20,19 @@ Splats::Splats(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::De
       block_(device, {.name = "splats", .bytes = sizeof(SplatFrame)}),
       round_(device, {.name = "round of light paths", .bytes = sizeof(EmitPush)}),
       picture_(device, {.name = "picture of splats", .bytes = 16, .texel = true}) {
-  kernels(false, false);
+  kernels(false, false, false);
   write_frame();
 }
 
-const Splats::Kernels& Splats::kernels(bool weighed, bool lens) {
-  Kernels& k = kernels_[weighed][lens];
+const Splats::Kernels& Splats::kernels(bool weighed, bool lens, bool section) {
+  Kernels& k = kernels_[weighed][lens][section];
   if (k.vertex) return k;
   gpu::Defines defines = scene_defines_;
   defines["LUCERNA_SPLATS_SUMMED"] = "1";
   if (weighed) defines["LUCERNA_SPLATS_WEIGHED"] = "1";
   k.arrival = gpu::Kernel(device_, compiler_, "transport/shadow.comp", defines);
   if (lens) defines["LUCERNA_THIN_LENS"] = "1";
+  if (section) defines["LUCERNA_SECTION"] = "1";
   k.vertex = gpu::Kernel(device_, compiler_, "light_tracing/trace.comp", defines);
   return k;
 }
@@ -92,7 +93,7 @@ void Splats::clear(transport::Wavefront& wavefront) {
 Splats::Went Splats::batch(transport::Wavefront& wavefront, const transport::LightSource& lights,
                            const transport::LightRound& round, bool weighed, const Frame& picture,
                            uint32_t enabled, const std::function<bool()>& cancel) {
-  const Kernels& used = kernels(weighed, picture.lens_radius > 0);
+  const Kernels& used = kernels(weighed, picture.lens_radius > 0, picture.section_normal != vec3(0));
   if (!tracing_ || next_.round != round.number || next_.paths != round.paths) {
     next_ = {.round = round.number, .paths = round.paths};
     traced_ = 0, tracing_ = true, band_ = 0;

@@ -59,7 +59,7 @@ class Splats {
     gpu::Kernel vertex, arrival;
   };
   /// Compiled at the first use.
-  const Kernels& kernels(bool weighed, bool lens);
+  const Kernels& kernels(bool weighed, bool lens, bool section);
   enum class Went { cancelled, on, complete };
   Went batch(transport::Wavefront& wavefront, const transport::LightSource& lights,
              const transport::LightRound& round, bool weighed, const shared::Frame& picture, uint32_t enabled,
@@ -76,7 +76,7 @@ class Splats {
   gpu::Defines scene_defines_;
   bool groups_;
   transport::LightEmitter emitter_;
-  Kernels kernels_[2][2];  ///< weighed or not, through a lens or not
+  Kernels kernels_[2][2][2];  ///< weighed or not, through a lens or not, with a section plane or not
   gpu::Kernel resolve_;
   gpu::Buffer counts_, block_, round_, picture_, contributions_;
   /// LongSum of each pixel of a band: red, green, blue. One buffer for all three would be the largest buffer
