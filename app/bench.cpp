@@ -12,6 +12,7 @@
 #include "base/hash.h"
 #include "base/log.h"
 #include "base/timer.h"
+#include "bench/auto_verdict.h"
 #include "bench/compare_reports.h"
 #include "bench/machine.h"
 #include "bench/page.h"
@@ -133,6 +134,7 @@ int run(const BenchArguments& a, const bench::Matrix& matrix) {
         "all {} renders exist already; name another folder with --report to measure again", total));
   for (const std::string& found : bench::findings(bench::read_report(path)))
     std::printf("%s\n", found.c_str());
+  std::printf("%s", bench::auto_verdict(bench::read_report(path)).c_str());
   std::printf("%s\n", (path / "report.html").c_str());
   return 0;
 }

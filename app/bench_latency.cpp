@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "app/interrupt.h"
+#include "app/size.h"
 #include "app/verbs.h"
 #include "base/file.h"
 #include "base/json_text.h"
@@ -15,14 +16,6 @@ namespace lucerna::app {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::pair<uint32_t, uint32_t> parse_size(const std::string& text) {
-  unsigned width = 0, height = 0;
-  char rest = 0;
-  if (std::sscanf(text.c_str(), "%ux%u%c", &width, &height, &rest) != 2 || width == 0 || height == 0)
-    throw_error("--size", "'{}': expected WIDTHxHEIGHT, such as 960x540", text);
-  return {width, height};
-}
 
 /// A file, or the name of a scene that comes with the program.
 fs::path scene_file(const std::string& name) {

@@ -1,6 +1,8 @@
 // Parses the command line and runs the verb.
 #include "app/program.h"
 
+#include <fmt/ranges.h>
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
@@ -69,6 +71,8 @@ class Program {
   void add_bench_latency();
   void add_bench_photons();
   void add_bench_interiors();
+  void add_bench_auto();
+  void add_rooms_options(CLI::App* verb, BenchInteriorsArguments& arguments);
   void add_scene_options(CLI::App* verb);
   int view();
 
@@ -80,16 +84,17 @@ class Program {
   double scene_memory_ = double(scene::k_scene_bytes) / k_gib;
 
   CLI::App *render_ = nullptr, *info_ = nullptr, *devices_ = nullptr, *compare_ = nullptr, *bench_ = nullptr,
-           *rays_ = nullptr, *latency_ = nullptr, *photons_ = nullptr, *interiors_ = nullptr;
+           *rays_ = nullptr, *latency_ = nullptr, *photons_ = nullptr, *interiors_ = nullptr,
+           *auto_ = nullptr;
   RenderArguments r;
-  std::string info_scene_;
-  bool info_json_ = false, devices_json_ = false;
+  InfoArguments i;
+  bool devices_json_ = false;
   CompareArguments c;
   BenchArguments bm;
   BenchRaysArguments b;
   BenchLatencyArguments bt;
   BenchPhotonsArguments bp;
-  BenchInteriorsArguments bn;
+  BenchInteriorsArguments bn, ba;
 };
 
 constexpr const char* k_device_help = "device: index, part of a name, cpu or gpu (also LUCERNA_DEVICE)";
@@ -104,6 +109,7 @@ Program::Program() {
   add_bench_latency();
   add_bench_photons();
   add_bench_interiors();
+  add_bench_auto();
   app_.require_subcommand(0, 1);
   // Footers come last: a new verb inherits the footer of its parent.
   app_.footer(settings_help());
@@ -152,9 +158,10 @@ void Program::add_render() {
           "metres to the lens's plane of focus, along the view axis; by default the scene's, or else "
           "to the surface in the middle of the picture")
       ->check(finite() & CLI::Range(scene::k_least_focus, scene::k_max_coordinate));
-  render_->add_flag("--upright", r.upright,
-                    "level the camera and shift the lens so that the middle of the picture stays: vertical lines "
-                    "become vertical");
+  render_->add_flag(
+      "--upright", r.upright,
+      "level the camera and shift the lens so that the middle of the picture stays: vertical lines "
+      "become vertical");
   render_->add_option("--shift", r.shift, "RIGHT UP, shift of the lens in widths and heights of the picture")
       ->expected(2)
       ->check(finite() & CLI::Range(-scene::k_max_shift, scene::k_max_shift));
@@ -206,9 +213,17 @@ void Program::add_render() {
 }
 
 void Program::add_small_verbs() {
-  info_ = app_.add_subcommand("info", "describe a scene");
-  info_->add_option("SCENE", info_scene_, "glTF scene")->required();
-  info_->add_flag("--json", info_json_, "as JSON");
+  info_ =
+      app_.add_subcommand("info", "describe a scene: contents, and effects that it calls for, with evidence");
+  info_->add_option("SCENE", i.scene, "glTF scene")->required();
+  info_->add_flag("--json", i.json, "as JSON");
+  info_->add_flag("--pilot", i.pilot,
+                  "trace a few samples: light, noise and the solver that components.X=auto chooses for each "
+                  "component, with its reason, and a forecast");
+  info_->add_option("--size", i.size, "--pilot: size of the picture, WIDTHxHEIGHT")->capture_default_str();
+  info_->add_option("--camera", i.camera, "--pilot: name of a camera of the scene, or its number from 1");
+  info_->add_option("--set", i.set, "--pilot: KEY=VALUE")->allow_extra_args(false);
+  info_->add_option("--device", i.device, k_device_help);
   add_scene_options(info_);
   devices_ = app_.add_subcommand("devices", "list the Vulkan devices");
   devices_->add_flag("--json", devices_json_, "as JSON");
@@ -364,20 +379,8 @@ void Program::add_bench_interiors() {
       "interiors",
       "error as seen of rooms after 4, 15 and 60 s, and the time to 5, 2 and 1 %, by path tracing, learned "
       "lights, cached light and both; hours (--interiors is the same)");
+  add_rooms_options(interiors_, bn);
   bench::InteriorsOptions& o = bn.options;
-  interiors_
-      ->add_option("--scenes", o.folders,
-                   "folder with glTF scenes, each of which is measured, or one such file; can be given "
-                   "several times [the program's own interiors]")
-      ->allow_extra_args(false)
-      ->check(named());
-  interiors_->add_option("--report", bn.report, "report folder; a folder of the same bench is continued")
-      ->capture_default_str();
-  interiors_
-      ->add_option("--references", bn.references,
-                   "folder that keeps the reference pictures, for this and later benches")
-      ->capture_default_str()
-      ->check(named());
   interiors_
       ->add_option("--against", o.against,
                    "another lucerna, such as the previous commit in a separate checkout: rendered "
@@ -386,39 +389,67 @@ void Program::add_bench_interiors() {
   interiors_->add_flag(
       "--quick", o.quick,
       "three rooms in small pictures after 0.8 and 4 s: two to three minutes, plus their references once");
-  interiors_
-      ->add_option("--settings", o.settings,
-                   "some of path, learned, cache, cache-learned; the first is the baseline [all]")
+}
+
+void Program::add_bench_auto() {
+  auto_ = bench_->add_subcommand(
+      "auto",
+      "solvers chosen for the scene (components.X=auto) against fixed choices: error as seen of all scenes "
+      "after 10 and 60 s, and the time to 5, 2 and 1 %; hours (--auto is the same)");
+  ba.options.every_solver = true;
+  ba.report = "auto-report";
+  add_rooms_options(auto_, ba);
+}
+
+void Program::add_rooms_options(CLI::App* verb, BenchInteriorsArguments& arguments) {
+  bench::InteriorsOptions& o = arguments.options;
+  const bool all = o.every_solver;
+  const std::vector<std::string>& settings = all ? bench::k_auto_settings : bench::k_interior_settings;
+  verb->add_option("--scenes", o.folders,
+                   fmt::format("folder with glTF scenes, each of which is measured, or one such file; can be "
+                               "given several times [the program's own {}]",
+                               all ? "scenes" : "interiors"))
+      ->allow_extra_args(false)
+      ->check(named());
+  verb->add_option("--report", arguments.report, "report folder; a folder of the same bench is continued")
+      ->capture_default_str();
+  verb->add_option("--references", arguments.references,
+                   "folder that keeps the reference pictures, for this and later benches")
+      ->capture_default_str()
+      ->check(named());
+  verb->add_option("--settings", o.settings,
+                   fmt::format("some of {}; the first is the baseline [all]", fmt::join(settings, ", ")))
       ->delimiter(',')
-      ->check(CLI::IsMember(
-          std::vector<std::string>(bench::k_interior_settings.begin(), bench::k_interior_settings.end())));
-  interiors_->add_option("--seconds", o.seconds, "seconds per render [4,15,60; quick 0.8,4]")
+      ->check(CLI::IsMember(settings));
+  verb->add_option("--seconds", o.seconds,
+                   all ? "seconds per render [10,60]" : "seconds per render [4,15,60; quick 0.8,4]")
       ->delimiter(',')
       ->check(finite() & CLI::Range(0.01, 1e6));
-  interiors_
-      ->add_option(
-          "--samples", o.samples,
-          "samples per pixel that end renders instead of time: then errors do not depend on the machine")
+  verb->add_option("--samples", o.samples,
+                   "samples per pixel that end renders instead of time: then errors do not depend on the "
+                   "machine")
       ->delimiter(',')
       ->check(CLI::Range(1u, 1u << 20))
       ->excludes("--seconds");
-  interiors_->add_option("--size", o.size,
-                         "picture, WIDTHxHEIGHT; swapped for upright cameras [320x180; quick 192x108]");
-  interiors_->add_option("--repeats", o.repeats, "renders of each, with different seeds [3; quick 2]")
+  verb->add_option("--size", o.size,
+                   fmt::format("picture, WIDTHxHEIGHT; swapped for upright cameras [320x180{}]",
+                               all ? "" : "; quick 192x108"));
+  verb->add_option("--repeats", o.repeats,
+                   fmt::format("renders of each, with different seeds [{}]", all ? "1" : "3; quick 2"))
       ->check(CLI::Range(1, 100));
-  interiors_
-      ->add_option("--reference-samples", o.reference_samples,
-                   "samples per pixel of the reference pictures, in two halves [2048; quick 1024]")
+  verb->add_option("--reference-samples", o.reference_samples,
+                   fmt::format("samples per pixel of the reference pictures, in two halves [2048{}]",
+                               all ? "" : "; quick 1024"))
       ->check(CLI::Range(2u, 1u << 20));
-  interiors_->add_flag("--quiet", bn.quiet, "no progress line");
-  interiors_->add_option("--device", bn.device, k_device_help);
-  add_scene_options(interiors_);
+  verb->add_flag("--quiet", arguments.quiet, "no progress line");
+  verb->add_option("--device", arguments.device, k_device_help);
+  add_scene_options(verb);
 }
 
 int Program::run(int argc, char** argv) {
   // They are also accepted in the form of built-in matrices.
-  std::string latency = "latency", photons = "photons", interiors = "interiors";
-  for (std::string* name : {&latency, &photons, &interiors})
+  std::string latency = "latency", photons = "photons", interiors = "interiors", autos = "auto";
+  for (std::string* name : {&latency, &photons, &interiors, &autos})
     if (argc > 2 && argv[1] == std::string("bench") && argv[2] == "--" + *name) argv[2] = name->data();
   try {
     app_.parse(argc, argv);
@@ -427,11 +458,15 @@ int Program::run(int argc, char** argv) {
   }
   if (verbose_) log::set_console_level(log::Level::info);
   scenes_.most_bytes = uint64_t(scene_memory_ * k_gib);
-  r.scenes = b.scenes = bm.scenes = bt.load = bn.scenes = scenes_;
-  for (std::string* device : {&r.device, &b.device, &bm.device, &bt.device, &bp.options.device, &bn.device})
+  r.scenes = b.scenes = bm.scenes = bt.load = bn.scenes = ba.scenes = scenes_;
+  for (std::string* device :
+       {&r.device, &b.device, &bm.device, &bt.device, &bp.options.device, &bn.device, &ba.device})
     if (device->empty()) *device = device_;
   if (*render_) return render(r);
-  if (*info_) return info(info_scene_, info_json_, scenes_);
+  if (*info_) {
+    i.scenes = scenes_;
+    return info(i);
+  }
   if (*devices_) return devices(devices_json_);
   if (*compare_) return compare(c);
   if (*rays_) return bench_rays(b);
@@ -448,6 +483,10 @@ int Program::run(int argc, char** argv) {
   if (*interiors_) {
     bn.command = typed();
     return bench_interiors(bn);
+  }
+  if (*auto_) {
+    ba.command = typed();
+    return bench_interiors(ba);
   }
   if (*bench_) {
     bm.command = typed();

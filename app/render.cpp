@@ -9,6 +9,7 @@
 
 #include "app/interrupt.h"
 #include "app/render_stats.h"
+#include "app/size.h"
 #include "app/verbs.h"
 #include "base/file.h"
 #include "base/json_text.h"
@@ -20,16 +21,6 @@
 
 namespace lucerna::app {
 namespace {
-
-std::pair<uint32_t, uint32_t> parse_size(const std::string& text) {
-  unsigned long w = 0, h = 0;
-  char rest = 0;
-  if (text.find('-') != std::string::npos || std::sscanf(text.c_str(), "%lux%lu%c", &w, &h, &rest) != 2 ||
-      !w || !h || w > film::k_max_side || h > film::k_max_side)
-    throw_error("--size", "'{}': expected WIDTHxHEIGHT, each from 1 to {}, such as 1280x720", text,
-                film::k_max_side);
-  return {uint32_t(w), uint32_t(h)};
-}
 
 void print_progress(const session::Renderer& r, double seconds, double limit, bool last) {
   const double paths = double(r.stats().paths) / (double(r.film().width()) * r.film().height());
@@ -189,6 +180,7 @@ bool load(session::Renderer& r, const RenderArguments& a, const std::vector<sess
   }
   if (terminal) std::fprintf(stderr, "\r%-60s\r", "");
   set_limits(r, a, changes);
+  r.expect_seconds(a.seconds);
   if (!a.camera.empty()) r.choose_camera(a.camera);
   set_lens(r, a);
   if (!a.reference.empty()) r.set_reference(a.reference);

@@ -243,9 +243,11 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
     j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
   for (int c = 0; c < paths::k_component_count; ++c) {
     const std::string name = paths::k_component_names[c];
-    j["components"][name] = {{"solver", r.settings().text("components." + name)},
+    j["components"][name] = {{"solver", r.choices()[size_t(c)].solver},
                              {"mean_radiance", {means[c].x, means[c].y, means[c].z}},
                              {"ms", r.stats().component_ms[c]}};
+    if (!r.choices()[size_t(c)].reason.empty())
+      j["components"][name]["reason"] = r.choices()[size_t(c)].reason;
   }
   return j;
 }

@@ -6,18 +6,8 @@
 #include "base/json_text.h"
 #include "film/io/compare.h"
 #include "gpu/device.h"
-#include "scene/io/load.h"
 
 namespace lucerna::app {
-
-int info(const std::string& file, bool json, const scene::LoadOptions& scenes) {
-  const scene::Scene scene = scene::load(file, scenes);
-  if (json)
-    std::printf("%s\n", json_text(scene::describe(scene), 2).c_str());
-  else
-    std::printf("%s", scene::describe_text(scene).c_str());
-  return 0;
-}
 
 int devices(bool json) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();

@@ -25,7 +25,7 @@ struct RenderArguments {
   std::optional<double> f_number, focus;  ///< of the camera's lens
   std::optional<int64_t> blades;
   bool upright = false;
-  std::vector<double> shift;  ///< right, up; empty: the scene's
+  std::vector<double> shift;     ///< right, up; empty: the scene's
   std::vector<std::string> set;  ///< key=value
   bool quiet = false;
   bool filter = false;        ///< files contain the filtered picture too
@@ -33,7 +33,15 @@ struct RenderArguments {
 };
 int render(const RenderArguments& arguments);
 
-int info(const std::string& scene, bool json, const scene::LoadOptions& scenes);
+struct InfoArguments {
+  std::string scene;
+  bool json = false;
+  bool pilot = false;  ///< runs the pilot that chooses solvers; needs a device. Below: for its picture
+  std::string size = "1280x720", camera, device;
+  std::vector<std::string> set;
+  scene::LoadOptions scenes;
+};
+int info(const InfoArguments& arguments);
 int devices(bool json);
 
 struct BenchRaysArguments {

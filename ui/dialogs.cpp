@@ -142,15 +142,6 @@ void begin_panel(const char* name, const Area& area, ImU32 background, bool scro
   ImGui::PopStyleColor();
 }
 
-bool panel_section(Ui& ui, const char* title, bool fallback, const std::string& note) {
-  const auto found = ui.sections.find(title);
-  const bool open = found == ui.sections.end() ? fallback : found->second;
-  bool wanted = open;
-  section(title, wanted, note);
-  if (wanted != open) ui.act("window.section", title, wanted);
-  return open;
-}
-
 void draw_dialogs(Ui& ui) {
   draw_file_dialog(ui);
   key_page(ui);
@@ -176,7 +167,7 @@ void solver_keys(Ui& ui) {
   };
   for (const solvers::SolverInfo* solver : used) {
     for (const solvers::ViewInfo& view : solver->views)
-      if (pressed(view.shortcut)) ui.turn_view(view);
+      if (pressed(view.shortcut)) ui.controls.turn_view(view);
     for (const solvers::CommandInfo& command : solver->commands)
       if (pressed(command.shortcut)) ui.act(solver->name + "." + command.name);
   }
@@ -209,15 +200,15 @@ void handle_keys(Ui& ui) {
   if (ui.pressed(GLFW_KEY_F1)) ui.act("window.keys");
   if (ui.pressed(GLFW_KEY_TAB)) ui.act("window.panels", !ui.layout.panels), ui.wake(3);
   if (ui.pressed(GLFW_KEY_ESCAPE)) {
-    if (ui.welcome)
-      ui.welcome = false;
+    if (ui.cards.welcome)
+      ui.cards.welcome = false;
     else if (ui.dropper)
       ui.act("exposure.dropper", false);
-    else if (ui.focusing)
+    else if (ui.scene_view.focusing)
       ui.act("camera.focusing", false);
     else if (ui.open.loading())
       ui.act("scene.cancel");
-    else if (!ui.errors.empty())
+    else if (!ui.cards.errors.empty())
       ui.act("dismiss");
     else if (ui.camera.selection.kind != Kind::none)
       ui.act("select.none");

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "base/color.h"
-#include "state.h"
 
 namespace lucerna::ui {
 namespace {
@@ -32,30 +31,30 @@ EmittingSurface measured(const scene::Primitive& p, const mat4& to_world) {
 
 }  // namespace
 
-const std::vector<uint32_t>& emitters(const Ui& ui) {
+const std::vector<uint32_t>& emitters(const commands::OpenScene& open, const commands::Navigation& camera) {
   static uint64_t of = 0;
   static std::vector<bool> used;
   static std::vector<uint32_t> list;
-  if (of != ui.camera.view_scene || used.size() != ui.open.scene->materials.size())
-    used = used_materials(*ui.open.scene), of = ui.camera.view_scene;
+  if (of != camera.view_scene || used.size() != open.scene->materials.size())
+    used = used_materials(*open.scene), of = camera.view_scene;
   list.clear();
   for (uint32_t i = 0; i < used.size(); ++i)
-    if (used[i] && strength_of(ui.open.emission(i)) > 0 && !ui.open.scene->materials[i].unlit)
-      list.push_back(i);
+    if (used[i] && strength_of(open.emission(i)) > 0 && !open.scene->materials[i].unlit) list.push_back(i);
   return list;
 }
 
-const std::vector<EmittingSurface>& emitting_surfaces(const Ui& ui) {
+const std::vector<EmittingSurface>& emitting_surfaces(const commands::OpenScene& open,
+                                                      const commands::Navigation& camera) {
   static uint64_t of = 0;
   static std::vector<uint32_t> materials;
   static std::vector<EmittingSurface> list;
-  const std::vector<uint32_t>& now = emitters(ui);
-  if (of == ui.camera.view_scene && materials == now) return list;
-  of = ui.camera.view_scene, materials = now;
+  const std::vector<uint32_t>& now = emitters(open, camera);
+  if (of == camera.view_scene && materials == now) return list;
+  of = camera.view_scene, materials = now;
   list.clear();
-  for (const scene::Instance& instance : ui.open.scene->instances) {
-    if (instance.mesh >= ui.open.scene->meshes.size()) continue;
-    for (const scene::Primitive& p : ui.open.scene->meshes[instance.mesh].primitives)
+  for (const scene::Instance& instance : open.scene->instances) {
+    if (instance.mesh >= open.scene->meshes.size()) continue;
+    for (const scene::Primitive& p : open.scene->meshes[instance.mesh].primitives)
       if (std::binary_search(now.begin(), now.end(), p.material)) {
         const EmittingSurface surface = measured(p, instance.to_world);
         if (surface.area > 0) list.push_back(surface);

@@ -6,14 +6,18 @@
 #include <cmath>
 
 #include "commands/light_edit.h"
+#include "commands/workspace.h"
 #include "emitters.h"
 #include "mark_layout.h"
 #include "session/pick.h"
-#include "state.h"
 #include "widgets.h"
 
 namespace lucerna::ui {
 namespace {
+
+using commands::Kind;
+using commands::named;
+using commands::Selection;
 
 constexpr float k_reach = 9;   // design pixels from its middle in which a handle is meant
 constexpr float k_apart = 19;  // ... between the middles of two marks, so that none covers another
@@ -21,10 +25,10 @@ constexpr float k_apart = 19;  // ... between the middles of two marks, so that 
 /// Drawn length of a spot's axis that hits nothing, relative to the scene's radius.
 constexpr float k_aim_of_extent = 0.25f;
 
-LampHandle aim_of(Ui& ui, uint32_t index, const scene::Light& light) {
+LampHandle aim_of(const MarkedScene& marked, uint32_t index, const scene::Light& light) {
   LampHandle aim{.light = index, .part = LampHandle::Part::aim, .point = light.position, .at = {}};
-  float far = k_aim_of_extent * ui.camera.view->extent;
-  if (const session::Probe* rays = ui.camera.probe())
+  float far = k_aim_of_extent * marked.camera.view->extent;
+  if (const session::Probe* rays = marked.camera.probe())
     if (const auto hit = rays->nearest(light.position, light.direction)) far = hit->distance;
   aim.point += far * light.direction;
   return aim;
@@ -32,13 +36,14 @@ LampHandle aim_of(Ui& ui, uint32_t index, const scene::Light& light) {
 
 /// Marks of what is selected stay where they belong; the others make room, or are left out. Surfaces of one
 /// material that lie on one another have one mark.
-std::vector<LampHandle> without_overlap(const Ui& ui, const Area& shown, std::vector<LampHandle> list) {
+std::vector<LampHandle> without_overlap(const MarkedScene& marked, const Area& shown,
+                                        std::vector<LampHandle> list) {
   const auto is_selected = [&](const LampHandle& h) {
-    return ui.camera.selection ==
+    return marked.camera.selection ==
            Selection{h.part == LampHandle::Part::surface ? Kind::material : Kind::light, h.light};
   };
   // The nearest to the eye come first.
-  const vec3 eye = commands::eye_of(ui.open.snapshot->camera);
+  const vec3 eye = commands::eye_of(marked.open.snapshot->camera);
   std::stable_sort(list.begin(), list.end(), [&](const LampHandle& a, const LampHandle& b) {
     return glm::distance(a.point, eye) < glm::distance(b.point, eye);
   });
@@ -70,42 +75,42 @@ bool project(const scene::Camera& camera, const Area& shown, const vec3& point, 
   return true;
 }
 
-std::vector<LampHandle> lamp_handles(Ui& ui, const Area& shown) {
+std::vector<LampHandle> lamp_handles(const MarkedScene& marked, const Area& shown) {
   std::vector<LampHandle> list;
-  if (!ui.open.scene || !ui.open.snapshot || !ui.camera.view) return list;
+  if (!marked.open.scene || !marked.open.snapshot || !marked.camera.view) return list;
   const auto add = [&](LampHandle handle) {
-    if (project(ui.open.snapshot->camera, shown, handle.point, handle.at)) list.push_back(handle);
+    if (project(marked.open.snapshot->camera, shown, handle.point, handle.at)) list.push_back(handle);
   };
-  for (uint32_t i = 0; i < ui.open.scene->lights.size(); ++i) {
-    const bool selected = ui.camera.selection == Selection{Kind::light, i};
-    const scene::Light light = ui.open.light(i);
-    if ((!ui.light_marks && !selected) || light.kind == scene::LightKind::directional) continue;
-    if (selected && light.kind == scene::LightKind::spot) add(aim_of(ui, i, light));
+  for (uint32_t i = 0; i < marked.open.scene->lights.size(); ++i) {
+    const bool selected = marked.camera.selection == Selection{Kind::light, i};
+    const scene::Light light = marked.open.light(i);
+    if ((!marked.all && !selected) || light.kind == scene::LightKind::directional) continue;
+    if (selected && light.kind == scene::LightKind::spot) add(aim_of(marked, i, light));
     add({.light = i, .part = LampHandle::Part::place, .point = light.position, .at = {}});
   }
-  if (ui.light_marks)
-    for (const EmittingSurface& surface : emitting_surfaces(ui))
+  if (marked.all)
+    for (const EmittingSurface& surface : emitting_surfaces(marked.open, marked.camera))
       add({.light = surface.material, .part = LampHandle::Part::surface, .point = surface.middle, .at = {}});
-  return without_overlap(ui, shown, std::move(list));
+  return without_overlap(marked, shown, std::move(list));
 }
 
-std::optional<LampHandle> lamp_handle_at(Ui& ui, const Area& shown, const ImVec2& at) {
+std::optional<LampHandle> lamp_handle_at(const MarkedScene& marked, const Area& shown, const ImVec2& at) {
   std::optional<LampHandle> nearest;
   float least = px(k_reach);
-  for (const LampHandle& handle : lamp_handles(ui, shown)) {
+  for (const LampHandle& handle : lamp_handles(marked, shown)) {
     const float away = std::hypot(handle.mark.x - at.x, handle.mark.y - at.y);
     if (away <= least) least = away, nearest = handle;
   }
   return nearest;
 }
 
-void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle>& hot) {
+void draw_lamp_handles(const MarkedScene& marked, const Area& shown, const std::optional<LampHandle>& hot) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   list->PushClipRect(shown.lo, shown.hi, true);
   const auto is_hot = [&](const LampHandle& h) {
     return hot && hot->light == h.light && hot->part == h.part;
   };
-  const std::vector<LampHandle> handles = lamp_handles(ui, shown);
+  const std::vector<LampHandle> handles = lamp_handles(marked, shown);
   const auto line_to_lamp = [&](const LampHandle& aim) {
     const auto lamp = std::find_if(handles.begin(), handles.end(), [&](const LampHandle& h) {
       return h.light == aim.light && h.part == LampHandle::Part::place;
@@ -113,7 +118,7 @@ void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle
     ImVec2 end;
     if (lamp != handles.end())
       end = lamp->mark;
-    else if (!project(ui.open.snapshot->camera, shown, ui.open.light(aim.light).position, end))
+    else if (!project(marked.open.snapshot->camera, shown, marked.open.light(aim.light).position, end))
       return;
     list->AddLine(end, aim.mark, IM_COL32(0, 0, 0, 120), px(3));
     list->AddLine(end, aim.mark, colour::accent, std::max(1.0f, px(1)));
@@ -128,7 +133,7 @@ void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle
   for (const LampHandle& handle : handles) {
     const bool surface = handle.part == LampHandle::Part::surface;
     const bool chosen =
-        ui.camera.selection == Selection{surface ? Kind::material : Kind::light, handle.light};
+        marked.camera.selection == Selection{surface ? Kind::material : Kind::light, handle.light};
     const ImU32 ink = chosen || is_hot(handle) ? colour::accent : colour::text;
     const float r = px(is_hot(handle) ? 6.5f : 5);
     if (surface) {
@@ -138,7 +143,7 @@ void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle
       };
       square(r + px(1.5f), [&](auto lo, auto hi) { list->AddRectFilled(lo, hi, IM_COL32(0, 0, 0, 110)); });
       square(r, [&](auto lo, auto hi) { list->AddRect(lo, hi, ink, 0, 0, px(1.5f)); });
-      if (ui.open.emits(handle.light))
+      if (marked.open.emits(handle.light))
         square(px(2), [&](auto lo, auto hi) { list->AddRectFilled(lo, hi, ink); });
       continue;
     }
@@ -156,35 +161,35 @@ void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle
     }
     list->AddCircleFilled(handle.mark, r + px(1.5f), IM_COL32(0, 0, 0, 110), 20);
     list->AddCircle(handle.mark, r, ink, 20, px(1.5f));
-    if (ui.open.light(handle.light).enabled) list->AddCircleFilled(handle.mark, px(2), ink, 12);
+    if (marked.open.light(handle.light).enabled) list->AddCircleFilled(handle.mark, px(2), ink, 12);
   }
   list->PopClipRect();
 }
 
-void drag_lamp(Ui& ui, const Area& shown) {
-  const LampHandle& handle = *ui.drag.lamp;
-  if (!ui.open.scene || !ui.camera.view || handle.light >= ui.open.scene->lights.size()) return;
+void drag_lamp(Actions& actions, const MarkedScene& marked, const LampHandle& handle, const Area& shown) {
+  if (!marked.open.scene || !marked.camera.view || handle.light >= marked.open.scene->lights.size()) return;
   const ImGuiIO& io = ImGui::GetIO();
   if (handle.part == LampHandle::Part::aim) {
     const vec2 at((io.MousePos.x - shown.lo.x) / std::max(1.0f, shown.width()),
                   (io.MousePos.y - shown.lo.y) / std::max(1.0f, shown.height()));
-    const session::Probe* rays = ui.camera.probe();
+    const session::Probe* rays = marked.camera.probe();
     if (!rays) return;
-    const session::PickRay ray = session::pick_ray(ui.camera.view->camera, at.x, at.y, ui.camera.aspect);
+    const session::PickRay ray =
+        session::pick_ray(marked.camera.view->camera, at.x, at.y, marked.camera.aspect);
     if (ray.direction == vec3(0)) return;
     const auto hit = rays->nearest(ray.origin, ray.direction);
-    const vec3 from = ui.open.light(handle.light).position;
+    const vec3 from = marked.open.light(handle.light).position;
     // Without a surface there, at the previous distance.
     const vec3 to =
         hit ? hit->position : ray.origin + glm::distance(ray.origin, handle.point) * ray.direction;
-    if (glm::distance(from, to) > 1e-4f * ui.camera.view->extent)
-      ui.act("light.set", handle.light + 1, named("direction", to - from));
+    if (glm::distance(from, to) > 1e-4f * marked.camera.view->extent)
+      actions.act("light.set", handle.light + 1, named("direction", to - from));
     return;
   }
   const vec2 pixels(io.MousePos.x - io.MouseClickedPos[0].x, io.MousePos.y - io.MouseClickedPos[0].y);
-  ui.act("light.set", handle.light + 1,
-         named("position",
-               commands::dragged(ui.camera.view->camera, handle.point, pixels, shown.height(), io.KeyShift)));
+  actions.act("light.set", handle.light + 1,
+              named("position", commands::dragged(marked.camera.view->camera, handle.point, pixels,
+                                                  shown.height(), io.KeyShift)));
 }
 
 }  // namespace lucerna::ui

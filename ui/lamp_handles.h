@@ -3,12 +3,18 @@
 #include <optional>
 #include <vector>
 
+#include "actions.h"
 #include "layout.h"
 #include "scene/scene.h"
 
 namespace lucerna::ui {
 
-struct Ui;
+/// The scene and the view in which its lights are marked.
+struct MarkedScene {
+  const commands::OpenScene& open;
+  commands::Navigation& camera;
+  bool all = false;  ///< all lights are marked, not only the selected one
+};
 
 struct LampHandle {
   enum class Part {
@@ -27,13 +33,13 @@ struct LampHandle {
 bool project(const scene::Camera& camera, const Area& shown, const vec3& point, ImVec2& at);
 
 /// The visible handles: of all lights if they are marked, of the selected lamp always. Suns have none.
-std::vector<LampHandle> lamp_handles(Ui& ui, const Area& shown);
+std::vector<LampHandle> lamp_handles(const MarkedScene& marked, const Area& shown);
 /// The handle whose mark is the nearest to a point of the screen, if close enough.
-std::optional<LampHandle> lamp_handle_at(Ui& ui, const Area& shown, const ImVec2& at);
+std::optional<LampHandle> lamp_handle_at(const MarkedScene& marked, const Area& shown, const ImVec2& at);
 /// `hot`: under the pointer, or dragged.
-void draw_lamp_handles(Ui& ui, const Area& shown, const std::optional<LampHandle>& hot);
-/// Moves the dragged handle with the pointer: a lamp along the picture, with Shift vertically; a spot's aim
+void draw_lamp_handles(const MarkedScene& marked, const Area& shown, const std::optional<LampHandle>& hot);
+/// Moves a dragged handle with the pointer: a lamp along the picture, with Shift vertically; a spot's aim
 /// to the surface under the pointer.
-void drag_lamp(Ui& ui, const Area& shown);
+void drag_lamp(Actions& actions, const MarkedScene& marked, const LampHandle& handle, const Area& shown);
 
 }  // namespace lucerna::ui

@@ -22,10 +22,13 @@ const char* meaning(int component) {
   return texts[component];
 }
 
-/// The meaning of a value of a component's setting: a solver's name, two joined by a plus, or off.
+/// The meaning of a value of a component's setting: a solver's name, two joined by a plus, auto, or off.
 std::string solver_help(int component, const std::string& value) {
   if (value == "off")
     return "Off: the component is missing; its paths are traced only where other components need them.";
+  if (value == plan::k_auto)
+    return "Auto: chosen once for the scene, by what it contains and by a short pilot of path tracing. Edits "
+           "do not change the choice; choosing another solver and then auto does.";
   const size_t plus = value.find('+');
   const solvers::SolverInfo* solver = solvers::find(value.substr(0, plus));
   std::string first = solver ? solver->help : "";
@@ -37,13 +40,14 @@ std::string solver_help(int component, const std::string& value) {
   return first + (other ? " " + other->help : std::string());
 }
 
-void component_row(Ui& ui, int c, float width) {
+void component_row(Controls& controls, int c, float width) {
   const auto index = static_cast<size_t>(c);
   const std::string name = session::k_component_names[index];
   const std::string key = "components." + name;
-  const session::ComponentStatus* status = ui.open.snapshot ? &ui.open.snapshot->components[index] : nullptr;
-  const bool off = ui.open.setting(key) == "off";
-  const bool shown = ui.open.setting_on("show." + name);
+  const session::ComponentStatus* status =
+      controls.open.snapshot ? &controls.open.snapshot->components[index] : nullptr;
+  const bool off = controls.open.setting(key) == "off";
+  const bool shown = controls.open.setting_on("show." + name);
   const ImU32 ink =
       off || !shown ? colour::with_alpha(colour::component[index], 0.4f) : colour::component[index];
 
@@ -60,14 +64,14 @@ void component_row(Ui& ui, int c, float width) {
   draw_text(list, {at.x + px(18), at.y}, {at.x + px(112), at.y + px(22)}, title,
             off ? colour::text_faint : colour::text, Align::left, theme().fonts.strong);
   ImGui::SetCursorScreenPos({at.x + width - px(48), at.y});
-  if (sign_button("##show", Sign::eye, shown)) ui.act("view.show", name, !shown);
+  if (sign_button("##show", Sign::eye, shown)) controls.act("view.show", name, !shown);
   tooltip(
       fmt::format("{} the {} layer in the displayed sum. Keeps all samples; the computation does not change.",
                   shown ? "Hides" : "Shows", name));
   ImGui::SetCursorScreenPos({at.x + width - px(22), at.y});
-  if (sign_button("##solo", Sign::solo, ui.open.solo() == c, colour::accent))
-    ui.act("view.solo", ui.open.solo() == c ? "none" : name.c_str());
-  tooltip(ui.open.solo() == c
+  if (sign_button("##solo", Sign::solo, controls.open.solo() == c, colour::accent))
+    controls.act("view.solo", controls.open.solo() == c ? "none" : name.c_str());
+  tooltip(controls.open.solo() == c
               ? "Shows the previous layers again."
               : fmt::format("Shows the {} layer only; press again for the previous layers.", name));
 
@@ -78,28 +82,31 @@ void component_row(Ui& ui, int c, float width) {
   float solver_width = px(76);
   if (option) {
     // Two joined names are long: they take the place of the time.
-    const std::string& chosen_name = ui.open.setting(key);
+    const std::string& chosen_name = controls.open.setting(key);
     const float beside = chosen_name.find('+') == std::string::npos ? px(154) : px(102);
     for (const std::string& solver : option->choices)
       if (solver == chosen_name || solver.find('+') == std::string::npos)
         solver_width = std::max(solver_width, text_width(solver) + px(36));
     solver_width = std::min(solver_width, std::max(px(76), width - beside));
-    int chosen =
-        static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.open.setting(key)) -
-                         option->choices.begin());
+    int chosen = static_cast<int>(
+        std::find(option->choices.begin(), option->choices.end(), controls.open.setting(key)) -
+        option->choices.begin());
     std::vector<std::string> helps;
     for (const std::string& solver : option->choices) helps.push_back(solver_help(c, solver));
     const std::string help =
         option->help + (static_cast<size_t>(chosen) < helps.size() ? " " + helps[size_t(chosen)] : "");
     if (choice("##solver", "", option->choices, chosen, solver_width, helps))
-      ui.act("set", key, option->choices[static_cast<size_t>(chosen)]);
-    tooltip(help);
+      controls.act("set", key, option->choices[static_cast<size_t>(chosen)]);
+    tooltip(status && !status->reason.empty()
+                ? fmt::format("{}\n\nChosen: {}. {}.", help, status->solver, status->reason)
+                : help);
   }
   const float right = at.x + width;
-  const bool known = status && !off && ui.open.snapshot->samples > 0;
+  const bool known = status && !off && controls.open.snapshot->samples > 0;
   const double error =
-      known && ui.open.snapshot->accuracy ? ui.open.snapshot->accuracy->error()[index + 1] : 0;
-  const double noise_share = error > 0 ? ui.open.snapshot->accuracy->ledger.entries().back().share(c) : 0;
+      known && controls.open.snapshot->accuracy ? controls.open.snapshot->accuracy->error()[index + 1] : 0;
+  const double noise_share =
+      error > 0 ? controls.open.snapshot->accuracy->ledger.entries().back().share(c) : 0;
   // The share is beside the name; error and time beside the solver.
   if (width > px(200))
     draw_text(list, {at.x + px(100), at.y}, {at.x + width - px(56), at.y + px(22)},
@@ -129,12 +136,12 @@ void component_row(Ui& ui, int c, float width) {
   ImGui::PopID();
 }
 
-void components(Ui& ui, float width) {
-  const std::string &primary = ui.open.setting("components.primary"),
-                    &secondary = ui.open.setting("components.secondary"),
-                    &tertiary = ui.open.setting("components.tertiary");
+void components(Controls& controls, float width) {
+  const std::string &primary = controls.open.setting("components.primary"),
+                    &secondary = controls.open.setting("components.secondary"),
+                    &tertiary = controls.open.setting("components.tertiary");
   for (int c = 0; c < session::k_components; ++c) {
-    component_row(ui, c, width);
+    component_row(controls, c, width);
     if (c == 0 && plan::primary_by_paths(primary, secondary, tertiary)) {
       paragraph(
           fmt::format("Computed by paths: '{}' serves primary light only with secondary light.", primary));
@@ -145,8 +152,8 @@ void components(Ui& ui, float width) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   ImDrawList* list = ImGui::GetWindowDrawList();
   double total = 0, luminance = 0;
-  if (ui.open.snapshot && ui.open.snapshot->samples > 0)
-    for (const session::ComponentStatus& status : ui.open.snapshot->components)
+  if (controls.open.snapshot && controls.open.snapshot->samples > 0)
+    for (const session::ComponentStatus& status : controls.open.snapshot->components)
       total += status.ms_per_sample, luminance += status.mean_luminance;
   draw_text(list, {at.x + px(18), at.y}, {at.x + width, at.y + px(20)}, "Time per sample", colour::text_dim);
   draw_text(list, at, {at.x + width, at.y + px(20)}, total > 0 ? ms_text(total) : "\xE2\x80\x93",
@@ -155,25 +162,13 @@ void components(Ui& ui, float width) {
   std::vector<Part> parts;
   if (total > 0)
     for (size_t c = 0; c < session::k_components; ++c)
-      parts.push_back(
-          {static_cast<float>(ui.open.snapshot->components[c].ms_per_sample / total), colour::component[c]});
+      parts.push_back({static_cast<float>(controls.open.snapshot->components[c].ms_per_sample / total),
+                       colour::component[c]});
   stacked_bar(parts, 6, width - px(18));
   tooltip(
       "Device time per sample of a pixel, divided among the components: amber primary, teal secondary, "
       "violet tertiary, coral caustic.");
   ImGui::SetCursorScreenPos({at.x, at.y + px(40)});
-}
-
-/// As many as in the default value, at least two.
-int decimals_of(const OptionInfo& option) {
-  const size_t point = option.fallback.find('.');
-  return point == std::string::npos ? 2 : std::max(2, int(option.fallback.size() - point) - 1);
-}
-
-/// True if the name contains the unit: "Samples 256", not "Samples 256 samples".
-bool named_by_unit(std::string name, const std::string& unit) {
-  for (char& c : name) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return !unit.empty() && (" " + name + " ").find(" " + unit + " ") != std::string::npos;
 }
 
 /// True if an option is shown elsewhere in the window, or nowhere: texts that belong to the scene.
@@ -184,94 +179,44 @@ bool placed_elsewhere(const OptionInfo& option) {
 }
 
 /// The options of the render, and its buttons.
-void render_rows(Ui& ui) {
+void render_rows(Controls& controls) {
   for (const OptionInfo& option : plan::options())
-    if (!placed_elsewhere(option)) option_control(ui, option.key, option_label(option));
+    if (!placed_elsewhere(option)) option_control(controls, option.key, option_label(option));
   gap(4);
   const float width = ImGui::CalcItemWidth(), half = std::floor(0.5f * (width - px(8)));
-  const bool paused = ui.open.snapshot && ui.open.snapshot->paused;
-  ImGui::BeginDisabled(!ui.open.snapshot);
+  const bool paused = controls.open.snapshot && controls.open.snapshot->paused;
+  ImGui::BeginDisabled(!controls.open.snapshot);
   if (button("##pause", paused ? "Resume" : "Pause", paused, half))
-    ui.act(paused ? "render.resume" : "render.pause");
+    controls.act(paused ? "render.resume" : "render.pause");
   tooltip("Pauses sampling; Resume continues with the present samples. Space.");
   ImGui::SameLine(0, px(8));
-  if (button("##restart", "Restart", false, width - half - px(8))) ui.act("render.restart");
+  if (button("##restart", "Restart", false, width - half - px(8))) controls.act("render.restart");
   tooltip("Discards all samples and restarts the picture. R.");
   ImGui::EndDisabled();
 }
 
 }  // namespace
 
-void option_control(Ui& ui, const std::string& key, const std::string& name) {
-  const OptionInfo* option = plan::find_option(key);
-  if (!option) return;
-  ImGui::PushID(key.c_str());
-  std::string help = option->help;
-  if (option->type == OptionType::integer || option->type == OptionType::real)
-    help += fmt::format(" From {:.12g} to {:.12g}{}{}.", option->lo, option->hi,
-                        option->unit.empty() ? "" : " ", option->unit);
-  if (option->restarts) help += " A change restarts the picture.";
-  switch (option->type) {
-    case OptionType::choice: {
-      int chosen =
-          static_cast<int>(std::find(option->choices.begin(), option->choices.end(), ui.open.setting(key)) -
-                           option->choices.begin());
-      if (choice("##choice", name, option->choices, chosen))
-        ui.act("set", key, option->choices[static_cast<size_t>(chosen)]);
-      break;
-    }
-    case OptionType::boolean:
-      if (button("##boolean", name, ui.open.setting_on(key), ImGui::CalcItemWidth())) ui.toggle(key);
-      break;
-    case OptionType::integer:
-    case OptionType::real: {
-      const bool whole = option->type == OptionType::integer;
-      auto value = static_cast<float>(ui.open.setting_real(key));
-      Slider how{.lo = static_cast<float>(option->lo),
-                 .hi = static_cast<float>(option->hi),
-                 .decimals = whole ? 0 : decimals_of(*option),
-                 .unit = option->unit,
-                 .at_zero = option->at_zero};
-      how.log = option->lo > 0 ? option->hi / option->lo > 100 : !option->at_zero.empty() && option->hi > 100;
-      if (named_by_unit(name, option->unit)) how.unit.clear();
-      if (whole) how.step = 1;
-      if (option->hi > 4e9)
-        how.hi = 65535, how.bar = false, how.travel = 0.01f,
-        how.typed_hi = 16777215;  // seeds: a range that can be dragged
-      if (slider("##number", name, value, how))
-        ui.act("set", key,
-               whole ? fmt::format("{:.0f}", std::clamp<double>(value, option->lo, option->hi))
-                     : fmt::format("{:.6g}", value));
-      if (option->hi > 4e9)
-        help = option->help + " Double-click to type; drag up to 65535. A change restarts the picture.";
-      break;
-    }
-    case OptionType::text:
-      break;
-  }
-  tooltip(help);
-  ImGui::PopID();
-}
-
-void draw_light_panel(Ui& ui, const Area& area) {
-  if (!ui.shown.left_open) {
+void draw_light_panel(Controls& controls, bool expanded, const Area& area) {
+  if (!expanded) {
     begin_panel("##light_folded", area, colour::panel, false);
-    if (folded_strip("Light", area.lo, area.hi, true)) ui.act("window.fold", "left", false);
+    if (folded_strip("Light", area.lo, area.hi, true)) controls.act("window.fold", "left", false);
     ImGui::End();
     return;
   }
   begin_panel("##light", area, colour::panel, true);
   std::string note;
-  if (ui.open.solo() >= 0)
-    note = fmt::format("solo {}", session::k_component_names[static_cast<size_t>(ui.open.solo())]);
-  panel_block(ui, "Light", true, note, 4, [&] { components(ui, ImGui::CalcItemWidth()); });
-  if (ui.open.scene)
-    panel_block(ui, "Light mix", false, ui.open.setting("relight.mix").empty() ? "" : "mixed", 10, [&] {
-      ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(2)});
-      draw_mix(ui.actions, ui.open);
-      ImGui::PopStyleVar();
-    });
-  panel_block(ui, "Render", true, "", 12, [&] { render_rows(ui); });
+  if (controls.open.solo() >= 0)
+    note = fmt::format("solo {}", session::k_component_names[static_cast<size_t>(controls.open.solo())]);
+  panel_block(controls, "Light", true, note, 4, [&] { components(controls, ImGui::CalcItemWidth()); });
+  if (controls.open.scene)
+    panel_block(controls, "Light mix", false, controls.open.setting("relight.mix").empty() ? "" : "mixed", 10,
+                [&] {
+                  ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(2)});
+                  draw_mix(controls.actions, controls.open);
+                  ImGui::PopStyleVar();
+                });
+  panel_block(controls, "Render", true, "", 12, [&] { render_rows(controls); });
   hairline();
   ImGui::End();
 }

@@ -195,8 +195,9 @@ void solver_views(Ui& ui, const solvers::SolverInfo& solver) {
                   option->help.c_str(), on))
           ui.act("set", option->key, on ? option->choices.front() : value);
       }
-    } else if (entry(name.c_str(), key_name(view.shortcut), option->help.c_str(), ui.view_on(view))) {
-      ui.turn_view(view);
+    } else if (entry(name.c_str(), key_name(view.shortcut), option->help.c_str(),
+                     ui.controls.view_on(view))) {
+      ui.controls.turn_view(view);
     }
     for (const std::string& key : view.refined_by) {
       // Behind the last of the views that it refines, if any of them is on.
@@ -204,7 +205,7 @@ void solver_views(Ui& ui, const solvers::SolverInfo& solver) {
       for (size_t k = 0; k < solver.views.size(); ++k) {
         const std::vector<std::string>& keys = solver.views[k].refined_by;
         if (std::find(keys.begin(), keys.end(), key) == keys.end()) continue;
-        on = on || ui.view_on(solver.views[k]);
+        on = on || ui.controls.view_on(solver.views[k]);
         last = last && k <= i;
       }
       const OptionInfo* by = plan::find_option(key);
@@ -264,8 +265,9 @@ void view_menu(Ui& ui) {
       entry("Tiles", "T", tiles->help.c_str(), ui.open.setting_on(tiles->key)))
     ui.toggle(tiles->key);
   for (const solvers::ViewInfo& view : plan::views())
-    if (entry(view.label.c_str(), nullptr, plan::find_option(view.option)->help.c_str(), ui.view_on(view)))
-      ui.turn_view(view);
+    if (entry(view.label.c_str(), nullptr, plan::find_option(view.option)->help.c_str(),
+              ui.controls.view_on(view)))
+      ui.controls.turn_view(view);
   if (const OptionInfo* former = plan::find_option("overlay.former");
       entry("Light from before the edit", nullptr, former->help.c_str(), ui.open.setting_on(former->key)))
     ui.toggle(former->key);
@@ -311,8 +313,8 @@ void camera_menu(Ui& ui) {
     ui.act("camera.walking", !ui.camera.walking);
   const bool lens = view && !ui.camera.view->camera.orthographic;
   if (entry("Focus by a click", nullptr, "The next click in the picture puts the plane of focus there.",
-            ui.focusing, lens))
-    ui.act("camera.focusing", !ui.focusing);
+            ui.scene_view.focusing, lens))
+    ui.act("camera.focusing", !ui.scene_view.focusing);
   if (entry("Make upright", nullptr,
             "Levels the camera and shifts the lens so that the picture's middle stays: vertical lines become "
             "vertical.",

@@ -48,12 +48,12 @@ bool list_row(const char* id, bool chosen, const std::string& name, const std::s
 }
 
 /// A press on a row selects, or clears the selection.
-void choose(Ui& ui, bool chosen, const char* kind, size_t index) {
-  ui.chosen_in_list = true;
+void choose(Actions& actions, SceneView& view, bool chosen, const char* kind, size_t index) {
+  view.chosen_in_list = true;
   if (chosen)
-    ui.act("select.none");
+    actions.act("select.none");
   else
-    ui.act("select", kind, index + 1);
+    actions.act("select", kind, index + 1);
 }
 void quiet_line(const std::string& text) { label(text, colour::text_faint); }
 
@@ -75,8 +75,8 @@ void show_row(float y) {
     ImGui::SetScrollFromPosY(y - window.y, 0.5f);
 }
 
-void lens_shift(Ui& ui, const scene::Camera& camera) {
-  if (button("##upright", "Make upright", false, ImGui::CalcItemWidth())) ui.act("camera.upright");
+void lens_shift(Controls& controls, const scene::Camera& camera) {
+  if (button("##upright", "Make upright", false, ImGui::CalcItemWidth())) controls.act("camera.upright");
   tooltip(
       "Levels the camera and shifts the lens so that the picture's middle stays: vertical lines become "
       "vertical.");
@@ -93,19 +93,19 @@ void lens_shift(Ui& ui, const scene::Camera& camera) {
   tooltip("Heights of the picture by which its middle is above the view axis.");
   moved |= slider("##shift_right", "Shift right", shift.x, how);
   tooltip("Widths of the picture by which its middle is to the right of the view axis.");
-  if (moved) ui.act("camera.shift", shift.x, shift.y);
-  if (button("##no_shift", "Remove shift", false, ImGui::CalcItemWidth())) ui.act("camera.shift", 0, 0);
+  if (moved) controls.act("camera.shift", shift.x, shift.y);
+  if (button("##no_shift", "Remove shift", false, ImGui::CalcItemWidth())) controls.act("camera.shift", 0, 0);
   tooltip("Puts the middle of the picture on the view axis again.");
 }
 
-void section_plane(Ui& ui, const Viewpoint& view) {
+void section_plane(Controls& controls, const Viewpoint& view) {
   const scene::Section& section = view.camera.section;
   if (button("##section", "Section plane", section.cuts(), ImGui::CalcItemWidth())) {
     const vec3 ahead = commands::forward_of(view.camera);
     if (section.cuts())
-      ui.act("camera.no_section");
+      controls.act("camera.no_section");
     else
-      ui.act("camera.section", commands::eye_of(view.camera) + 0.5f * view.distance * ahead, ahead);
+      controls.act("camera.section", commands::eye_of(view.camera) + 0.5f * view.distance * ahead, ahead);
   }
   tooltip("Cuts the view by a plane across it: the camera sees only what lies behind. Light is not cut.");
   if (!section.cuts()) return;
@@ -119,17 +119,18 @@ void section_plane(Ui& ui, const Viewpoint& view) {
               .bar = false,
               .typed_lo = -1e6f,
               .typed_hi = 1e6f}))
-    ui.act("camera.section", offset * section.normal, section.normal);
+    controls.act("camera.section", offset * section.normal, section.normal);
   tooltip("Distance of the plane from the scene's origin, along the view that it was placed in.");
 }
 
-void depth_of_field(Ui& ui, const scene::Lens& lens) {
+/// `focusing`: the next click in the picture focuses.
+void depth_of_field(Controls& controls, const scene::Lens& lens, bool focusing) {
   const bool on = lens.f_number > 0;
   if (button("##depth_of_field", "Depth of field", on, ImGui::CalcItemWidth())) {
     if (on)
-      ui.act("camera.pinhole");
+      controls.act("camera.pinhole");
     else
-      ui.act("camera.f_number", 2.8f);
+      controls.act("camera.f_number", 2.8f);
   }
   tooltip("A lens instead of a pinhole: surfaces before and behind the plane of focus blur.");
   if (!on) return;
@@ -142,7 +143,7 @@ void depth_of_field(Ui& ui, const scene::Lens& lens) {
               .decimals = 2,
               .typed_lo = scene::k_least_f_number,
               .typed_hi = scene::k_max_f_number}))
-    ui.act("camera.f_number", f_number);
+    controls.act("camera.f_number", f_number);
   tooltip("Focal length over the diameter of the lens, for film 36 mm wide. Smaller blurs more.");
   if (slider("##focus", "Focus", focus,
              {.lo = 0.05f,
@@ -152,76 +153,78 @@ void depth_of_field(Ui& ui, const scene::Lens& lens) {
               .unit = "m",
               .typed_lo = scene::k_least_focus,
               .typed_hi = 1e6f}))
-    ui.act("camera.focus_distance", focus);
+    controls.act("camera.focus_distance", focus);
   tooltip("Distance of the plane of focus along the view axis.");
   const float half = 0.5f * (ImGui::CalcItemWidth() - px(4));
-  if (button("##focusing", "Focus by a click", ui.focusing, half)) ui.act("camera.focusing", !ui.focusing);
+  if (button("##focusing", "Focus by a click", focusing, half)) controls.act("camera.focusing", !focusing);
   tooltip("The next click in the picture puts the plane of focus there.");
   ImGui::SameLine(0, px(4));
-  if (button("##show_focus", "Show", ui.open.setting_on("overlay.focus"), half)) ui.toggle("overlay.focus");
+  if (button("##show_focus", "Show", controls.open.setting_on("overlay.focus"), half))
+    controls.actions.toggle("overlay.focus");
   tooltip(plan::find_option("overlay.focus")->help);
   if (slider("##blades", "Blades", blades, {.lo = 0, .hi = 12, .decimals = 0, .step = 1, .at_zero = "round"}))
-    ui.act("camera.blades", static_cast<int>(blades < 0.5f ? 0 : std::max(3.0f, blades)));
+    controls.act("camera.blades", static_cast<int>(blades < 0.5f ? 0 : std::max(3.0f, blades)));
   tooltip("Corners of the aperture, which bright points out of focus take the shape of.");
   if (lens.blades > 0) {
     if (slider("##rotation", "Rotation", rotation,
                {.lo = -180, .hi = 180, .decimals = 0, .unit = "\xC2\xB0"}))
-      ui.act("camera.blades", lens.blades, named("rotation", rotation));
+      controls.act("camera.blades", lens.blades, named("rotation", rotation));
     tooltip("Rotation of the aperture.");
   }
 }
 
-void cameras(Ui& ui) {
-  const auto& list = ui.open.scene->cameras;
+void cameras(Controls& controls, const commands::Navigation& camera, bool focusing,
+             const std::function<void()>& keep_view) {
+  const auto& list = controls.open.scene->cameras;
   if (list.empty()) quiet_line("The scene has no camera");
   for (size_t i = 0; i < list.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
-    if (list_row("##camera", ui.camera.scene_camera == static_cast<int>(i),
+    if (list_row("##camera", camera.scene_camera == static_cast<int>(i),
                  display_name(list[i].name, "Camera", i), i < 9 ? fmt::format("{}", i + 1) : "", 0, 0))
-      ui.act("camera.select", i + 1);
+      controls.act("camera.select", i + 1);
     tooltip(fmt::format("{}: {}.{}", display_name(list[i].name, "Camera", i),
                         list[i].orthographic ? "orthographic" : "perspective",
                         i < 9 ? fmt::format(" Key {}.", i + 1) : ""));
     ImGui::PopID();
   }
-  if (!ui.camera.view) return;
+  if (!camera.view) return;
   gap(4);
-  const Viewpoint& view = *ui.camera.view;
+  const Viewpoint& view = *camera.view;
   if (view.camera.orthographic) {
     float height = 2 * view.camera.ymag;
     if (slider("##height", "Height", height,
                {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m"}))
-      ui.act("camera.height", height);
+      controls.act("camera.height", height);
     tooltip("Height of an orthographic camera's view.");
   } else {
     // The command takes the angle, which has the same meaning in a window of any shape.
-    float lens = commands::focal_length_mm(view.camera.yfov, ui.camera.aspect);
+    float lens = commands::focal_length_mm(view.camera.yfov, camera.aspect);
     if (slider("##lens", "Lens", lens, {.lo = 8, .hi = 200, .log = true, .decimals = 1, .unit = "mm"}))
-      ui.act("camera.fov", commands::yfov_from_focal_length(lens, ui.camera.aspect) * 180 / k_pi);
+      controls.act("camera.fov", commands::yfov_from_focal_length(lens, camera.aspect) * 180 / k_pi);
     tooltip(fmt::format("Focal length for a frame 36 mm wide; the vertical field of view is {:.1f}\xC2\xB0.",
                         view.camera.yfov * 180 / k_pi));
   }
   if (!view.camera.orthographic) {
-    lens_shift(ui, view.camera);
-    depth_of_field(ui, view.camera.lens);
+    lens_shift(controls, view.camera);
+    depth_of_field(controls, view.camera.lens, focusing);
   }
-  section_plane(ui, view);
-  float speed = ui.camera.speed;
+  section_plane(controls, view);
+  float speed = camera.speed;
   if (slider("##speed", "Fly speed", speed,
              {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m/s"}))
-    ui.act("camera.speed", speed);
+    controls.act("camera.speed", speed);
   tooltip(
       "Speed of flight with W A S D Q E while the pointer is over the picture; Shift flies four times as "
       "fast.");
   if (!view.camera.orthographic) {
-    if (button("##walk", "Walk along the floor", ui.camera.walking, ImGui::CalcItemWidth()))
-      ui.act("camera.walking", !ui.camera.walking);
+    if (button("##walk", "Walk along the floor", camera.walking, ImGui::CalcItemWidth()))
+      controls.act("camera.walking", !camera.walking);
     tooltip("W A S D walk at eye height, also on stairs. H.");
-    float height = ui.camera.eye_height;
-    if (ui.camera.walking) {
+    float height = camera.eye_height;
+    if (camera.walking) {
       if (slider("##eye_height", "Eye height", height,
                  {.lo = 0.1f, .hi = 10, .log = true, .decimals = 2, .unit = "m"}))
-        ui.act("camera.eye_height", height);
+        controls.act("camera.eye_height", height);
       tooltip("Height of the eye above the floor. Q and E change it too.");
     }
   }
@@ -232,25 +235,25 @@ void cameras(Ui& ui) {
             "Position of the camera: x, y (up), z in metres.");
   std::string forgotten;
   int row = 0;
-  for (const auto& [name, place] : ui.camera.bookmarks_of(ui.open.scene.get())) {
+  for (const auto& [name, place] : camera.bookmarks_of(controls.open.scene.get())) {
     ImGui::PushID(row++);
     const ImVec2 at = ImGui::GetCursorScreenPos();
-    if (list_row("##bookmark", false, name, "bookmark", 0, 28)) ui.act("camera.go", name);
+    if (list_row("##bookmark", false, name, "bookmark", 0, 28)) controls.act("camera.go", name);
     tooltip(fmt::format("{}: restores this view.", name));
     if (row_sign(at, "##forget", Sign::close, false, "Deletes the bookmark.")) forgotten = name;
     ImGui::PopID();
   }
-  if (!forgotten.empty()) ui.act("camera.forget", forgotten);
-  if (button("##bookmark", "Bookmark this view", false, ImGui::CalcItemWidth())) keep_view(ui);
+  if (!forgotten.empty()) controls.act("camera.forget", forgotten);
+  if (button("##bookmark", "Bookmark this view", false, ImGui::CalcItemWidth())) keep_view();
   tooltip("Saves the view for this scene, also for later runs. Ctrl+B.");
 }
 
 /// Colour by a picker and by temperature: runs `command` with color_name or kelvin.
-void colour_rows(Ui& ui, const char* command, size_t item, const char* color_name, const vec3& tint,
+void colour_rows(Actions& actions, const char* command, size_t item, const char* color_name, const vec3& tint,
                  const std::string& note = "") {
   vec3 picked = tint;
   if (colour_field("##colour", "Colour", picked, note) && strength_of(picked) > 0)
-    ui.act(command, item, named(color_name, tint_of(picked)));
+    actions.act(command, item, named(color_name, tint_of(picked)));
   tooltip("Colour of the light, its strongest channel 1. Press to choose another.");
   const NearestKelvin nearest = nearest_kelvin(tint);
   float kelvin = nearest.kelvin;
@@ -264,7 +267,7 @@ void colour_rows(Ui& ui, const char* command, size_t item, const char* color_nam
               .bar = near,
               .step = 10,
               .travel = 0.5f}))
-    ui.act(command, item, named("kelvin", kelvin));
+    actions.act(command, item, named("kelvin", kelvin));
   tooltip(
       near ? "Temperature of the black body of this colour. Candles 1900 K, bulbs 2700 K, daylight 6500 K."
            : "No black body has this colour; the nearest by blue over red. A drag takes the colour of that "
@@ -272,18 +275,18 @@ void colour_rows(Ui& ui, const char* command, size_t item, const char* color_nam
 }
 
 /// Properties of a selected lamp besides its strength.
-void light_details(Ui& ui, size_t i, const scene::Light& light) {
-  colour_rows(ui, "light.set", i + 1, "color", tint_of(light.intensity));
+void light_details(Actions& actions, const Box& core, size_t i, const scene::Light& light) {
+  colour_rows(actions, "light.set", i + 1, "color", tint_of(light.intensity));
   if (light.kind != scene::LightKind::directional) {
     const auto solid = float(scene::solid_angle(light));
     float power = std::max(strength_of(light.intensity) * solid, 1e-3f);
     if (slider(
             "##power", "Power", power,
             {.lo = 1e-3f, .hi = 1e6f, .log = true, .decimals = 2, .unit = "W", .bar = false, .travel = 0.2f}))
-      ui.act("light.set", i + 1, named("power", power));
+      actions.act("light.set", i + 1, named("power", power));
     tooltip("Total power of the lamp, in its strongest channel.");
-    const vec3 middle = ui.camera.core.empty() ? vec3(0) : ui.camera.core.centre();
-    const float radius = std::max(ui.camera.core.empty() ? 1.0f : ui.camera.core.radius(), 1e-2f);
+    const vec3 middle = core.empty() ? vec3(0) : core.centre();
+    const float radius = std::max(core.empty() ? 1.0f : core.radius(), 1e-2f);
     const float reach = 4 * radius + glm::length(middle);
     vec3 position = light.position;
     if (slider_row("##position", "Position", position,
@@ -294,7 +297,7 @@ void light_details(Ui& ui, size_t i, const scene::Light& light) {
                     .travel = 0.25f * radius / reach,
                     .typed_lo = -1e6f,
                     .typed_hi = 1e6f}) >= 0)
-      ui.act("light.set", i + 1, named("position", position));
+      actions.act("light.set", i + 1, named("position", position));
     tooltip("Position of the lamp: x, y (up), z in metres.");
   }
   if (light.kind != scene::LightKind::point) {
@@ -302,32 +305,32 @@ void light_details(Ui& ui, size_t i, const scene::Light& light) {
     float azimuth = bearing.azimuth, elevation = bearing.elevation;
     if (slider("##azimuth", "Azimuth", azimuth,
                {.lo = 0, .hi = 360, .decimals = 1, .unit = "\xC2\xB0", .typed_lo = -360, .typed_hi = 360}))
-      ui.act("light.set", i + 1, named("azimuth", azimuth));
+      actions.act("light.set", i + 1, named("azimuth", azimuth));
     tooltip("Compass direction from which the light comes: 0 from \xE2\x88\x92Z, 90 from +X.");
     if (slider("##elevation", "Elevation", elevation,
                {.lo = -90, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
-      ui.act("light.set", i + 1, named("elevation", elevation));
+      actions.act("light.set", i + 1, named("elevation", elevation));
     tooltip("Angle above the horizon from which the light comes; 90 is vertical.");
   }
   if (light.kind == scene::LightKind::spot) {
     float cone = light.outer_cone * 180 / k_pi, inner = light.inner_cone * 180 / k_pi;
     if (slider("##cone", "Cone", cone, {.lo = 0.5f, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
-      ui.act("light.set", i + 1, named("cone", cone));
+      actions.act("light.set", i + 1, named("cone", cone));
     tooltip("Angle from the axis at which the light ends.");
     if (slider("##inner", "Inner cone", inner, {.lo = 0, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
-      ui.act("light.set", i + 1, named("inner_cone", inner));
+      actions.act("light.set", i + 1, named("inner_cone", inner));
     tooltip("Angle from the axis at which the light begins to fade.");
   }
 }
 
 /// A row of the list of lights with its switch, and its properties if selected. Returns true if its switch
 /// was pressed.
-bool light_row(Ui& ui, bool chosen, bool reveal, const std::string& name, const char* note, const vec3& tint,
-               bool on, const char* kind, size_t index) {
+bool light_row(Actions& actions, SceneView& view, bool chosen, bool reveal, const std::string& name,
+               const char* note, const vec3& tint, bool on, const char* kind, size_t index) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   if (chosen && reveal) show_row(at.y);
   if (list_row("##light", chosen, name, note, colour::with_alpha(display_colour(tint), on ? 1.0f : 0.3f), 28))
-    choose(ui, chosen, kind, index);
+    choose(actions, view, chosen, kind, index);
   tooltip(fmt::format("{}. Press to select and edit it; F frames it.", name));
   return row_sign(at, "##on", Sign::power, on, on ? "Switches the light off." : "Switches the light on.");
 }
@@ -338,63 +341,63 @@ Slider strength_slider(const char* unit) {
 }
 constexpr const char* k_radiance_unit = "W/m\xC2\xB2sr";
 
-void emission_slider(Ui& ui, uint32_t index) {
+void emission_slider(Controls& controls, uint32_t index) {
   const Slider how = strength_slider(k_radiance_unit);
-  float shown = std::max(strength_of(ui.open.emission(index)), how.lo);
-  ImGui::BeginDisabled(!ui.open.emits(index));
+  float shown = std::max(strength_of(controls.open.emission(index)), how.lo);
+  ImGui::BeginDisabled(!controls.open.emits(index));
   if (slider("##strength", "Radiance", shown, how))
-    ui.act("material.set", index + 1, named("strength", shown));
+    controls.act("material.set", index + 1, named("strength", shown));
   ImGui::EndDisabled();
   tooltip("Emitted radiance of the surface's strongest channel; its texture multiplies it.");
 }
 
-void light_rows(Ui& ui, bool reveal) {
-  const auto& lights = ui.open.scene->lights;
-  const std::vector<uint32_t> glowing = emitters(ui);
+void light_rows(Controls& controls, const commands::Navigation& camera, SceneView& view, bool reveal) {
+  const auto& lights = controls.open.scene->lights;
+  const std::vector<uint32_t> glowing = emitters(controls.open, camera);
   if (lights.empty() && glowing.empty()) quiet_line("No lights");
   static const char* kinds[] = {"point", "spot", "sun"};
   for (size_t i = 0; i < lights.size(); ++i) {
     const auto index = static_cast<uint32_t>(i);
-    const scene::Light light = ui.open.light(index);
+    const scene::Light light = controls.open.light(index);
     ImGui::PushID(static_cast<int>(i));
-    const bool chosen = ui.camera.selection == Selection{Kind::light, index};
-    if (light_row(ui, chosen, reveal, display_name(light.name, "Light", i),
+    const bool chosen = camera.selection == Selection{Kind::light, index};
+    if (light_row(controls.actions, view, chosen, reveal, display_name(light.name, "Light", i),
                   kinds[static_cast<size_t>(light.kind)], tint_of(light.intensity), light.enabled, "light",
                   i))
-      ui.act("light.set", i + 1, named("on", !light.enabled));
+      controls.act("light.set", i + 1, named("on", !light.enabled));
     const bool sun = light.kind == scene::LightKind::directional;
     const Slider how = strength_slider(sun ? "W/m\xC2\xB2" : "W/sr");
     ImGui::BeginDisabled(!light.enabled);
     float shown = std::max(strength_of(light.intensity), how.lo);
     if (slider("##strength", sun ? "Irradiance" : "Intensity", shown, how))
-      ui.act("light.set", i + 1, named("intensity", shown));
+      controls.act("light.set", i + 1, named("intensity", shown));
     ImGui::EndDisabled();
     tooltip(sun ? "Irradiance on a surface that faces the light, in its strongest channel."
                 : "Radiant intensity in the strongest channel.");
-    if (chosen) light_details(ui, i, light);
+    if (chosen) light_details(controls.actions, camera.core, i, light);
     ImGui::PopID();
     gap(4);
   }
   // Emissive surfaces are lights too; in many interiors the only ones.
   for (const uint32_t index : glowing) {
-    const scene::Material m = ui.open.material(index);
+    const scene::Material m = controls.open.material(index);
     ImGui::PushID(static_cast<int>(lights.size() + index));
-    const bool chosen = ui.camera.selection == Selection{Kind::material, index}, on = ui.open.emits(index);
-    const vec3 tint = tint_of(ui.open.emission(index));
-    if (light_row(ui, chosen, false, display_name(m.name, "Material", index), "surface", tint, on, "material",
-                  index))
-      ui.act("material.set", index + 1, named("on", !on));
-    emission_slider(ui, index);
+    const bool chosen = camera.selection == Selection{Kind::material, index}, on = controls.open.emits(index);
+    const vec3 tint = tint_of(controls.open.emission(index));
+    if (light_row(controls.actions, view, chosen, false, display_name(m.name, "Material", index), "surface",
+                  tint, on, "material", index))
+      controls.act("material.set", index + 1, named("on", !on));
+    emission_slider(controls, index);
     if (chosen)
-      colour_rows(ui, "material.set", index + 1, "emission_color", tint,
+      colour_rows(controls.actions, "material.set", index + 1, "emission_color", tint,
                   m.emission_texture ? "\xC3\x97 texture" : "");
     ImGui::PopID();
     gap(4);
   }
 }
 
-void environment(Ui& ui) {
-  const scene::Environment& e = ui.open.scene->environment;
+void environment(Controls& controls) {
+  const scene::Environment& e = controls.open.scene->environment;
   const bool image = e.image != scene::k_none;
   const bool dark = !image && strength_of(e.radiance) <= 0;
   value_row(
@@ -406,7 +409,7 @@ void environment(Ui& ui) {
           " Drop an .exr or .hdr file on the window to replace it.");
   gap(4);
   ImGui::BeginDisabled(dark);
-  float shown = std::max(ui.open.environment_scale(), 1e-3f);
+  float shown = std::max(controls.open.environment_scale(), 1e-3f);
   if (slider("##scale", "Strength", shown,
              {.lo = 1e-3f,
               .hi = 1000,
@@ -415,27 +418,27 @@ void environment(Ui& ui) {
               .unit = "\xC3\x97",
               .bar = false,
               .travel = 0.25f}))
-    ui.act("environment.set", named("scale", shown));
+    controls.act("environment.set", named("scale", shown));
   tooltip("Multiplies the radiance of the environment.");
   ImGui::BeginDisabled(!image);
-  float turn = std::remainder(ui.open.environment_rotation(), 360.0f);
+  float turn = std::remainder(controls.open.environment_rotation(), 360.0f);
   if (slider("##rotation", "Rotation", turn, {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0"}))
-    ui.act("environment.set", named("rotation", turn));
+    controls.act("environment.set", named("rotation", turn));
   tooltip("Rotates the image counter-clockwise, seen from above. Ctrl + drag in the picture rotates it too.");
   ImGui::EndDisabled();
   ImGui::EndDisabled();
-  option_control(ui, "film.background", "Background");
-  if (!ui.open.environment_file().empty()) {
+  option_control(controls, "film.background", "Background");
+  if (!controls.open.environment_file().empty()) {
     if (button("##own", "Restore scene environment", false, ImGui::CalcItemWidth()))
-      ui.act("environment.own");
+      controls.act("environment.own");
     tooltip("Uses the environment from the scene file.");
   }
 }
 
-void material_details(Ui& ui, uint32_t index, const scene::Material& m) {
+void material_details(Controls& controls, uint32_t index, const scene::Material& m) {
   const auto colour_text = [](const vec3& c) { return fmt::format("{:.3f} {:.3f} {:.3f}", c.x, c.y, c.z); };
   const auto textured = [](const scene::TextureUse& use) { return use ? " \xC3\x97 texture" : ""; };
-  const auto set = [&](const auto& value) { ui.act("material.set", index + 1, value); };
+  const auto set = [&](const auto& value) { controls.act("material.set", index + 1, value); };
   vec3 colour(m.base_color);
   if (colour_field("##base", "Base colour", colour, m.base_color_texture ? "\xC3\x97 texture" : ""))
     set(named("color", colour));
@@ -449,10 +452,10 @@ void material_details(Ui& ui, uint32_t index, const scene::Material& m) {
              {.decimals = 3}))
     set(named("metallic", metallic));
   tooltip("0 is a dielectric such as paint, stone or wood; 1 is metal.");
-  if (!m.unlit && strength_of(ui.open.emission(index)) > 0) {
-    emission_slider(ui, index);
-    colour_rows(ui, "material.set", index + 1, "emission_color", tint_of(ui.open.emission(index)),
-                m.emission_texture ? "\xC3\x97 texture" : "");
+  if (!m.unlit && strength_of(controls.open.emission(index)) > 0) {
+    emission_slider(controls, index);
+    colour_rows(controls.actions, "material.set", index + 1, "emission_color",
+                tint_of(controls.open.emission(index)), m.emission_texture ? "\xC3\x97 texture" : "");
     if (button("##dark", "Remove emission", false, ImGui::CalcItemWidth())) set(named("strength", 0));
     tooltip("Makes the surface non-emissive. Can be undone.");
   } else if (!m.unlit) {
@@ -489,12 +492,12 @@ void material_details(Ui& ui, uint32_t index, const scene::Material& m) {
   if (m.double_sided) value_row("Double-sided", "yes", "The back side emits like the front side.");
 }
 
-void materials(Ui& ui, bool reveal) {
-  const auto& list = ui.open.scene->materials;
+void materials(Controls& controls, const Selection& selection, SceneView& view, bool reveal) {
+  const auto& list = controls.open.scene->materials;
   for (size_t i = 0; i < list.size(); ++i) {
     const auto index = static_cast<uint32_t>(i);
-    const scene::Material m = ui.open.material(index);
-    const bool chosen = ui.camera.selection == Selection{Kind::material, index};
+    const scene::Material m = controls.open.material(index);
+    const bool chosen = selection == Selection{Kind::material, index};
     if (chosen && reveal) show_row(ImGui::GetCursorScreenPos().y);
     ImGui::PushID(static_cast<int>(i));
     const bool emits = strength_of(m.emission) > 0;
@@ -504,13 +507,13 @@ void materials(Ui& ui, bool reveal) {
                                                                             : "";
     if (list_row("##material", chosen, display_name(m.name, "Material", i), note,
                  display_colour(emits ? m.emission / strength_of(m.emission) : vec3(m.base_color)), 0))
-      choose(ui, chosen, "material", index);
+      choose(controls.actions, view, chosen, "material", index);
     tooltip(fmt::format("{}. Press to select the material; F frames its objects.",
                         display_name(m.name, "Material", i)));
     if (chosen) {
       ImGui::Indent(px(18));
       ImGui::PushItemWidth(ImGui::CalcItemWidth() - px(18));
-      material_details(ui, index, ui.open.material(index));
+      material_details(controls, index, controls.open.material(index));
       ImGui::PopItemWidth();
       ImGui::Unindent(px(18));
       gap(4);
@@ -519,10 +522,10 @@ void materials(Ui& ui, bool reveal) {
   }
 }
 
-void objects(Ui& ui, bool reveal) {
-  const auto& list = ui.open.scene->instances;
-  if (reveal && ui.camera.selection.kind == Kind::instance)
-    show_row(ImGui::GetCursorScreenPos().y + px(24) * static_cast<float>(ui.camera.selection.index));
+void objects(Controls& controls, const Selection& selection, SceneView& view, bool reveal) {
+  const auto& list = controls.open.scene->instances;
+  if (reveal && selection.kind == Kind::instance)
+    show_row(ImGui::GetCursorScreenPos().y + px(24) * static_cast<float>(selection.index));
   // Long lists draw only the visible rows.
   ImGuiListClipper clipper;
   clipper.Begin(static_cast<int>(list.size()), px(24));
@@ -530,10 +533,10 @@ void objects(Ui& ui, bool reveal) {
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
       const auto index = static_cast<uint32_t>(i);
       const scene::Instance& instance = list[index];
-      const bool chosen = ui.camera.selection.kind == Kind::instance && ui.camera.selection.index == index;
+      const bool chosen = selection.kind == Kind::instance && selection.index == index;
       ImGui::PushID(i);
       if (list_row("##object", chosen, display_name(instance.name, "Object", index), "", 0, 0))
-        choose(ui, chosen, "object", index);
+        choose(controls.actions, view, chosen, "object", index);
       tooltip("Press to select the object; F frames it.");
       ImGui::PopID();
     }
@@ -541,11 +544,11 @@ void objects(Ui& ui, bool reveal) {
 
 }  // namespace
 
-void draw_scene_panel(Ui& ui, const Area& area) {
-  if (!ui.shown.right_open) return;
+void draw_scene_panel(Controls& controls, const commands::Navigation& camera, SceneView& view,
+                      const std::function<void()>& keep_view, const Area& area) {
   begin_panel("##scene", area, colour::panel, true);
-  if (std::exchange(ui.scene_panel_to_top, false)) ImGui::SetScrollY(0);
-  if (!ui.open.scene) {
+  if (std::exchange(view.to_top, false)) ImGui::SetScrollY(0);
+  if (!controls.open.scene) {
     bool open = true;
     section("Scene", open);
     begin_padded();
@@ -556,22 +559,26 @@ void draw_scene_panel(Ui& ui, const Area& area) {
     return;
   }
   const auto block = [&](const char* title, size_t count, bool fallback, auto&& draw) {
-    panel_block(ui, title, fallback, count > 0 ? fmt::format("{}", count) : "", 10, [&] {
+    panel_block(controls, title, fallback, count > 0 ? fmt::format("{}", count) : "", 10, [&] {
       ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(2)});
       draw();
       ImGui::PopStyleVar();
     });
   };
   // A selection made elsewhere, for example by a click in the picture, is scrolled into view.
-  const bool reveal = ui.reveals();
-  if (reveal && ui.camera.selection.kind == Kind::instance) ui.sections["Objects"] = true;
-  if (reveal && ui.camera.selection.kind == Kind::material) ui.sections["Materials"] = true;
-  if (reveal && ui.camera.selection.kind == Kind::light) ui.sections["Lights"] = true;
-  block("Camera", ui.open.scene->cameras.size(), true, [&] { cameras(ui); });
-  block("Lights", ui.open.scene->lights.size() + emitters(ui).size(), true, [&] { light_rows(ui, reveal); });
-  block("Environment", 0, true, [&] { environment(ui); });
-  block("Materials", ui.open.scene->materials.size(), true, [&] { materials(ui, reveal); });
-  block("Objects", ui.open.scene->instances.size(), false, [&] { objects(ui, reveal); });
+  const bool reveal = view.reveals(camera.selection);
+  if (reveal && camera.selection.kind == Kind::instance) controls.sections["Objects"] = true;
+  if (reveal && camera.selection.kind == Kind::material) controls.sections["Materials"] = true;
+  if (reveal && camera.selection.kind == Kind::light) controls.sections["Lights"] = true;
+  block("Camera", controls.open.scene->cameras.size(), true,
+        [&] { cameras(controls, camera, view.focusing, keep_view); });
+  block("Lights", controls.open.scene->lights.size() + emitters(controls.open, camera).size(), true,
+        [&] { light_rows(controls, camera, view, reveal); });
+  block("Environment", 0, true, [&] { environment(controls); });
+  block("Materials", controls.open.scene->materials.size(), true,
+        [&] { materials(controls, camera.selection, view, reveal); });
+  block("Objects", controls.open.scene->instances.size(), false,
+        [&] { objects(controls, camera.selection, view, reveal); });
   hairline();
   ImGui::End();
 }

@@ -33,7 +33,7 @@ std::string with_key(const std::string& help, char shortcut) {
 /// does not lose a press.
 class Items {
  public:
-  Items(Ui& ui, const SolverInfo& solver) : ui_(ui), solver_(solver) {}
+  Items(Controls& controls, const SolverInfo& solver) : controls_(controls), solver_(solver) {}
 
   void operator()(const solvers::ValueRow& row) {
     value_row(row.name, row.value, row.help, tone_ink(row.tone));
@@ -43,7 +43,7 @@ class Items {
 
   void operator()(const solvers::OptionRow& row) {
     if (const OptionInfo* option = plan::find_option(row.key))
-      option_control(ui_, row.key, option_label(*option));
+      option_control(controls_, row.key, option_label(*option));
   }
 
   void operator()(const solvers::ChoiceButtons& choice) {
@@ -55,8 +55,8 @@ class Items {
       const std::string& value = option->choices[i];
       if (i > 0) ImGui::SameLine(0, px(4));
       if (button(("##" + choice.key + value).c_str(), i < labels.size() ? labels[i] : value,
-                 ui_.open.setting(choice.key) == value, each))
-        ui_.act("set", choice.key, value);
+                 controls_.open.setting(choice.key) == value, each))
+        controls_.act("set", choice.key, value);
       tooltip(choice.help.empty() ? option->help : option->help + " " + choice.help);
     }
   }
@@ -70,7 +70,7 @@ class Items {
       if (i > 0) ImGui::SameLine(0, px(4));
       ImGui::BeginDisabled(!b.enabled);
       if (button(("##" + command->name).c_str(), command->label, false, each))
-        ui_.act(solver_.name + "." + command->name);
+        controls_.act(solver_.name + "." + command->name);
       tooltip(b.enabled ? with_key(b.help, command->shortcut) : b.help);
       ImGui::EndDisabled();
     }
@@ -85,7 +85,8 @@ class Items {
       const OptionInfo* option = plan::find_option(key);
       if (view == solver_.views.end() || !option) continue;
       if (drawn++ % 3 > 0) ImGui::SameLine(0, px(4));
-      if (button(("##" + key).c_str(), view->label, ui_.view_on(*view), each)) ui_.turn_view(*view);
+      if (button(("##" + key).c_str(), view->label, controls_.view_on(*view), each))
+        controls_.turn_view(*view);
       tooltip(with_key(option->help, view->shortcut));
     }
   }
@@ -102,7 +103,7 @@ class Items {
     return std::floor((ImGui::CalcItemWidth() - gaps) / static_cast<float>(n));
   }
 
-  Ui& ui_;
+  Controls& controls_;
   const SolverInfo& solver_;
 };
 
@@ -258,8 +259,8 @@ void Items::operator()(const solvers::StepStrip& strip) {
 
 /// A section of the panel with the content that `draw` draws.
 template <class Draw>
-void block(Ui& ui, const std::string& title, const std::string& note, const Draw& draw) {
-  panel_block(ui, title.c_str(), true, note, 10, draw);
+void block(Controls& controls, const std::string& title, const std::string& note, const Draw& draw) {
+  panel_block(controls, title.c_str(), true, note, 10, draw);
 }
 
 /// The components that a solver can compute completely, as words.
@@ -278,12 +279,12 @@ std::string joined(const std::vector<std::string>& names, const std::string& hea
 }
 
 /// A solver that is not used: how to use it.
-void unused(Ui& ui, const SolverInfo& solver) {
+void unused(Controls& controls, const SolverInfo& solver) {
   paragraph(fmt::format("No component is computed by {}.", solver.title));
   gap(8);
   const std::vector<std::string> names = served(solver);
   if (button("##use", fmt::format("Use it for {} light", joined(names)), false, ImGui::CalcItemWidth()))
-    for (const std::string& name : names) ui.act("set", "components." + name, solver.name);
+    for (const std::string& name : names) controls.act("set", "components." + name, solver.name);
   tooltip(fmt::format("Sets {} to {}; the Light panel sets each separately.", joined(names, "components."),
                       solver.name));
 }
@@ -301,13 +302,13 @@ std::set<std::string> placed(const SolverInfo& solver, const Report* report) {
   return keys;
 }
 
-void options(Ui& ui, const SolverInfo& solver, const Report* report) {
+void options(Controls& controls, const SolverInfo& solver, const Report* report) {
   const std::set<std::string> elsewhere = placed(solver, report);
   // Other options control how a view is drawn, and are shown beside that view.
   for (const OptionInfo& option : solver.options)
     if (option.key.starts_with(solver.name + ".") && option.type != OptionType::text &&
         !elsewhere.contains(option.key))
-      option_control(ui, option.key, option_label(option));
+      option_control(controls, option.key, option_label(option));
 }
 
 std::string capitals(std::string text) {
@@ -317,19 +318,18 @@ std::string capitals(std::string text) {
 
 }  // namespace
 
-Area draw_side_tabs(Ui& ui, const Area& area) {
+Area draw_side_tabs(Actions& actions, const std::string& side, bool expanded, const Area& area) {
   struct Tab {
     std::string side, label, help;
   };
   std::vector<Tab> tabs{{k_scene_side, "Scene", "Cameras, lights, environment, materials."}};
   for (const SolverInfo* solver : solvers::registered())
     if (solver->has_panel()) tabs.push_back({solver->name, solver->label, panel_help(*solver) + " K."});
-  if (!ui.shown.right_open) {
+  if (!expanded) {
     begin_panel("##side_folded", area, colour::panel, false);
-    const auto shown =
-        std::find_if(tabs.begin(), tabs.end(), [&](const Tab& t) { return t.side == ui.side; });
+    const auto shown = std::find_if(tabs.begin(), tabs.end(), [&](const Tab& t) { return t.side == side; });
     if (folded_strip(shown == tabs.end() ? "" : shown->label.c_str(), area.lo, area.hi, false))
-      ui.act("window.fold", "right", false);
+      actions.act("window.fold", "right", false);
     ImGui::End();
     return area;
   }
@@ -344,10 +344,10 @@ Area draw_side_tabs(Ui& ui, const Area& area) {
   for (size_t i = 0; i < tabs.size(); ++i) {
     const Tab& tab = tabs[i];
     const ImVec2 lo(border(i), strip.lo.y), hi(border(i + 1), strip.hi.y);
-    const bool on = ui.side == tab.side;
+    const bool on = side == tab.side;
     ImGui::SetCursorScreenPos(lo);
     if (ImGui::InvisibleButton(("##" + tab.side).c_str(), {std::max(1.0f, hi.x - lo.x), hi.y - lo.y}))
-      ui.act("window.side", tab.side);
+      actions.act("window.side", tab.side);
     const bool hovered = ImGui::IsItemHovered();
     tooltip(tab.help);
     if (!on) list->AddRectFilled(lo, hi, colour::surround);
@@ -365,25 +365,24 @@ Area draw_side_tabs(Ui& ui, const Area& area) {
   return {{area.lo.x, strip.hi.y}, area.hi};
 }
 
-void draw_solver_panel(Ui& ui, const SolverInfo& solver, const Area& area) {
-  if (!ui.shown.right_open) return;
+void draw_solver_panel(Controls& controls, const SolverInfo& solver, const Area& area) {
   begin_panel(("##solver_" + solver.name).c_str(), area, colour::panel, true);
-  const bool used = ui.open.uses(solver);
-  const Report* report = used && ui.open.scene ? ui.open.report(solver) : nullptr;
+  const bool used = controls.open.uses(solver);
+  const Report* report = used && controls.open.scene ? controls.open.report(solver) : nullptr;
   if (!used) {
-    block(ui, solver.label, "", [&] { unused(ui, solver); });
+    block(controls, solver.label, "", [&] { unused(controls, solver); });
   } else if (!report) {
-    block(ui, solver.label, "", [&] {
-      paragraph(ui.open.scene ? "It has not been used yet." : "No scene is open.", colour::text_faint);
+    block(controls, solver.label, "", [&] {
+      paragraph(controls.open.scene ? "It has not been used yet." : "No scene is open.", colour::text_faint);
     });
   } else {
-    Items draw(ui, solver);
+    Items draw(controls, solver);
     for (const PanelSection& section : report->sections)
-      block(ui, section.title, section.note, [&] {
+      block(controls, section.title, section.note, [&] {
         for (const PanelItem& item : section.items) std::visit(draw, item);
       });
   }
-  block(ui, "Options", "", [&] { options(ui, solver, report); });
+  block(controls, "Options", "", [&] { options(controls, solver, report); });
   hairline();
   ImGui::End();
 }

@@ -60,11 +60,6 @@ commands::WorkspaceEvents Ui::events() {
   };
 }
 
-bool Ui::reveals() {
-  if (std::exchange(revealed_, camera.selection) == camera.selection) return false;
-  return !std::exchange(chosen_in_list, false);
-}
-
 void Ui::place(const Viewpoint& to) { act_line(commands::Navigation::place_line(to)); }
 
 void Ui::place_by_wheel(const Viewpoint& to) {
@@ -74,7 +69,7 @@ void Ui::place_by_wheel(const Viewpoint& to) {
 }
 
 void Ui::notice(const std::string& text, double seconds) {
-  note.text = text, note.until = work.now + seconds;
+  cards.note.text = text, cards.note.until = work.now + seconds;
   wake(3);
 }
 
@@ -84,26 +79,22 @@ void Ui::say_blocked() {
   notice("A surface is in the way. Hold Alt to pass through it.", 4);
 }
 
-double Ui::busy_seconds() const {
-  const double seconds = busy.command != 0 ? work.now - busy.since : 0;
-  return seconds > 0.5 ? seconds : 0;
-}
-
 void Ui::follow_busy() {
   const uint64_t given = work.session.commands(), done = work.session.commands_done();
   const bool all_done = done >= given;
   const uint64_t shown_up_to = open.snapshot ? open.snapshot->commands : 0;
   const uint64_t current = !all_done ? done + 1 : shown_up_to < given ? given : 0;
-  if (current == busy.command && all_done == busy.done) return;
-  busy.command = current, busy.done = all_done, busy.since = work.now;
-  busy.text = current == 0 || all_done ? "" : history.line_of(current);
-  if (busy.text.starts_with("inspect.")) busy.text.clear();  // follows the pointer; no one has typed it
+  if (current == cards.busy.command && all_done == cards.busy.done) return;
+  cards.busy.command = current, cards.busy.done = all_done, cards.busy.since = work.now;
+  cards.busy.text = current == 0 || all_done ? "" : history.line_of(current);
+  if (cards.busy.text.starts_with("inspect."))
+    cards.busy.text.clear();  // follows the pointer; no one has typed it
 }
 
 void Ui::scene_changed() {
   flight = {};
-  errors.clear();
-  scene_panel_to_top = true;
+  cards.errors.clear();
+  scene_view.to_top = true;
   if (!open.scene->unknown_extensions.empty())
     notice(fmt::format("Not supported and ignored: {}", fmt::join(open.scene->unknown_extensions, ", ")), 12);
   if (open.scene->file.empty()) return;
@@ -127,27 +118,12 @@ std::string Ui::next_side() const {
   return at == sides.end() || at + 1 == sides.end() ? k_scene_side : *(at + 1);
 }
 
-bool Ui::view_on(const solvers::ViewInfo& view) const {
-  const std::string& value = open.setting(view.option);
-  return value != "false" && value != "off";
-}
-
-void Ui::turn_view(const solvers::ViewInfo& view) {
-  const OptionInfo* option = plan::find_option(view.option);
-  if (!option) return;
-  if (option->type != OptionType::choice) return toggle(view.option);
-  const std::vector<std::string>& ring = view.ring.empty() ? option->choices : view.ring;
-  // A value outside the ring counts as on: off is next.
-  const auto at = std::find(ring.begin(), ring.end(), open.setting(view.option));
-  act("set", view.option, at == ring.end() || at + 1 == ring.end() ? ring.front() : *(at + 1));
-}
-
 bool Ui::inspects_pointer() const {
   for (const solvers::ViewInfo& view : plan::views())
-    if (view.inspects_pointer && view_on(view)) return true;
+    if (view.inspects_pointer && controls.view_on(view)) return true;
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const solvers::ViewInfo& view : solver->views)
-      if (view.inspects_pointer && view_on(view) && open.uses(*solver)) return true;
+      if (view.inspects_pointer && controls.view_on(view) && open.uses(*solver)) return true;
   return false;
 }
 
@@ -185,8 +161,8 @@ void Ui::print(log::Level level, const std::string& text) {
 }
 
 void Ui::fail(const std::string& message) {
-  if (errors.empty() || errors.back() != message) errors.push_back(message);
-  if (errors.size() > 3) errors.erase(errors.begin());
+  if (cards.errors.empty() || cards.errors.back() != message) cards.errors.push_back(message);
+  if (cards.errors.size() > 3) cards.errors.erase(cards.errors.begin());
   wake();
 }
 

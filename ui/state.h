@@ -9,11 +9,14 @@
 
 #include "accuracy_view.h"
 #include "actions.h"
+#include "cards_view.h"
 #include "commands/workspace.h"
+#include "controls.h"
 #include "lamp_handles.h"
 #include "layout.h"
 #include "log_view.h"
 #include "requests.h"
+#include "scene_view.h"
 #include "solvers/info.h"
 
 namespace lucerna::ui {
@@ -67,11 +70,6 @@ struct Ui {
   void toggle(const std::string& key) { actions.toggle(key); }
 
   std::set<int> chorded;  ///< GLFW keys whose last press was with Ctrl: they do not fly
-  /// True if the selection is new since the last call and was not made in the list (`chosen_in_list`): its
-  /// row must be scrolled into view.
-  bool reveals();
-  /// A visible row was pressed; an emissive material has two.
-  bool chosen_in_list = false;
   /// Moves the camera to a view reached by a drag or a flight.
   void place(const Viewpoint& view);
   /// The same for the wheel: turns in quick succession are one step.
@@ -84,46 +82,29 @@ struct Ui {
   } drag;
   /// True: the next click in the picture sets the exposure.
   bool dropper = false;
-  /// ... sets the plane of focus.
-  bool focusing = false;
-  /// ... does not select.
-  bool click_taken() const { return dropper || focusing; }
+  /// ... does not select: it sets the exposure or the plane of focus.
+  bool click_taken() const { return dropper || scene_view.focusing; }
 
-  /// A sentence over the picture that disappears by itself.
-  struct {
-    std::string text;
-    double until = 0;
-  } note;
+  CardsView cards;
   void notice(const std::string& text, double seconds = 6);
   /// Reports that a wall is in the way, at most now and then.
   void say_blocked();
 
   /// Runs a script without a user: nothing is kept, nothing happens by itself.
   bool scripted = false;
-  bool welcome = false;   ///< the first steps are shown
-  bool welcomed = false;  ///< ... and were, now or in an earlier run
+  bool welcomed = false;  ///< the first steps were shown, now or in an earlier run
 
-  /// The command in progress and its start. Once a command is done and not shown yet, the first picture of it
-  /// is in progress.
-  struct {
-    uint64_t command = 0;  ///< its number in the session; 0: none
-    bool done = false;     ///< done, but no picture shows it yet
-    double since = 0;
-    std::string text;  ///< its line; "" for none
-  } busy;
-  /// Duration of the command in progress [s]; 0 while it is too short to show.
-  double busy_seconds() const;
-  void follow_busy();
+  void follow_busy();  ///< determines the command in progress
 
   // The window.
   Layout layout;                         ///< as chosen
   Layout shown;                          ///< as it fits this frame
   std::map<std::string, bool> sections;  ///< open or not, by title
+  Controls controls{actions, open, sections};
+  SceneView scene_view;
   LogView log;
-  std::vector<std::string> errors;  ///< the strip's, newest last
   Dialog dialog;
   bool help = false;
-  bool scene_panel_to_top = false;  ///< another scene: its panel is not scrolled
   std::vector<std::string> recent;  ///< files, newest first, from the root
   unsigned texture = 0;             ///< OpenGL name of the picture
   uint32_t texture_width = 0, texture_height = 0;
@@ -136,17 +117,15 @@ struct Ui {
   /// Size of the picture in pixels; none: as large as the window allows.
   std::optional<std::pair<uint32_t, uint32_t>> picture_size;
   bool light_marks = false;  ///< lights are marked in the picture
-  bool brackets = true;      ///< the selected object is marked in the picture
-  Area picture;              ///< where the picture may be
+  MarkedScene marked() { return {open, camera, light_marks}; }
+  bool brackets = true;  ///< the selected object is marked in the picture
+  Area picture;          ///< where the picture may be
   bool picture_hovered = false;
 
   // Solvers.
   std::string side = k_scene_side;  ///< what the right panel shows: the scene, or the solver of that name
   /// The panel that K shows next: those of solvers in use, then the scene.
   std::string next_side() const;
-  bool view_on(const solvers::ViewInfo& view) const;
-  /// Toggles a view; a choice advances in its ring.
-  void turn_view(const solvers::ViewInfo& view);
   /// True if a view is on that inspects the place under the pointer.
   bool inspects_pointer() const;
   /// The last inspected place of a pointer at rest, as inspect.at takes it.
@@ -179,7 +158,6 @@ struct Ui {
   commands::WorkspaceEvents events();
   void scene_changed();
 
-  Selection revealed_;
   double wheeled_ = -10, blocked_said_ = -60;
   uint64_t wheel_gesture_ = 0;
 };
@@ -189,13 +167,14 @@ void draw_parts(Ui& ui);
 
 // The parts, each in its file; called once per frame in this order. Coordinates are window pixels.
 void draw_menu_bar(Ui& ui, const Area& area);
-void draw_light_panel(Ui& ui, const Area& area);
+void draw_light_panel(Controls& controls, bool expanded, const Area& area);
 /// The light mix, into a section of that panel.
 void draw_mix(Actions& actions, commands::OpenScene& open);
 /// The tabs of the right panel; returns the area below them.
-Area draw_side_tabs(Ui& ui, const Area& area);
-void draw_scene_panel(Ui& ui, const Area& area);
-void draw_solver_panel(Ui& ui, const solvers::SolverInfo& solver, const Area& area);
+Area draw_side_tabs(Actions& actions, const std::string& side, bool expanded, const Area& area);
+void draw_scene_panel(Controls& controls, const commands::Navigation& camera, SceneView& view,
+                      const std::function<void()>& keep_view, const Area& area);
+void draw_solver_panel(Controls& controls, const solvers::SolverInfo& solver, const Area& area);
 void draw_toolbar(Ui& ui, const Area& area);
 void draw_picture(Ui& ui, const Area& area);
 void draw_accuracy(Actions& actions, const commands::OpenScene& open, AccuracyView& view, bool expanded,
@@ -204,9 +183,11 @@ void draw_passes(const commands::OpenScene& open, bool expanded, const Area& are
 void draw_log(Actions& actions, const commands::Registry& registry, LogView& log, bool expanded,
               const Area& area);
 /// What can be opened while there is no picture; part of draw_picture. Draws nothing during a load.
-void draw_empty_state(Ui& ui, const Area& area);
+void draw_empty_state(Actions& actions, const commands::OpenScene& open,
+                      const std::vector<std::string>& recent, const Area& area);
 /// Progress, errors and first steps over the picture, notices beside `legend`; part of draw_picture.
-void draw_cards(Ui& ui, const Area& area, const Area& legend);
+void draw_cards(Actions& actions, const commands::OpenScene& open, CardsView& view, double now,
+                const Area& area, const Area& legend);
 /// Over the lower left corner of the picture, or of the `room` around a small one; part of draw_picture.
 /// Returns its area, which is empty if there is no legend. Requires a snapshot.
 Area draw_legend(const commands::OpenScene& open, bool light_marks, const Area& frame, const Area& room);
@@ -228,14 +209,10 @@ void add_window_commands(Ui& ui);
 void begin_panel(const char* name, const Area& area, ImU32 background, bool scrolls);
 /// The heading of a panel in the bottom strip; returns the x where content on the right may start.
 float panel_heading(const char* title, const Area& area);
-/// A section of a panel, folded by a command; `fallback`: its initial state.
-bool panel_section(Ui& ui, const char* title, bool fallback, const std::string& note = "");
 /// One sentence about the panel of a solver.
 std::string panel_help(const solvers::SolverInfo& solver);
 /// Makes the first letter a capital, or a small one.
 std::string capitalised(std::string text);
 std::string uncapitalised(std::string text);
-/// A control for an option of the settings table, by its type; the tooltip is its help.
-void option_control(Ui& ui, const std::string& key, const std::string& name);
 
 }  // namespace lucerna::ui

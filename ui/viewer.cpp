@@ -33,7 +33,7 @@ class Viewer {
     ui_.scripted = !options.script.empty();
     if (remembers()) {
       memory_.emplace(ui_);
-      ui_.welcome = !std::exchange(ui_.welcomed, true);
+      ui_.cards.welcome = !std::exchange(ui_.welcomed, true);
     }
     if (!theme().font_note.empty()) log::warning("{}", theme().font_note);
     ui_.picture_of = [this](const std::string& file) { return texture_of(file); };
@@ -83,7 +83,8 @@ class Viewer {
       sleep = 0.02;
     else if (size_changed_at_ >= 0)
       sleep = k_settle;
-    else if (ui_.busy.command != 0 || ui_.work.now < ui_.note.until || ui_.work.exposure.measuring())
+    else if (ui_.cards.busy.command != 0 || ui_.work.now < ui_.cards.note.until ||
+             ui_.work.exposure.measuring())
       sleep = 0.1;
     if (window_.wait(sleep)) ui_.wake(3), hovering_since_ = ui_.time();
   }
@@ -114,8 +115,9 @@ class Viewer {
     }
     for (const std::string& file : window_.dropped()) ui_.drop(file);
     ui_.follow_busy();
-    if (ui_.busy_seconds() > 0) ui_.wake(1);
-    if (!ui_.note.text.empty() && ui_.work.now >= ui_.note.until) ui_.note.text.clear(), ui_.wake(2);
+    if (ui_.cards.busy_seconds(ui_.work.now) > 0) ui_.wake(1);
+    if (!ui_.cards.note.text.empty() && ui_.work.now >= ui_.cards.note.until)
+      ui_.cards.note.text.clear(), ui_.wake(2);
     // Tooltips and the text cursor need a frame after the pointer has stopped.
     if (ui_.work.now - hovering_since_ < 0.7 || ImGui::GetIO().WantTextInput) ui_.wake(1);
     if (runner_.measuring() || ui_.moving) ui_.wake(1);
@@ -258,13 +260,14 @@ void draw_parts(Ui& ui) {
   if (ui.layout.panels) {
     draw_splitters(ui, areas);
     draw_menu_bar(ui, areas.bar);
-    draw_light_panel(ui, areas.left);
+    draw_light_panel(ui.controls, ui.shown.left_open, areas.left);
     draw_toolbar(ui, areas.toolbar);
-    const Area side = draw_side_tabs(ui, areas.right);
-    if (const solvers::SolverInfo* solver = solvers::find(ui.side))
-      draw_solver_panel(ui, *solver, side);
-    else
-      draw_scene_panel(ui, side);
+    const Area side = draw_side_tabs(ui.actions, ui.side, ui.shown.right_open, areas.right);
+    if (const solvers::SolverInfo* solver = solvers::find(ui.side); solver && ui.shown.right_open)
+      draw_solver_panel(ui.controls, *solver, side);
+    else if (ui.shown.right_open)
+      draw_scene_panel(
+          ui.controls, ui.camera, ui.scene_view, [&ui] { keep_view(ui); }, side);
     draw_accuracy(ui.actions, ui.open, ui.accuracy, ui.shown.bottom_open, areas.accuracy);
     draw_passes(ui.open, ui.shown.bottom_open, areas.passes);
     draw_log(ui.actions, ui.work.registry, ui.log, ui.shown.bottom_open, areas.log);

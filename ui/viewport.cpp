@@ -169,7 +169,7 @@ void begin_drag(Ui& ui, const Area& shown) {
   ui.drag.point = under_pointer(ui, shown);
   ui.drag.lamp.reset();
   if (!ui.click_taken() && !ImGui::GetIO().KeyCtrl && ImGui::GetIO().MouseDown[0])
-    ui.drag.lamp = lamp_handle_at(ui, shown, ImGui::GetIO().MousePos);
+    ui.drag.lamp = lamp_handle_at(ui.marked(), shown, ImGui::GetIO().MousePos);
   if (ui.drag.lamp && ui.drag.lamp->part == LampHandle::Part::surface) ui.drag.lamp.reset();
   ui.drag.azimuth = ui.open.environment_rotation();
   if (const auto sun = first_sun(ui); sun && !has_environment_image(ui))
@@ -259,7 +259,7 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
     if (io.MouseDown[0] && ui.drag.lamp) {
       if (ui.camera.selection != Selection{Kind::light, ui.drag.lamp->light})
         ui.act("select", "light", ui.drag.lamp->light + 1);
-      drag_lamp(ui, shown);
+      drag_lamp(ui.actions, ui.marked(), *ui.drag.lamp, shown);
     } else if (io.MouseDown[0] && io.KeyCtrl) {
       turn_sky(ui, io.MousePos.x - io.MouseClickedPos[0].x, shown.width());
     } else if (io.MouseDown[1] || (flying && io.MouseDown[0])) {
@@ -295,7 +295,7 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
 void click(Ui& ui, const Area& shown) {
   const ImVec2 at = ImGui::GetIO().MousePos;
   if (!ui.click_taken())
-    if (const auto lamp = lamp_handle_at(ui, shown, at))
+    if (const auto lamp = lamp_handle_at(ui.marked(), shown, at))
       return ui.act("select", lamp->part == LampHandle::Part::surface ? "material" : "light",
                     lamp->light + 1);
   const float x = (at.x - shown.lo.x) / std::max(1.0f, shown.width());
@@ -304,7 +304,7 @@ void click(Ui& ui, const Area& shown) {
   if (ui.dropper) {
     ui.act("exposure.dropper", false);
     ui.act("exposure.at", x, y);
-  } else if (ui.focusing) {
+  } else if (ui.scene_view.focusing) {
     ui.act("camera.focusing", false);
     ui.act("camera.focus", x, y);
   } else {
@@ -449,17 +449,17 @@ void draw_picture(Ui& ui, const Area& area) {
     if (ImGui::IsMouseDown(0))
       hot = ui.drag.lamp;
     else if (ui.picture_hovered && !ui.click_taken())
-      hot = lamp_handle_at(ui, frame, ImGui::GetIO().MousePos);
-    draw_lamp_handles(ui, frame, hot);
+      hot = lamp_handle_at(ui.marked(), frame, ImGui::GetIO().MousePos);
+    draw_lamp_handles(ui.marked(), frame, hot);
     if (ui.brackets) draw_brackets(ui, frame);
   }
-  if (!shown) draw_empty_state(ui, area);
+  if (!shown) draw_empty_state(ui.actions, ui.open, ui.recent, area);
   Area legend;
   if (ui.open.snapshot) {
     legend = draw_legend(ui.open, ui.light_marks, frame, ui.picture);
     draw_inspection(*ui.open.snapshot, frame, legend);
   }
-  draw_cards(ui, area, legend);
+  draw_cards(ui.actions, ui.open, ui.cards, ui.work.now, area, legend);
 
   bool active = false;
   ui.picture_hovered = false;

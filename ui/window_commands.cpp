@@ -138,7 +138,8 @@ void add_frame_commands(Ui& ui, const Add& add) {
       false);
 
   add(
-      "window.welcome", "Shows the first steps.", {}, [&ui](const Arguments&) { ui.welcome = true; }, false);
+      "window.welcome", "Shows the first steps.", {}, [&ui](const Arguments&) { ui.cards.welcome = true; },
+      false);
 }
 
 /// The picture's size, and its marks.
@@ -147,15 +148,15 @@ void add_picture_commands(Ui& ui, const Add& add) {
       "exposure.dropper", "Makes the next click in the picture set the exposure from the clicked point.",
       {on()},
       [&ui](const Arguments& a) {
-        ui.dropper = a.boolean("on"), ui.focusing = false;
+        ui.dropper = a.boolean("on"), ui.scene_view.focusing = false;
         if (ui.dropper) ui.notice("Click a grey point to show it as middle grey. Esc cancels.");
       },
       false);
   add(
       "camera.focusing", "Makes the next click in the picture focus on the clicked point.", {on()},
       [&ui](const Arguments& a) {
-        ui.focusing = a.boolean("on"), ui.dropper = false;
-        if (ui.focusing) ui.notice("Click a surface to focus on it. Esc cancels.");
+        ui.scene_view.focusing = a.boolean("on"), ui.dropper = false;
+        if (ui.scene_view.focusing) ui.notice("Click a surface to focus on it. Esc cancels.");
       },
       false);
   add("view.divisor", "Sets the pixels of the window per pixel of the picture, along a side.",
@@ -207,8 +208,8 @@ void add_dialog_commands(Ui& ui, const Add& add) {
       [&ui](const Arguments&) {
         if (ui.dialog.purpose != Dialog::Purpose::none)
           ui.dialog = {};
-        else if (!ui.errors.empty())
-          ui.errors.pop_back();
+        else if (!ui.cards.errors.empty())
+          ui.cards.errors.pop_back();
       },
       false);
 }

@@ -12,6 +12,10 @@ namespace lucerna::bench {
 
 const std::vector<std::string> k_own_interiors = {"ajar",       "arcade", "atrium",    "classroom",
                                                   "conference", "hall",   "sun-patch", "window"};
+const std::vector<std::string> k_own_showpieces = {"cornell", "glass", "pool", "ring", "studio", "teapot"};
+const std::vector<std::string> k_interior_settings = {"path", "learned", "cache", "cache-learned"};
+const std::vector<std::string> k_auto_settings = {"learned", "cache-learned", "photons", "cache-photons",
+                                                  "auto"};
 const std::vector<std::string> k_quick_interiors = {"classroom", "hall", "window"};
 
 namespace {
@@ -28,18 +32,22 @@ struct Form {
   uint32_t reference_samples;
 };
 const Form k_full = {"interiors", 3, {4, 15, 60}, "320x180", 2048};
+const Form k_auto = {"auto", 1, {10, 60}, "320x180", 2048};
 const Form k_quick = {"interiors-quick", 2, {0.8, 4}, "192x108", 1024};
 
 struct Way {
   const char *name, *about;
-  const char *indirect, *lights;  ///< components.secondary and .tertiary; lights.sampling
+  const char *indirect, *caustic, *lights;  ///< components.secondary and .tertiary, .caustic; lights.sampling
 };
 const std::vector<Way> k_ways = {
-    {"path", "path tracing, lights chosen by their power", "path", "power"},
-    {"learned", "path tracing, lights chosen by what arrived nearby", "path", "learned"},
-    {"cache", "secondary and tertiary light cached, lights chosen by their power", "cache", "power"},
+    {"path", "path tracing, lights chosen by their power", "path", "path", "power"},
+    {"learned", "path tracing, lights chosen by what arrived nearby", "path", "path", "learned"},
+    {"cache", "secondary and tertiary light cached, lights chosen by their power", "cache", "path", "power"},
     {"cache-learned", "secondary and tertiary light cached, lights chosen by what arrived nearby", "cache",
-     "learned"}};
+     "path", "learned"},
+    {"photons", "caustics by photons, else as learned", "path", "photons", "learned"},
+    {"cache-photons", "caustics by photons, else as cache-learned", "cache", "photons", "learned"},
+    {"auto", "solvers chosen for the scene", "auto", "auto", "learned"}};
 
 /// True if a program with this help has the setting, and the value if it lists values.
 bool knows(const std::string& help, const std::string& key, const std::string& value) {
@@ -54,7 +62,7 @@ Json setting_of(const Way& way, const std::string& budget, const std::string* he
   // Overrides the scene's own settings.
   Json set{{"components.secondary", way.indirect},
            {"components.tertiary", way.indirect},
-           {"components.caustic", "path"}};
+           {"components.caustic", way.caustic}};
   for (const char* key : {"components.secondary", "components.tertiary"})
     if (help && !knows(*help, key, way.indirect)) return nullptr;
   // Programs without this setting choose lights by power.
@@ -112,7 +120,7 @@ std::vector<fs::path> find_interiors(const fs::path& folder, const fs::path& own
 
 Matrix interiors_matrix(const InteriorsOptions& o, const std::string& help_of_other,
                         std::vector<std::string>& left_out) {
-  const Form& form = o.quick ? k_quick : k_full;
+  const Form& form = o.quick ? k_quick : o.every_solver ? k_auto : k_full;
   const std::string size = o.size.empty() ? form.size : o.size;
   Json m{
       {"name", form.name},
@@ -125,11 +133,19 @@ Matrix interiors_matrix(const InteriorsOptions& o, const std::string& help_of_ot
   else
     m["budgets"] = {{"seconds", o.seconds.empty() ? form.seconds : o.seconds}};
 
+  // With every solver, the project's other scenes too.
+  const auto find_scenes = [&](const fs::path& folder) {
+    std::vector<fs::path> found = find_interiors(folder, o.own);
+    std::error_code code;
+    if (o.every_solver && fs::equivalent(folder, o.own, code))
+      for (const std::string& name : k_own_showpieces) found.push_back(o.own / name / (name + ".gltf"));
+    return found;
+  };
   std::vector<fs::path> rooms;
   std::vector<fs::path> folders = o.folders;
   if (folders.empty()) folders.push_back(o.own);
   for (const fs::path& folder : folders)
-    for (const fs::path& room : find_interiors(folder, o.own)) {
+    for (const fs::path& room : find_scenes(folder)) {
       const std::string name = room.stem().string();
       const bool left =
           o.quick && o.folders.empty() &&
@@ -147,8 +163,9 @@ Matrix interiors_matrix(const InteriorsOptions& o, const std::string& help_of_ot
   }
 
   const auto wanted = [&](const Way& way) {
-    return o.settings.empty() ||
-           std::find(o.settings.begin(), o.settings.end(), way.name) != o.settings.end();
+    const std::vector<std::string>& all = o.every_solver ? k_auto_settings : k_interior_settings;
+    const std::vector<std::string>& some = o.settings.empty() ? all : o.settings;
+    return std::find(some.begin(), some.end(), way.name) != some.end();
   };
   m["settings"] = Json::array();
   for (const Way& way : k_ways) {

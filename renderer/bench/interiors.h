@@ -1,7 +1,6 @@
 #pragma once
 // Measurements of `lucerna bench interiors`: rooms by path tracing, with learned lights, with cached light
 // and with both, each by this program and, if given, by another one for comparison.
-#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -12,6 +11,10 @@ namespace lucerna::bench {
 
 /// The interiors among the project's scenes, and the three of the quick form.
 extern const std::vector<std::string> k_own_interiors, k_quick_interiors;
+/// The project's other scenes, for lucerna bench auto.
+extern const std::vector<std::string> k_own_showpieces;
+/// Settings of lucerna bench interiors, and of lucerna bench auto; the first is the baseline.
+extern const std::vector<std::string> k_interior_settings, k_auto_settings;
 
 struct InteriorsOptions {
   std::filesystem::path own;                   ///< folder of the project's own scenes
@@ -26,11 +29,9 @@ struct InteriorsOptions {
       samples;       ///< budgets instead of seconds, so that figures do not depend on the machine
   std::string size;  ///< WIDTHxHEIGHT; exchanged for rooms taller than wide
   uint32_t reference_samples = 0;
-  std::vector<std::string> settings;  ///< some of k_interior_settings; none: all
+  std::vector<std::string> settings;  ///< some of the settings; none: all of the form
+  bool every_solver = false;          ///< lucerna bench auto: k_auto_settings, and all scenes of `own`
 };
-
-inline constexpr std::array<const char*, 4> k_interior_settings = {"path", "learned", "cache",
-                                                                   "cache-learned"};
 
 /// The rooms in a folder: the interiors of `own` if it is that; otherwise every .gltf and .glb in it and in
 /// its subfolders, by path; a file is a room itself. Throws Error located at the folder if it is missing or

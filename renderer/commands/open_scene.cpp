@@ -7,6 +7,7 @@
 
 #include "base/error.h"
 #include "commands/text.h"
+#include "plan/choose.h"
 #include "plan/views.h"
 #include "solvers/registry.h"
 
@@ -164,10 +165,12 @@ scene::MixPresets OpenScene::mix_presets() const {
 }
 
 bool OpenScene::uses(const SolverInfo& solver) const {
-  for (size_t c = 0; c < solver.serves.size(); ++c)
-    if (solver.serves[c] &&
-        solvers::chooses(setting(std::string("components.") + session::k_component_names[c]), solver.name))
+  for (size_t c = 0; c < solver.serves.size(); ++c) {
+    const std::string& value = setting(std::string("components.") + session::k_component_names[c]);
+    const bool chosen = value == plan::k_auto && snapshot;
+    if (solver.serves[c] && solvers::chooses(chosen ? snapshot->components[c].solver : value, solver.name))
       return true;
+  }
   return false;
 }
 

@@ -13,7 +13,7 @@ namespace {
 constexpr uint32_t k_filter_passes = 4;
 constexpr float k_most_light = 60000;  // range of half floats
 // Filtered picture: mean absolute deviation of 3x3 pixels' means over a pixel's standard error.
-constexpr float k_filter_deviation = 0.65f;
+constexpr float k_filter_deviation = 0.72f;
 constexpr uint64_t k_light_bytes = 16 * k_preview_texels;
 
 uint32_t groups(uint64_t items) { return gpu::groups_for(items, 64); }

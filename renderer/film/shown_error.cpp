@@ -15,7 +15,7 @@ constexpr double k_decay = 0.25;
 constexpr double k_first_spread = 1, k_spread = 0.7;
 // Usual squared error of a picture over the expected one: the first samples' noise is expected from few
 // values, and the filter removes more of it than they say. Measured like k_median_size.
-constexpr double k_usual_ratio = 0.6;
+constexpr double k_usual_ratio = 0.8;
 constexpr double k_most_first = 4;
 // Half sides of the pooled neighbourhoods [tiles].
 constexpr int k_reaches[] = {4, 1, 0};

@@ -37,16 +37,18 @@ std::optional<double> Plan::bias(size_t component) const {
   return first && first->unbiased && (!second || second->unbiased) ? std::optional(0.0) : std::nullopt;
 }
 
-Plan make_plan(const Settings& settings) {
+Plan make_plan(const SceneFacts& facts, const Settings& settings, const solvers::Findings* findings,
+               std::optional<double> seconds) {
   Plan plan;
-  for (int c = 0; c < paths::k_component_count; ++c) {
-    const std::string& name = settings.text(std::string("components.") + paths::k_component_names[c]);
+  plan.choices = choose(facts, settings, findings, goal_of(settings, findings, seconds));
+  plan.undecided = !findings && undecided(facts, settings);
+  for (size_t c = 0; c < plan.choices.size(); ++c) {
+    const std::string& name = plan.choices[c].solver;
     const size_t plus = name.find('+');
-    plan.solver[size_t(c)] = solvers::find(name.substr(0, plus));
-    if (plus != std::string::npos) plan.rest[size_t(c)] = solvers::find(name.substr(plus + 1));
+    plan.solver[c] = solvers::find(name.substr(0, plus));
+    if (plus != std::string::npos) plan.rest[c] = solvers::find(name.substr(plus + 1));
   }
-  if (primary_by_paths(settings.text("components.primary"), settings.text("components.secondary"),
-                       settings.text("components.tertiary")))
+  if (primary_by_paths(plan.choices[0].solver, plan.choices[1].solver, plan.choices[2].solver))
     plan.solver[0] = solvers::find("path");
   return plan;
 }

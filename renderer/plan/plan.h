@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "paths/automaton.h"
+#include "plan/choose.h"
+#include "plan/facts.h"
 #include "plan/settings.h"
 #include "scene/scene.h"
 #include "solvers/registry.h"
@@ -14,6 +16,10 @@
 namespace lucerna::plan {
 
 struct Plan {
+  /// By component: the solver's name as in components.X, and why it was chosen if the setting is auto.
+  std::array<Choice, paths::k_component_count> choices{};
+  /// A choice waits for the findings of a pilot; paths compute those components meanwhile.
+  bool undecided = false;
   std::array<const solvers::SolverInfo*, paths::k_component_count> solver{};  ///< null: off
   /// If `solver` computes only directly visible light (SolverInfo::directly_visible_only): the solver that
   /// looks up the rest; null: eye paths compute it.
@@ -31,10 +37,11 @@ struct Plan {
   std::optional<double> bias(size_t component) const;
 };
 
-/// From the settings `components.*`: a solver's name, two joined by '+' (choices_of), or off. Every component
-/// has one solver, two that share its words, or none, so no path is counted twice, and missing light was
-/// chosen.
-Plan make_plan(const Settings& settings);
+/// From the settings `components.*`: a solver's name, two joined by '+' (choices_of), off, or auto
+/// (choose()). Every component has one solver, two that share its words, or none, so no path is counted
+/// twice, and missing light was chosen. `findings`: of a pilot of this scene; null: none yet.
+Plan make_plan(const SceneFacts& facts, const Settings& settings, const solvers::Findings* findings = nullptr,
+               std::optional<double> seconds = {});
 
 /// True if paths compute primary light although another solver is chosen: one that reads its part together
 /// with secondary light (SolverInfo::primary_with_secondary), while paths continue for other light. Values of

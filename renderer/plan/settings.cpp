@@ -4,6 +4,7 @@
 
 #include "base/json_text.h"
 #include "paths/automaton.h"
+#include "plan/choose.h"
 #include "solvers/registry.h"
 
 namespace lucerna::plan {
@@ -27,10 +28,13 @@ OptionInfo component_option(int c) {
       if (visible->directly_visible_only && visible->serves[size_t(c)] && rest->looked_up &&
           rest->serves[size_t(c)])
         choices.push_back(visible->name + "+" + rest->name);
-  choices.push_back("off");
+  choices.emplace_back(k_auto);
+  choices.emplace_back("off");
   const std::string key = std::string("components.") + paths::k_component_names[size_t(c)];
-  const std::string help = fmt::format("Solver of the {} component: {}.", paths::k_component_names[size_t(c)],
-                                       k_component_help[size_t(c)]);
+  const std::string help = fmt::format(
+      "Solver of the {} component: {}. auto: chosen for the scene, "
+      "by what it contains and by a short pilot.",
+      paths::k_component_names[size_t(c)], k_component_help[size_t(c)]);
   return choice_option(key.c_str(), fallback.c_str(), std::move(choices), "", help.c_str());
 }
 

@@ -298,8 +298,11 @@ bool Engine::learn(const PictureView& picture, const std::function<bool()>& canc
   for (uint32_t g = 0; g < generation; ++g) first += k_generations[g];
   schedule::WorkItem item{{}, k_generations[generation]};
   for (uint32_t b = 0; b < across * down; ++b) item.blocks.push_back({b, first});
-  const bool went = wavefront_->learn(item, pilot_frame(picture, 8 * across, 8 * down),
-                                      frame(picture, picture.width, picture.height), plan_.enabled(), cancel);
+  // Learning does not depend on how components are computed.
+  shared::Frame pilot = pilot_frame(picture, 8 * across, 8 * down);
+  pilot.max_depth = std::min(pilot.max_depth, shared::k_learned_vertices);
+  const bool went =
+      wavefront_->learn(item, pilot, frame(picture, picture.width, picture.height), plan_.enabled(), cancel);
   if (went && generation + 1 == std::size(k_generations)) wavefront_->learning()->end();
   return went;
 }
@@ -310,8 +313,15 @@ shared::Frame Engine::pilot_frame(const PictureView& picture, uint32_t width, ui
   const solvers::Routing traced = routing(all, picture.settings, picture.world.flat.effects);
   shared::Frame frame = frame_of({.here = traced, .delegated = traced}, picture, width, height);
   frame.seed ^= 0x6c6c6c6cu;  // samples that no picture uses
-  frame.max_depth = std::min(frame.max_depth, shared::k_learned_vertices);
   return frame;
+}
+
+bool Engine::try_paths(const PictureView& picture, const schedule::WorkItem& item, film::Film& film,
+                       const std::function<bool()>& cancel) {
+  wavefront_->set_frame(pilot_frame(picture, film.width(), film.height()), plan_.enabled());
+  const bool complete = wavefront_->try_out(item, film, cancel);
+  wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
+  return complete;
 }
 
 bool Engine::waits() const {

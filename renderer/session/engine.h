@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "film/developer.h"
@@ -60,7 +61,7 @@ class Engine {
   /// True if kernels and solvers can be reused for another plan and these settings of the same world.
   bool serves(const plan::Plan& plan, const plan::Settings& settings, const World& world) const;
   /// Switches to a plan that it serves.
-  void set_plan(const plan::Plan& plan) { plan_ = plan; }
+  void set_plan(plan::Plan plan) { plan_ = std::move(plan); }
   const plan::Plan& plan() const { return plan_; }
   /// True if a solver of this engine took over the predecessor's work when the engine was made.
   bool took_up(const solvers::Solver& predecessor) const;
@@ -100,6 +101,10 @@ class Engine {
   /// Discards what was learned from another view and used for preview samples; the picture must not depend on
   /// former views.
   void begin_samples(const PictureView& picture);
+  /// Traces an item of all components by paths, as if no other solver computed any, into a film of another
+  /// size, with samples that no picture uses. False if cancelled.
+  bool try_paths(const PictureView& picture, const schedule::WorkItem& item, film::Film& film,
+                 const std::function<bool()>& cancel);
   /// Records that generation. False if cancelled.
   bool learn(const PictureView& picture, const std::function<bool()>& cancel);
 
@@ -143,8 +148,8 @@ class Engine {
                    const upload::Effects& effects) const;
   shared::Frame frame_of(const Routes& routes, const PictureView& picture, uint32_t width,
                          uint32_t height) const;
-  /// Frame of paths that record light samples, for all components alike: learning does not depend on how
-  /// components are computed.
+  /// Frame of paths in another picture with other samples, for all components alike, however the plan
+  /// computes them.
   shared::Frame pilot_frame(const PictureView& picture, uint32_t width, uint32_t height) const;
   /// For the present plan without components delegated everywhere (Preparation::delegated_components).
   void route(const plan::Settings& settings, const upload::Effects& effects);

@@ -1,6 +1,7 @@
 #include "session/relight.h"
 
 #include <algorithm>
+#include <iterator>
 
 #include "scene/light_factor.h"
 #include "solvers/solver.h"
@@ -131,6 +132,16 @@ void remix(Relight& relight, const std::string& text) {
   for (const std::string& name : scene::unknown_groups(mix, *relight.groups))
     relight.messages.push_back(unknown_group(name, *relight.groups));
   weigh(relight, mix);
+}
+
+std::vector<std::string> new_messages(const Relight& relight, const Relight& before) {
+  std::vector<std::string> all;
+  std::copy_if(relight.messages.begin(), relight.messages.end(), std::back_inserter(all),
+               [&](const std::string& message) {
+                 return std::find(before.messages.begin(), before.messages.end(), message) ==
+                        before.messages.end();
+               });
+  return all;
 }
 
 }  // namespace lucerna::session

@@ -41,5 +41,7 @@ bool write_mix(Relight& relight, std::shared_ptr<const scene::Scene> scene, cons
 void keep_written(Relight& relight, const Relight& before);
 /// Applies another mix to separate groups. Throws Error; then nothing changes.
 void remix(Relight& relight, const std::string& text);
+/// Messages that the former one did not have.
+std::vector<std::string> new_messages(const Relight& relight, const Relight& before);
 
 }  // namespace lucerna::session

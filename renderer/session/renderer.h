@@ -18,23 +18,21 @@
 #include "film/io/image_file.h"
 #include "film/io/reference.h"
 #include "gpu/kernel.h"
-#include "overlay/sheet.h"
 #include "paths/automaton.h"
 #include "plan/plan.h"
 #include "plan/settings.h"
 #include "scene/io/load.h"
 #include "scene/scene.h"
 #include "session/display.h"
-#include "session/engine.h"
 #include "session/filtered.h"
-#include "session/focus_view.h"
-#include "session/kept_solvers.h"
+#include "session/image_progress.h"
 #include "session/lights_edit.h"
-#include "session/lights_view.h"
-#include "session/relight.h"
+#include "session/overlays.h"
+#include "session/pilot.h"
 #include "session/sampling.h"
+#include "session/setup.h"
+#include "session/transaction.h"
 #include "session/window_filter.h"
-#include "session/world.h"
 #include "stats/forecast.h"
 #include "stats/ledger.h"
 #include "transport/wavefront.h"
@@ -73,10 +71,10 @@ class Renderer {
   void set_scene(std::shared_ptr<const scene::Scene> scene, const Progress& progress = {},
                  const std::vector<SettingChange>& changes = {});
   /// Null before the first scene.
-  std::shared_ptr<const scene::Scene> scene() const { return world_.scene; }
+  std::shared_ptr<const scene::Scene> scene() const { return setup_.world.scene; }
 
-  plan::Settings& settings() { return settings_; }
-  const plan::Settings& settings() const { return settings_; }
+  plan::Settings& settings() { return setup_.settings; }
+  const plan::Settings& settings() const { return setup_.settings; }
   /// Applies changed settings; restarts the image if it depends on them. Target error, sample limits and
   /// sampling mode let the image continue. Throws Error if kernels or memory for them cannot be made: the
   /// former picture continues.
@@ -85,7 +83,7 @@ class Renderer {
   void set_size(uint32_t width, uint32_t height);
   /// Throws Error like scene::check_range, as do the edits below; then nothing changes.
   void set_camera(const scene::Camera& camera);
-  const scene::Camera& camera() const { return camera_; }
+  const scene::Camera& camera() const { return setup_.camera; }
   /// Selects a camera of the scene by name; Error listing the names if there is none.
   void choose_camera(const std::string& name);
   void set_light(uint32_t index, const scene::Light& light);
@@ -101,7 +99,7 @@ class Renderer {
   /// lights or the reverse, the picture continues. Throws Error; then nothing changes.
   void set_lights(const LightsEdit& edit);
   /// The scene's light groups, and what the settings make of them.
-  const Relight& relight() const { return relight_; }
+  const Relight& relight() const { return setup_.relight; }
   /// In the window, a new mix is shown at once; the film's sums follow with the next step(), or with this
   /// call.
   bool mix_pending() const { return mix_pending_; }
@@ -114,7 +112,7 @@ class Renderer {
   /// Complete passes over the picture, or over the active tiles.
   uint32_t passes() const { return sampling_.passes(); }
 
-  bool ready() const { return engine_ != nullptr; }
+  bool ready() const { return setup_.engine != nullptr; }
   bool done() const { return sampling_.done() && !judged_otherwise(); }
   /// Number of samples that every pixel has.
   uint32_t samples() const { return sampling_.samples(); }
@@ -127,7 +125,7 @@ class Renderer {
   /// Likewise, for every tile of sampling.tile, in raster order, with heavy tails marked; as of the last
   /// image_error().
   std::vector<film::TileError> tile_errors() const;
-  uint32_t tile_side() const;  ///< sampling.tile [pixels]
+  uint32_t tile_side() const { return setup_.tile_side(); }  ///< sampling.tile [pixels]
   /// True once the lookup-error estimate is complete (film::RecordsError).
   bool lookup_errors_known() const;
   /// False if some solver's lookups have a bias that none of these errors contains.
@@ -135,6 +133,17 @@ class Renderer {
   /// Errors not contained in these, which only estimate noise: plan::Plan::bias of the current settings;
   /// nullopt before the first scene.
   std::optional<double> bias(size_t component) const;
+  /// What the scene calls for.
+  const plan::SceneFacts& facts() const { return facts_; }
+  /// Solver of each component, and why it was chosen if the setting is auto; empty before the first scene.
+  const std::array<plan::Choice, paths::k_component_count>& choices() const;
+  /// The pilot's findings, once solvers have been chosen by it.
+  const std::optional<solvers::Findings>& findings() const { return findings_; }
+  /// Rendering will end after this many seconds: solvers with the setting auto are chosen for that. Call
+  /// before the first step().
+  void expect_seconds(std::optional<double> seconds) { seconds_limit_ = seconds; }
+  /// True while a pilot must run before solvers are chosen (components.X=auto).
+  bool choosing() const { return setup_.engine && setup_.engine->plan().undecided; }
   /// Runs one work item; cancellable between bounces. False if there is nothing to do, if cancelled, or if
   /// preparation waits.
   bool step(const std::function<bool()>& cancel = {});
@@ -152,17 +161,19 @@ class Renderer {
 
   /// Wall time [s] since this image's first step() or draw_draft(), without the times between rest() and the
   /// next of these calls, and after the last.
-  double seconds() const { return clock_.seconds(); }
+  double seconds() const { return progress_.seconds(); }
   /// Part of seconds() until solvers had prepared the data of the first sample.
-  double prepared_seconds() const { return prepared_s_; }
+  double prepared_seconds() const { return progress_.prepared_seconds(); }
   /// Stops that clock: rendering waits for the user or for a scene.
-  void rest() { clock_.stop(); }
+  void rest() { progress_.rest(); }
   /// Part of seconds() that step() has spent tracing this image (stats::Entry::render_s).
-  double render_seconds() const { return render_s_; }
+  double render_seconds() const { return progress_.render_seconds(); }
   /// Part of stats() from preparation before the first sample.
-  const transport::TransportStats& prepared() const { return prepared_; }
+  const transport::TransportStats& prepared() const { return progress_.prepared(); }
   /// Device time per sample a pixel, by component, without that preparation; 0 before the first sample.
-  std::array<double, shared::k_component_count> component_ms_a_sample() const;
+  std::array<double, shared::k_component_count> component_ms_a_sample() const {
+    return progress_.component_ms_a_sample();
+  }
 
   /// Tone-mapped picture with the settings' view, or a heat map on view().heat's scale, with tiles if
   /// overlay.tiles is on. `cancel` is called while solvers draw overlays; true: the picture is already out of
@@ -178,19 +189,19 @@ class Renderer {
   bool remembers() const;
   /// Sets the pixels of the window per pixel of the picture, along a side: with overlays, shown_picture() and
   /// picture() are larger by shown_scale(), at most this.
-  void set_window_scale(uint32_t scale) { window_scale_ = std::max(1u, scale); }
-  uint32_t shown_scale() { return sheet().scale(); }
+  void set_window_scale(uint32_t scale);
+  uint32_t shown_scale() { return overlays_.scale(); }
   /// True if the surfaces of the window's pixels are not traced yet; overlays then use the picture's samples.
   /// With RendererOptions::interactive only trace_overlay() traces them, so that a moving camera does not
   /// wait; the next picture shows them.
-  bool overlay_waits();
-  void trace_overlay(const std::function<bool()>& cancel);
+  bool overlay_waits() { return overlays_.waits(); }
+  void trace_overlay(const std::function<bool()>& cancel) { overlays_.trace(cancel); }
   /// Shares of the latest shown_picture().
   film::PreviewShares preview_shares() const;
   /// Display::former_is_preview
   bool former_is_preview() const { return display_ && display_->former_is_preview(); }
   film::View view() const;
-  film::Image image() const { return film_->read(); }  ///< without a pending mix
+  film::Image image() const { return setup_.film->read(); }  ///< without a pending mix
   /// Brightness of the picture, or at a point (0..1 to the right and down): of the coarse image while there
   /// is no other. Throws Error if there is none.
   film::Brightness measure(std::optional<vec2> at) const;
@@ -214,18 +225,19 @@ class Renderer {
 
   /// Null if it computes nothing.
   const solvers::Solver* solver(std::string_view name) const {
-    return engine_ ? engine_->find(name) : nullptr;
+    return setup_.engine ? setup_.engine->find(name) : nullptr;
   }
-  solvers::Solver* solver(std::string_view name) { return engine_ ? engine_->find(name) : nullptr; }
-  /// Calls f with each solver, the canvas for its overlays, and its view of the picture.
-  using Visit = std::function<void(solvers::Solver&, const overlay::Canvas&, const solvers::Picture&)>;
-  void visit_solvers(const Visit& f, const std::function<bool()>& cancel = {});
+  solvers::Solver* solver(std::string_view name) {
+    return setup_.engine ? setup_.engine->find(name) : nullptr;
+  }
+  /// Overlays::visit_solvers
+  void visit_solvers(const Overlays::Visit& f) { overlays_.visit_solvers(f); }
   /// True if some light is looked up.
-  bool looks_up() const { return engine_ && !engine_->solvers().empty(); }
+  bool looks_up() const { return setup_.engine && !setup_.engine->solvers().empty(); }
   /// True if preparation is needed before the next sample.
-  bool preparing() const { return engine_ && engine_->unready(); }
+  bool preparing() const { return setup_.engine && setup_.engine->unready(); }
   /// ... and waits for a command.
-  bool waits() const { return engine_ && engine_->waits(); }
+  bool waits() const { return setup_.engine && setup_.engine->waits(); }
   /// Ends preparation as soon as possible (solvers::Preparation::finish_early).
   void finish_early();
   /// Runs one of SolverInfo::commands; does nothing if the solver is not active.
@@ -242,7 +254,7 @@ class Renderer {
   double figure(const std::string& name) const;
   /// True if all kernels of preparation have run once.
   bool prepares_warm() const {
-    return preparing() && solvers::offered<solvers::Preparation>(*engine_->unready())->warm();
+    return preparing() && solvers::offered<solvers::Preparation>(*setup_.engine->unready())->warm();
   }
   /// Statistics of the solvers by name, for --stats.
   nlohmann::ordered_json solver_statistics();
@@ -250,71 +262,43 @@ class Renderer {
   void inspect(std::optional<vec2> at);
 
   /// Cost and error of this image over time; the last entry is current only after finish_ledger().
-  const stats::Ledger& ledger() const { return ledger_; }
-  void finish_ledger() { note_progress(true); }
+  const stats::Ledger& ledger() const { return progress_.ledger(); }
+  void finish_ledger();
 
   /// Compares further samples with this reference picture: ledger entries then contain the true error. Throws
   /// Error like film::read_reference, or without a scene; the former reference then stays. Entries have no
   /// true error while the picture has another size, camera or scene than the reference.
-  void set_reference(const std::filesystem::path& file);
-  void clear_reference() { reference_.reset(); }
-  bool has_reference() const { return reference_.has_value(); }
+  void set_reference(const std::filesystem::path& file) { progress_.set_reference(file); }
+  void clear_reference() { progress_.clear_reference(); }
   /// Null if there is none.
-  const film::Reference* reference() const { return reference_ ? &*reference_ : nullptr; }
+  const film::Reference* reference() const { return progress_.reference(); }
   /// True if the reference shows the present picture.
-  bool reference_applies() const;
+  bool reference_applies() const { return progress_.reference_applies(); }
 
-  const film::Film& film() const { return *film_; }
-  const transport::TransportStats& stats() const { return engine_->wavefront().stats(); }
-  std::string tracer_name() const { return world_.host ? "host" : "compute-bvh"; }
+  const film::Film& film() const { return *setup_.film; }
+  const transport::TransportStats& stats() const { return setup_.engine->wavefront().stats(); }
+  std::string tracer_name() const { return setup_.world.host ? "host" : "compute-bvh"; }
   double load_seconds() const { return load_seconds_; }
-  double compile_seconds() const { return engine_ ? engine_->compile_seconds() : 0; }
+  double compile_seconds() const { return setup_.engine ? setup_.engine->compile_seconds() : 0; }
   /// Computed components (bit i), by the current settings; 0 before the first scene.
   uint32_t enabled_components() const;
 
  private:
-  struct Films {
-    std::unique_ptr<film::Film> picture, coarse;
-  };
-  Films make_films(uint32_t width, uint32_t height, const upload::Effects& effects) const;
-  /// True if the film stores light groups like the paths traced for these effects.
-  static bool keeps(const film::Film& film, const upload::Effects& effects);
-  /// For a scene in a picture of that size.
-  Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
-                       std::shared_ptr<const scene::Scene> scene, uint32_t width, uint32_t height) const;
-  /// Required separation of lights.
-  upload::LightSeparation wanted_separation(const plan::Plan& plan, const plan::Settings& settings,
-                                            const Relight& relight) const;
-  /// Applies it, and logs new messages.
-  void take(Relight relight);
   /// Applies another mix to the film's picture.
   void remix();
-  /// Makes the scene the current one. On failure throws Error and everything stays unchanged.
-  void install(std::shared_ptr<const scene::Scene> scene, plan::Settings settings, scene::Camera camera,
-               const Progress& progress, const scene::Changes& changes);
-  /// `changes`: determine what it may take over from the current engine, if any. On failure throws Error and
-  /// everything stays unchanged.
-  std::unique_ptr<Engine> make_engine(const World& world, const plan::Plan& plan,
-                                      const plan::Settings& settings, const scene::Changes& changes) const;
-  /// Replaces the current engine; its solver data is kept if it may be used again.
-  void use(std::unique_ptr<Engine> engine, const scene::Changes& changes);
-  void use(Films films);
-  /// Changes lights, environment or material factors of the scene. Makes kernels for its new features. On
-  /// failure throws Error and everything stays unchanged.
-  void edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& change, bool factors);
+  /// Makes the target the current setup, with a new world. On failure throws Error and everything stays
+  /// unchanged, as with every function that takes a target.
+  void install(Transaction::Target target, const Progress& progress, const scene::Changes& changes);
+  /// Commits it, and logs new messages.
+  void commit(Transaction& transaction);
+  /// Changes lights, environment or material factors (`factors`) of the scene. Makes kernels for its new
+  /// features.
+  void edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& changes, bool factors);
+  void edit(Transaction::Target target, const scene::Changes& changes, bool factors);
   /// `factors`: known factor on the light of each group, if the edit is no more than that
   /// (scene::light_factors).
   void restart(const scene::Changes& changes, const std::optional<std::vector<vec3>>& factors = {});
-  PictureView picture_view() const {
-    return {automaton_, settings_, world_, camera_, width_, height_, relight_.weights};
-  }
-  /// The film's picture with the overlays of solvers.
-  std::vector<uint8_t> finished_picture(const film::View& view, const std::function<bool()>& cancel);
-  /// True if a view of a solver, or of the lights, is on.
-  bool draws_over() const;
-  overlay::Sheet& sheet();
-  /// To the picture, at most at that scale.
-  void fit_sheet(uint32_t scale);
+  PictureView picture_view() const { return setup_.view(automaton_); }
   std::vector<uint8_t> picture_of(const Filtered& filtered, const film::View& view,
                                   const std::function<bool()>& cancel);
   FilterJob filter_job() const;
@@ -322,30 +306,26 @@ class Renderer {
   /// The window's filtered picture, if that view shows it; else null.
   const Filtered* shown_filtered(const film::View& view) const;
   void forget_filtered();
-  /// Draws the views of learned lights.
-  void draw_lights(const std::function<bool()>& cancel);
-  void draw_focus(const std::function<bool()>& cancel);
   void mark_tiles(const film::View& view);
   bool previewed(const film::View& view) const;  ///< true if the window shows a preview in that view
   film::HeatScale heat_scale(uint32_t layer) const;
-  film::SeenRange seen_range() const;
   /// Another exposure or tone curve changes errors as seen, by which tiles have stopped.
-  bool judged_otherwise() const { return adaptive() && seen_ != seen_range(); }
+  bool judged_otherwise() const { return adaptive() && seen_ != setup_.seen_range(); }
   /// True if the picture's light is unchanged, whatever its computation and camera.
   bool keeps_light(const scene::Changes& changes) const;
   void start_schedule();
   /// Continues with another sampling mode from the present samples.
   void change_schedule();
   schedule::AdaptiveOptions adaptive_options() const;
-  /// Text of the camera: pictures of one scene with equal texts show the same.
-  std::string view_text() const;
   solvers::Provenance provenance() const;
   solvers::Solver& solver_for_file(const std::string& name, const std::filesystem::path& file,
                                    const char* nothing, const char* no_scene);
-  /// Applies the plan of the settings, with new kernels and solvers if needed: then true. On failure throws
-  /// Error and everything stays unchanged.
-  bool apply_plan(scene::Changes& changes);
+  /// Applies the plan of the target's settings, with new kernels and solvers if needed: then true. Adds edits
+  /// of lights to `changes` if the settings cause them.
+  bool apply_plan(Transaction::Target target, scene::Changes& changes);
   void notify_settings_changed();  ///< informs the solvers
+  /// Runs a part of the pilot, and then chooses the solvers. False if cancelled.
+  bool run_pilot(const std::function<bool()>& cancel);
   bool render_item(const std::function<bool()>& cancel);
   /// If refining lookup data reduces the picture's squared error more than as many samples: runs one work
   /// item of it. True if it did.
@@ -353,8 +333,6 @@ class Renderer {
   bool refining_pays(uint64_t paths);
   /// If the item waits for a round: runs one work item of that round. True if it did.
   std::optional<bool> prepare_round(const schedule::WorkItem& item, const std::function<bool()>& cancel);
-  /// Adds an entry to the ledger if it is time for one, or at once.
-  void note_progress(bool at_once);
   /// Call after a coarse preview sample, with its duration.
   void note_path_pace(double seconds);
 
@@ -362,26 +340,21 @@ class Renderer {
   std::shared_ptr<gpu::Device> device_;
   std::unique_ptr<gpu::ShaderCompiler> compiler_;
   paths::Automaton automaton_;
-  plan::Settings settings_;
-  std::map<std::string, std::string> applied_;  ///< settings of the present picture
-  World world_;
-  Relight relight_;
+  SetupContext context_;
+  Setup setup_;
+  Overlays overlays_{context_, setup_};
+  std::map<std::string, std::string> applied_;      ///< settings of the present picture
   bool mix_pending_ = false, mix_dragged_ = false;  ///< not in the film's sums yet; the mix is being dragged
   std::vector<vec3> mixed_;                         ///< weights of the last mix
   Timer since_mix_;
   std::shared_ptr<const scene::Scene> loaded_;  ///< as passed to set_scene()
-  std::unique_ptr<Engine> engine_;              ///< null before the first scene; destroyed before the world
-  KeptSolvers kept_;
-  std::unique_ptr<film::Film> film_, coarse_;
+  plan::SceneFacts facts_;                      ///< of the scene as it was installed
+  std::unique_ptr<Pilot> pilot_;                ///< while it runs
+  std::optional<solvers::Findings> findings_;   ///< of this scene's pilot
+  std::optional<double> seconds_limit_;
   std::optional<Filtered> filtered_;             ///< by filter()
   std::unique_ptr<WindowFilter> window_filter_;  ///< null in batch
   std::unique_ptr<Display> display_;             ///< null in batch
-  std::unique_ptr<LightsView> lights_view_;      ///< null until it is shown
-  std::unique_ptr<FocusView> focus_view_;        ///< likewise
-  std::unique_ptr<overlay::Sheet> sheet_;        ///< null until something is drawn
-  uint32_t window_scale_ = 1;
-  bool waits_for_overlay_ = false;  ///< pictures wait for the surfaces of overlays
-  bool overlay_fails_ = false;      ///< no memory for these
   struct {
     uint64_t version = ~uint64_t{0}, paths = 0;
     bool filtered = false;
@@ -389,24 +362,14 @@ class Renderer {
   bool draft_preparing_ = false;                ///< state at the latest preview sample
   double coarse_s_ = 0;                         ///< of the coarse preview samples since they began
   std::optional<stats::SamplePace> path_pace_;  ///< for a picture of one pixel
-  scene::Camera camera_;
-  scene::Lens begun_lens_;  ///< of the picture begun last
-  uint32_t width_ = 1280, height_ = 720;
+  scene::Lens begun_lens_;                      ///< of the picture begun last
   Sampling sampling_;
+  ImageProgress progress_{setup_, sampling_};
   film::SeenRange seen_;  ///< seen_range() of the errors in the adaptive schedule
   uint64_t restarts_ = 0;
   uint64_t errors_restart_ = ~0ull;             ///< image whose lookup errors are being estimated ...
   const solvers::Solver* errors_of_ = nullptr;  ///< ... and their solver
   uint32_t weighed_at_ = 0;                     ///< samples at the latest refining_pays()
-  std::optional<vec2> looked_at_;
-
-  // Progress and errors.
-  stats::Ledger ledger_;
-  std::optional<film::Reference> reference_;
-  Stopwatch clock_;        ///< wall time of this image
-  double render_s_ = 0;    ///< part of that in step()
-  double prepared_s_ = 0;  ///< part of the clock before the image's first sample
-  transport::TransportStats prepared_;
   double load_seconds_ = 0;
 };
 

@@ -10,17 +10,17 @@
 namespace lucerna::session {
 
 void Renderer::set_light(uint32_t index, const scene::Light& light) {
-  if (!world_.scene || index >= world_.scene->lights.size())
+  if (!setup_.world.scene || index >= setup_.world.scene->lights.size())
     throw_error("light", "there is no light {}", index);
   scene::check_range(light);
-  auto edited = std::make_shared<scene::Scene>(*world_.scene);
+  auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
   edited->lights[index] = light;
   edit(edited, scene::Change::lamp, false);
 }
 
 void Renderer::set_environment(float scale, float rotation_degrees) {
-  if (!world_.scene) return;
-  auto edited = std::make_shared<scene::Scene>(*world_.scene);
+  if (!setup_.world.scene) return;
+  auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
   edited->environment.scale = scale;
   edited->environment.rotation = rotation_degrees;
   scene::check_range(edited->environment);
@@ -29,8 +29,8 @@ void Renderer::set_environment(float scale, float rotation_degrees) {
 
 void Renderer::set_environment_file(const std::filesystem::path& file, std::optional<float> scale,
                                     std::optional<float> rotation_degrees) {
-  if (!world_.scene || !loaded_) throw_error(file.string(), "there is no scene to be lit");
-  auto edited = std::make_shared<scene::Scene>(*world_.scene);
+  if (!setup_.world.scene || !loaded_) throw_error(file.string(), "there is no scene to be lit");
+  auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
   // The images as loaded; those of earlier files are dropped.
   edited->images = loaded_->images;
   scene::Environment environment = loaded_->environment;
@@ -41,22 +41,22 @@ void Renderer::set_environment_file(const std::filesystem::path& file, std::opti
     environment.given = true;
     edited->images.push_back(std::move(image));
   }
-  environment.scale = scale.value_or(world_.scene->environment.scale);
-  environment.rotation = rotation_degrees.value_or(world_.scene->environment.rotation);
+  environment.scale = scale.value_or(setup_.world.scene->environment.scale);
+  environment.rotation = rotation_degrees.value_or(setup_.world.scene->environment.rotation);
   scene::check_range(environment);
   edited->environment = environment;
   std::shared_ptr<const scene::Scene> lit = edited;
   // The first sky of this scene.
   if (lit->portals.empty() && loaded_->portals.empty())
-    lit = with_portals(lit, {}, settings_.text("lights.portals"));
+    lit = with_portals(lit, {}, setup_.settings.text("lights.portals"));
   edit(lit, scene::Change::environment, false);
 }
 
 void Renderer::set_material(uint32_t index, const scene::Material& material) {
-  if (!world_.scene || index >= world_.scene->materials.size())
+  if (!setup_.world.scene || index >= setup_.world.scene->materials.size())
     throw_error("material", "there is no material {}", index);
   scene::check_range(material);
-  auto edited = std::make_shared<scene::Scene>(*world_.scene);
+  auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
   scene::Material& m = edited->materials[index];
   const scene::Material before = std::exchange(m, material);
   bool same = m.alpha_mode == before.alpha_mode && (m.transmission > 0) == (before.transmission > 0) &&
@@ -83,8 +83,8 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
 }
 
 void Renderer::set_lights(const LightsEdit& e) {
-  if (!world_.scene) throw Error("light", "there is no scene");
-  auto edited = std::make_shared<scene::Scene>(*world_.scene);
+  if (!setup_.world.scene) throw Error("light", "there is no scene");
+  auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
   for (const auto& [index, light] : e.lights) {
     if (index >= edited->lights.size()) throw_error("light", "there is no light {}", index);
     scene::check_range(light);
@@ -97,45 +97,39 @@ void Renderer::set_lights(const LightsEdit& e) {
   }
   if (e.environment_scale) edited->environment.scale = *e.environment_scale;
   scene::check_range(edited->environment);
-  if (write_mix(relight_, edited, *world_.lit, settings_, e.mix)) {
-    world_.scene = edited;
-    settings_.set("relight.mix", e.mix);
-    applied_["relight.mix"] = settings_.text("relight.mix");
+  if (write_mix(setup_.relight, edited, *setup_.world.lit, setup_.settings, e.mix)) {
+    setup_.world.scene = edited;
+    setup_.settings.set("relight.mix", e.mix);
+    applied_["relight.mix"] = setup_.settings.text("relight.mix");
     return;
   }
-  const std::string before = settings_.text("relight.mix");
-  settings_.set("relight.mix", e.mix);
-  try {
-    scene::Changes changes;
-    changes.edits = {scene::Change::lamp, scene::Change::environment, scene::Change::colour};
-    edit(edited, changes, true);
-  } catch (...) {
-    settings_.set("relight.mix", before);
-    throw;
-  }
+  Transaction::Target target(setup_);
+  target.scene = edited;
+  target.settings.set("relight.mix", e.mix);
+  scene::Changes changes;
+  changes.edits = {scene::Change::lamp, scene::Change::environment, scene::Change::colour};
+  edit(std::move(target), changes, true);
 }
 
 void Renderer::edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& changes, bool factors) {
-  Relight relight = make_relight(engine_->plan(), settings_, edited, width_, height_);
-  const bool by_group = relight.separate && relight_.separate && *relight.groups == *relight_.groups;
+  Transaction::Target target(setup_);
+  target.scene = std::move(edited);
+  edit(std::move(target), changes, factors);
+}
+
+void Renderer::edit(Transaction::Target target, const scene::Changes& changes, bool factors) {
+  Transaction transaction(context_, setup_, std::move(target), setup_.engine->plan());
+  const Relight &before = setup_.relight, &after = transaction.relight();
+  const bool by_group = after.separate && before.separate && *after.groups == *before.groups;
   const std::optional<std::vector<vec3>> light =
-      scene::light_factors(*world_.lit, *relight.lit, by_group ? relight.groups.get() : nullptr);
+      scene::light_factors(*setup_.world.lit, *after.lit, by_group ? after.groups.get() : nullptr);
   // Only the emission of materials has changed.
   const scene::Changes what = light && factors ? scene::Changes(scene::Change::lamp) : changes;
-  WorldEdit trial(*device_, world_, std::move(edited), relight.lit,
-                  wanted_separation(engine_->plan(), settings_, relight),
-                  factors || relight.baked != relight_.baked);
-  const bool rebuild = !engine_->serves(engine_->plan(), settings_, world_);
-  Films films =
-      keeps(*film_, world_.flat.effects) ? Films{} : make_films(width_, height_, world_.flat.effects);
-  if (rebuild) use(make_engine(world_, engine_->plan(), settings_, what), what);
-  trial.keep();
-  if (films.picture) use(std::move(films));
-  take(std::move(relight));
-  if (rebuild)
-    notify_settings_changed();
-  else
-    engine_->wavefront().rebind(*world_.device);
+  transaction.edit_world(factors);
+  transaction.build(what);
+  const bool rebuilt = transaction.has_engine();
+  commit(transaction);
+  if (rebuilt) notify_settings_changed();
   restart(what, light);
 }
 

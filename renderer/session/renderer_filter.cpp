@@ -18,49 +18,52 @@ film::ShownError lookup_errors(const std::vector<film::TileError>& tiles) {
 }  // namespace
 
 const Filtered& Renderer::filter() {
-  if (!engine_ || !film_ || stats().paths == 0) throw Error("filter", "there is no picture to filter yet");
+  if (!setup_.engine || !setup_.film || stats().paths == 0)
+    throw Error("filter", "there is no picture to filter yet");
   settle_mix();
   forget_filtered();  // frees its memory first
   PixelSight own(*device_, *compiler_);
   PictureFilter filter(*device_, *compiler_);
   filter.begin(filter_job());
-  while (filter.working()) filter.step(*engine_, picture_view(), display_ ? display_->sight() : own, {});
+  while (filter.working())
+    filter.step(*setup_.engine, picture_view(), display_ ? display_->sight() : own, {});
   filtered_ = filter.take();
   return *filtered_;
 }
 
 const Filtered* Renderer::filtered() const {
   const bool same = filtered_ && filtered_->paths == stats().paths &&
-                    filtered_->film->width() == film_->width() &&
-                    filtered_->film->height() == film_->height();
+                    filtered_->film->width() == setup_.film->width() &&
+                    filtered_->film->height() == setup_.film->height();
   return same ? &*filtered_ : nullptr;
 }
 
 FilterJob Renderer::filter_job() const {
   uint32_t looked_up = 0;
-  for (const auto& solver : engine_->solvers()) looked_up |= engine_->plan().components_of(solver->info());
+  for (const auto& solver : setup_.engine->solvers())
+    looked_up |= setup_.engine->plan().components_of(solver->info());
   looked_up &= paths::k_secondary_bit | paths::k_tertiary_bit;  // the components of records
-  return {*film_, tile_side(), seen_range().floor, stats().paths, looked_up};
+  return {*setup_.film, tile_side(), setup_.seen_range().floor, stats().paths, looked_up};
 }
 
 const Filtered* Renderer::shown_filtered(const film::View& v) const {
   const bool shows =
-      window_filter_ && v.layer < shared::k_layer_albedo && settings_.text("preview.filter") == "auto";
+      window_filter_ && v.layer < shared::k_layer_albedo && setup_.settings.text("preview.filter") == "auto";
   return shows ? window_filter_->result() : nullptr;
 }
 
 WindowFilter::Progress Renderer::filter_progress() const {
   return {.samples = samples(),
           .paths = stats().paths,
-          .render_s = render_s_,
+          .render_s = progress_.render_seconds(),
           .done = done(),
-          .prepares = preparing() || engine_->learns(samples())};
+          .prepares = preparing() || setup_.engine->learns(samples())};
 }
 
 bool Renderer::filter_due() const {
-  return engine_ && film_ && window_filter_ && !mix_pending_ && view().layer < shared::k_layer_albedo &&
-         settings_.text("preview.filter") == "auto" && film_->fits_storage_buffers() &&
-         window_filter_->due(filter_progress());
+  return setup_.engine && setup_.film && window_filter_ && !mix_pending_ &&
+         view().layer < shared::k_layer_albedo && setup_.settings.text("preview.filter") == "auto" &&
+         setup_.film->fits_storage_buffers() && window_filter_->due(filter_progress());
 }
 
 void Renderer::forget_filtered() {
@@ -71,10 +74,10 @@ void Renderer::forget_filtered() {
 film::PreviewShares Renderer::preview_shares() const {
   if (!display_) return {};
   film::PreviewShares shares = display_->shares();
-  if (engine_ && film_ && shown_filtered(view()))
+  if (setup_.engine && setup_.film && shown_filtered(view()))
     shares = {.stale = 0, .filtered = 1, .error = display_->filtered_error()};
   if (shares.error && lookup_errors_known()) {
-    const film::ShownError lookups = lookup_errors(film::tile_errors(*film_, tile_side()));
+    const film::ShownError lookups = lookup_errors(film::tile_errors(*setup_.film, tile_side()));
     shares.error->median = std::hypot(shares.error->median, lookups.median);
     shares.error->worst_tenth = std::hypot(shares.error->worst_tenth, lookups.worst_tenth);
   }

@@ -25,177 +25,98 @@ film::View without_tiles(film::View v) {
 
 film::View Renderer::view() const {
   film::View v;
-  v.layer = uint32_t(settings_.choice("film.layer"));
+  v.layer = uint32_t(setup_.settings.choice("film.layer"));
   v.show = 0;
   for (int c = 0; c < paths::k_component_count; ++c)
-    if (settings_.boolean(std::string("show.") + paths::k_component_names[c])) v.show |= 1u << c;
-  v.curve = uint32_t(settings_.choice("film.tone_curve"));
-  v.exposure = float(std::exp2(settings_.real("film.ev")));
-  v.scale = 2 * world_.flat.core_radius;
+    if (setup_.settings.boolean(std::string("show.") + paths::k_component_names[c])) v.show |= 1u << c;
+  v.curve = uint32_t(setup_.settings.choice("film.tone_curve"));
+  v.exposure = float(std::exp2(setup_.settings.real("film.ev")));
+  v.scale = 2 * setup_.world.flat.core_radius;
   v.heat = heat_scale(v.layer);
-  if (settings_.boolean("overlay.tiles")) v.tiles = tile_side();
-  v.tint_former = settings_.boolean("overlay.former");
+  if (setup_.settings.boolean("overlay.tiles")) v.tiles = tile_side();
+  v.tint_former = setup_.settings.boolean("overlay.former");
   return v;
 }
 
 film::HeatScale Renderer::heat_scale(uint32_t layer) const {
   if (layer == shared::k_layer_samples)
     return film::sample_scale(adaptive() ? adaptive()->options().min_samples : 0, max_samples());
-  if (layer == shared::k_layer_error) return film::error_scale(settings_.real("sampling.target_error"));
+  if (layer == shared::k_layer_error) return film::error_scale(setup_.settings.real("sampling.target_error"));
   double ms = 0;
   for (const auto& stage : stats().stages) ms += stage.ms;
-  for (const auto& stage : prepared_.stages) ms -= stage.ms;
+  for (const auto& stage : progress_.prepared().stages) ms -= stage.ms;
   const auto seen = [](const transport::TransportStats& s) { return double(s.rays - s.shadow_rays); };
-  return film::cost_scale(ms, seen(stats()) - seen(prepared_), double(film_->width()) * film_->height(),
-                          adaptive() != nullptr);
+  return film::cost_scale(ms, seen(stats()) - seen(progress_.prepared()),
+                          double(setup_.film->width()) * setup_.film->height(), adaptive() != nullptr);
 }
 
 void Renderer::mark_tiles(const film::View& v) {
   if (v.tiles == 0) return;
   std::vector<shared::TileMark> marks;
   for (const TileStatus& t : tile_status(*this, true))
-    marks.push_back({film::tile_position(double{t.sum()}, settings_.real("sampling.target_error")),
+    marks.push_back({film::tile_position(double{t.sum()}, setup_.settings.real("sampling.target_error")),
                      t.state | (t.heavy_tailed ? shared::k_tile_heavy : 0)});
-  film_->mark_tiles(marks);
-}
-
-bool Renderer::draws_over() const {
-  if (!engine_ || !film_) return false;
-  const auto on = [&](const OptionInfo& option) {
-    const solvers::SolverInfo* owner = solvers::owner_of(option.key);
-    return option.key.starts_with("overlay.") && owner && engine_->find(owner->name) &&
-           settings_.text(option.key) != option.fallback;
-  };
-  return looked_at_ || LightsView::shown(settings_) || FocusView::shown(settings_) ||
-         std::any_of(plan::options().begin(), plan::options().end(), on);
-}
-
-overlay::Sheet& Renderer::sheet() {
-  if (!sheet_) {
-    sheet_ = std::make_unique<overlay::Sheet>(*device_, *compiler_);
-    fit_sheet(1);
-  }
-  return *sheet_;
-}
-
-void Renderer::fit_sheet(uint32_t scale) {
-  const uint64_t pixels = uint64_t{width_} * height_;
-  while (scale > 1 && pixels * scale * scale > overlay::Sight::k_most_points) --scale;
-  sheet().fit(*film_, scale, engine_->frame(picture_view(), scale * width_, scale * height_));
-}
-
-bool Renderer::overlay_waits() {
-  return !overlay_fails_ && draws_over() && !sheet().surfaces_known() && sheet().can_trace();
-}
-
-void Renderer::trace_overlay(const std::function<bool()>& cancel) {
-  if (!overlay_waits()) return;
-  transport::Wavefront& wavefront = engine_->wavefront();
-  fit_sheet(sheet().scale());
-  try {
-    sheet().trace(wavefront, *film_, engine_->plan().enabled(), engine_->defines(), cancel);
-  } catch (const Error& e) {
-    wavefront.stream().discard();
-    sheet().forget();
-    overlay_fails_ = true;
-    log::warning("{}; overlays follow the samples of the picture", e.what());
-  }
-  wavefront.set_frame(engine_->frame(picture_view(), width_, height_), engine_->plan().enabled());
-}
-
-std::vector<uint8_t> Renderer::finished_picture(const film::View& v, const std::function<bool()>& cancel) {
-  fit_sheet(draws_over() || v.tiles > 0 ? window_scale_ : 1);
-  if (waits_for_overlay_) trace_overlay(cancel);
-  gpu::Stream& stream = engine_->wavefront().stream();
-  sheet().enlarge(stream, *film_);
-  engine_->developer().draw_tiles(stream, *film_, v, sheet().picture(*film_), sheet().scale());
-  visit_solvers(
-      [](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
-        if (auto* views = solvers::offered<solvers::Views>(solver)) views->draw(canvas, picture);
-      },
-      cancel);
-  draw_lights(cancel);
-  draw_focus(cancel);
-  if (sheet().scale() == 1) return film_->read_picture();
-  std::vector<uint8_t> pixels(uint64_t{width_} * height_ * sheet().scale() * sheet().scale() * 4);
-  sheet().picture(*film_).read(pixels.data(), pixels.size());
-  return pixels;
-}
-
-void Renderer::draw_lights(const std::function<bool()>& cancel) {
-  if (!engine_ || !film_ || !LightsView::shown(settings_)) {
-    if (lights_view_) lights_view_->forget();
-    return;
-  }
-  if (!lights_view_) lights_view_ = std::make_unique<LightsView>(*device_, *compiler_);
-  lights_view_->draw(
-      {engine_->wavefront(), *film_, *coarse_, sheet(), cancel}, engine_->wavefront().learning(), world_.flat,
-      engine_->frame(picture_view(), film_->width(), film_->height()), *world_.scene, settings_, looked_at_);
-}
-
-void Renderer::draw_focus(const std::function<bool()>& cancel) {
-  if (!engine_ || !film_ || !FocusView::shown(settings_)) {
-    if (focus_view_) focus_view_->forget();
-    return;
-  }
-  if (!focus_view_) focus_view_ = std::make_unique<FocusView>(*device_, *compiler_);
-  focus_view_->draw({engine_->wavefront(), *film_, *coarse_, sheet(), cancel},
-                    engine_->frame(picture_view(), film_->width(), film_->height()));
+  setup_.film->mark_tiles(marks);
 }
 
 bool Renderer::previewed(const film::View& v) const {
   // Samples from which the picture is shown unfiltered, whatever its noise.
   constexpr uint32_t k_previewed_samples = 256;
-  return display_ && settings_.text("preview.filter") == "auto" && !done() &&
-         samples() < k_previewed_samples && display_->shows(v, *film_);
+  return display_ && setup_.settings.text("preview.filter") == "auto" && !done() &&
+         samples() < k_previewed_samples && display_->shows(v, *setup_.film);
 }
 
 bool Renderer::shows_the_same() const {
   const auto draws = [&](const OptionInfo& option) {
-    return option.key.starts_with("overlay.") && settings_.text(option.key) != option.fallback;
+    return option.key.starts_with("overlay.") && setup_.settings.text(option.key) != option.fallback;
   };
-  if (!engine_ || !film_ || looked_at_ || shown_.version != display_->version()) return false;
+  if (!setup_.engine || !setup_.film || overlays_.mode().inspected || shown_.version != display_->version())
+    return false;
   const Filtered* f = shown_filtered(view());
   const bool same = f ? shown_.filtered && shown_.paths == f->paths
                       : previewed(view()) && !shown_.filtered && shown_.paths == stats().paths;
   return same && std::none_of(plan::options().begin(), plan::options().end(), draws);
 }
 
-bool Renderer::remembers() const { return engine_ && film_ && previewed(view()) && display_->remembers(); }
+bool Renderer::remembers() const {
+  return setup_.engine && setup_.film && previewed(view()) && display_->remembers();
+}
 
 std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::function<bool()>& cancel) {
   constexpr double k_little_filtered = 0.1;
   const film::View v = view();
-  const bool quick = mix_pending_ && samples() > 0 && film_->quick() && v.layer == shared::k_layer_beauty &&
-                     v.show == (1u << paths::k_component_count) - 1 && v.tiles == 0;
+  const bool quick = mix_pending_ && samples() > 0 && setup_.film->quick() &&
+                     v.layer == shared::k_layer_beauty && v.show == (1u << paths::k_component_count) - 1 &&
+                     v.tiles == 0;
   // A drag is shown at display rate, with unfiltered samples. A sudden mix of other groups takes a little
   // longer if it would show noise in place of a filtered picture.
   if (quick && (mix_dragged_ || !previewed(v) || display_->shares().filtered < k_little_filtered)) {
-    engine_->developer().mix(engine_->wavefront().stream(), *film_, v);
-    return finished_picture(v, cancel);
+    setup_.engine->developer().mix(setup_.engine->wavefront().stream(), *setup_.film, v);
+    return overlays_.finish(v, cancel);
   }
   settle_mix();
   if (const Filtered* f = shown_filtered(v)) {
-    display_->plain(*engine_, picture_view(), v);
+    display_->plain(*setup_.engine, picture_view(), v);
     shown_ = {display_->version(), f->paths, true};
     return picture_of(*f, v, cancel);
   }
   if (!previewed(v)) {
-    if (display_) display_->plain(*engine_, picture_view(), v);
+    if (display_) display_->plain(*setup_.engine, picture_view(), v);
     return picture(with_coarse, cancel);
   }
   mark_tiles(v);
   try {
     shown_ = {display_->version(), stats().paths, false};
-    display_->develop(*engine_, picture_view(), *film_, *coarse_, v, samples(), stats().paths > 0);
+    display_->develop(*setup_.engine, picture_view(), *setup_.film, *setup_.coarse, v, samples(),
+                      stats().paths > 0);
   } catch (const Error& e) {
-    engine_->wavefront().stream().discard();
+    setup_.engine->wavefront().stream().discard();
     // The picture does not need it.
     log::warning("{}; the window shows the samples as they are", e.what());
-    settings_.set("preview.filter", "off");
+    setup_.settings.set("preview.filter", "off");
     return picture(with_coarse, cancel);
   }
-  return finished_picture(v, cancel);
+  return overlays_.finish(v, cancel);
 }
 
 std::vector<uint8_t> Renderer::picture(bool with_coarse, const std::function<bool()>& cancel) {
@@ -203,24 +124,24 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse, const std::function<boo
   const film::View v = view();
   if (const Filtered* f = filtered(); f && v.layer < shared::k_layer_albedo) return picture_of(*f, v, cancel);
   mark_tiles(v);
-  engine_->developer().tone_map(engine_->wavefront().stream(), *film_, without_tiles(v),
-                                with_coarse ? coarse_.get() : nullptr);
-  return finished_picture(v, cancel);
+  setup_.engine->developer().tone_map(setup_.engine->wavefront().stream(), *setup_.film, without_tiles(v),
+                                      with_coarse ? setup_.coarse.get() : nullptr);
+  return overlays_.finish(v, cancel);
 }
 
 std::vector<uint8_t> Renderer::picture_of(const Filtered& filtered, const film::View& v,
                                           const std::function<bool()>& cancel) {
   mark_tiles(v);
-  gpu::Stream& stream = engine_->wavefront().stream();
-  engine_->developer().tone_map(stream, *filtered.film, without_tiles(v));
-  stream.copy(filtered.film->picture(), film_->picture(), filtered.film->picture().bytes());
+  gpu::Stream& stream = setup_.engine->wavefront().stream();
+  setup_.engine->developer().tone_map(stream, *filtered.film, without_tiles(v));
+  stream.copy(filtered.film->picture(), setup_.film->picture(), filtered.film->picture().bytes());
   stream.run();
-  return finished_picture(v, cancel);
+  return overlays_.finish(v, cancel);
 }
 
 film::Brightness Renderer::measure(std::optional<vec2> at) const {
-  if (!engine_ || !film_) throw Error("", "there is no picture to measure");
-  const film::Image image = samples() > 0 ? film_->read() : coarse_->read();
+  if (!setup_.engine || !setup_.film) throw Error("", "there is no picture to measure");
+  const film::Image image = samples() > 0 ? setup_.film->read() : setup_.coarse->read();
   const auto sampled = [](uint32_t n) { return n > 0; };
   if (std::none_of(image.samples.begin(), image.samples.end(), sampled))
     throw Error("", "there is no picture to measure yet");
@@ -279,7 +200,7 @@ void add_group_layers(film::FilmImage& out, const film::Film& film, const Religh
 
 film::FilmImage Renderer::film_image() {
   settle_mix();
-  const film::Image image = film_->read();
+  const film::Image image = setup_.film->read();
   film::FilmImage out;
   out.width = image.width;
   out.height = image.height;
@@ -290,24 +211,24 @@ film::FilmImage Renderer::film_image() {
   film::add_plane(out, "", "RGB", sum);
   for (int c = 0; c < film::k_components; ++c)
     film::add_plane(out, std::string(paths::k_component_names[c]) + ".", "RGB", image.components[c]);
-  if (settings_.boolean("relight.layers")) {
-    if (relight_.separate)
-      add_group_layers(out, *film_, relight_);
+  if (setup_.settings.boolean("relight.layers")) {
+    if (setup_.relight.separate)
+      add_group_layers(out, *setup_.film, setup_.relight);
     else
-      log::warning("relight.layers: the EXR has no layers of groups of lights: {}", relight_.why_not);
+      log::warning("relight.layers: the EXR has no layers of groups of lights: {}", setup_.relight.why_not);
   }
   film::add_plane(out, "albedo.", "RGB", image.albedo);
   film::add_plane(out, "N.", "XYZ", image.normal);
   out.channels.emplace_back("Z", image.depth);
   out.channels.emplace_back("samples", std::vector<float>(image.samples.begin(), image.samples.end()));
   out.metadata["version"] = LUCERNA_VERSION;
-  out.metadata["settings"] = settings_.changed_json();
-  out.metadata["seed"] = settings_.text("seed");
+  out.metadata["settings"] = setup_.settings.changed_json();
+  out.metadata["seed"] = setup_.settings.text("seed");
   out.metadata["device"] = device_->info().name;
   out.metadata["tracer"] = tracer_name();
-  out.metadata["scene"] = world_.scene->name;
-  out.metadata["view"] = view_text();
-  if (const glm::dvec3& o = world_.scene->origin; o != glm::dvec3(0))
+  out.metadata["scene"] = setup_.world.scene->name;
+  out.metadata["view"] = setup_.view_text();
+  if (const glm::dvec3& o = setup_.world.scene->origin; o != glm::dvec3(0))
     out.metadata["origin"] = fmt::format("{} {} {}", o.x, o.y, o.z);
   out.metadata["noise"] = film::noise_text(image_error().rms);
   if (const Filtered* f = filtered()) add_filtered_layers(out, *f);
@@ -315,24 +236,21 @@ film::FilmImage Renderer::film_image() {
 }
 
 void Renderer::save(const std::filesystem::path& file, bool as_shown) {
-  if (!engine_) throw Error(file.string(), "nothing to save yet; load a scene first");
+  if (!setup_.engine) throw Error(file.string(), "nothing to save yet; load a scene first");
   const std::string extension = file.extension().string();
   if (extension == ".exr")
     film::write_exr(file, film_image());
   else if (extension == ".png") {
     // The inspected place is not saved.
-    const std::optional<vec2> at = looked_at_;
-    const uint32_t scale = std::exchange(window_scale_, 1);
-    const bool waits = std::exchange(waits_for_overlay_, true);
-    inspect(std::nullopt);
+    const Overlays::Mode mode = overlays_.mode();
+    overlays_.set_mode({});
     settle_mix();
     const std::vector<uint8_t> shown = as_shown ? shown_picture(false) : picture(false);
-    inspect(at);
-    window_scale_ = scale, waits_for_overlay_ = waits;
+    overlays_.set_mode(mode);
     std::map<std::string, std::string> metadata;
     if (const Filtered* f = as_shown ? shown_filtered(view()) : filtered())
       metadata["filter"] = filter_text(f->error);
-    film::write_png(file, film_->width(), film_->height(), shown, metadata);
+    film::write_png(file, setup_.film->width(), setup_.film->height(), shown, metadata);
   } else
     throw_error(file.string(), "cannot write '{}' files; use .exr or .png", extension);
 }

@@ -8,12 +8,12 @@
 namespace lucerna::session {
 
 std::optional<bool> Renderer::refine(const std::function<bool()>& cancel) {
-  solvers::Solver* solver = engine_->refining();
+  solvers::Solver* solver = setup_.engine->refining();
   if (!solver) {
     // At powers of two, where passes over the picture end for any size of work items (schedule/uniform.h):
     // the picture does not depend on that size.
     constexpr uint32_t k_least = 16;
-    solver = engine_->refinable();
+    solver = setup_.engine->refinable();
     if (!solver) return std::nullopt;
     const uint32_t samples = sampling_.most_samples();
     if (samples < k_least || !std::has_single_bit(samples) || samples == weighed_at_) return std::nullopt;
@@ -21,11 +21,11 @@ std::optional<bool> Renderer::refine(const std::function<bool()>& cancel) {
     if (!refining_pays(solvers::offered<solvers::Refinement>(*solver)->paths_refined())) return std::nullopt;
   }
   auto& refinement = *solvers::offered<solvers::Refinement>(*solver);
-  const bool went = engine_->with(*solver, picture_view(), [&](const solvers::Picture& picture) {
-    return refinement.refine(engine_->wavefront(), picture, cancel);
+  const bool went = setup_.engine->with(*solver, picture_view(), [&](const solvers::Picture& picture) {
+    return refinement.refine(setup_.engine->wavefront(), picture, cancel);
   });
   if (!refinement.refines()) {
-    film_->forget_record_errors();
+    setup_.film->forget_record_errors();
     errors_of_ = nullptr;
   }
   return went;
@@ -40,15 +40,6 @@ bool Renderer::refining_pays(uint64_t paths) {
   return 2 * read / double(paths) > sampled / double(std::max<uint64_t>(stats().paths, 1));
 }
 
-void Renderer::visit_solvers(const Visit& f, const std::function<bool()>& cancel) {
-  if (!engine_ || !film_) return;
-  fit_sheet(sheet().scale());
-  const overlay::Canvas canvas{engine_->wavefront(), *film_, *coarse_, sheet(), cancel};
-  const PictureView view = picture_view();
-  for (const auto& solver : engine_->solvers())
-    engine_->with(*solver, view, [&](const solvers::Picture& picture) { f(*solver, canvas, picture); });
-}
-
 void Renderer::solver_command(const std::string& name, const std::string& command) {
   solvers::Solver* found = solver(name);
   if (auto* commands = found ? solvers::offered<solvers::Commands>(*found) : nullptr)
@@ -56,10 +47,15 @@ void Renderer::solver_command(const std::string& name, const std::string& comman
 }
 
 void Renderer::inspect(std::optional<vec2> at) {
-  looked_at_ = at;
-  if (!engine_) return;
-  for (const auto& solver : engine_->solvers())
-    if (auto* views = solvers::offered<solvers::Views>(*solver)) views->look_at(at);
+  Overlays::Mode mode = overlays_.mode();
+  mode.inspected = at;
+  overlays_.set_mode(mode);
+}
+
+void Renderer::set_window_scale(uint32_t scale) {
+  Overlays::Mode mode = overlays_.mode();
+  mode.scale = std::max(1u, scale);
+  overlays_.set_mode(mode);
 }
 
 std::vector<std::shared_ptr<const solvers::Report>> Renderer::reports() {
@@ -67,17 +63,17 @@ std::vector<std::shared_ptr<const solvers::Report>> Renderer::reports() {
   visit_solvers([&](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
     all.push_back(solver.report(canvas, picture, samples() > 0));
   });
-  if (lights_view_ && lights_view_->report())
-    all.push_back(std::make_shared<const solvers::Report>(*lights_view_->report()));
-  if (focus_view_ && focus_view_->report())
-    all.push_back(std::make_shared<const solvers::Report>(*focus_view_->report()));
+  if (const solvers::Report* lights = overlays_.lights_report())
+    all.push_back(std::make_shared<const solvers::Report>(*lights));
+  if (const solvers::Report* focus = overlays_.focus_report())
+    all.push_back(std::make_shared<const solvers::Report>(*focus));
   return all;
 }
 
 double Renderer::figure(const std::string& name) const {
   double sum = 0;
-  if (engine_)
-    for (const auto& solver : engine_->solvers())
+  if (setup_.engine)
+    for (const auto& solver : setup_.engine->solvers())
       if (const auto* statistics = solvers::offered<solvers::Statistics>(*solver))
         for (const auto& [key, value] : statistics->figures()) sum += key == name ? value : 0;
   return sum;
@@ -85,7 +81,7 @@ double Renderer::figure(const std::string& name) const {
 
 nlohmann::ordered_json Renderer::solver_statistics() {
   nlohmann::ordered_json all = nlohmann::ordered_json::object();
-  if (const transport::LightLearning* learning = engine_->wavefront().learning())
+  if (const transport::LightLearning* learning = setup_.engine->wavefront().learning())
     all["lights"] = {{"clusters", learning->clusters().count()},
                      {"rows", learning->rows()},
                      {"records", learning->records()},
@@ -102,18 +98,18 @@ nlohmann::ordered_json Renderer::solver_statistics() {
 }
 
 solvers::Provenance Renderer::provenance() const {
-  const scene::LightHash hash = scene::light_hash(*world_.lit);
-  return {.scene = world_.scene->name,
+  const scene::LightHash hash = scene::light_hash(*setup_.world.lit);
+  return {.scene = setup_.world.scene->name,
           .hashes = {{"geometry", hash.geometry},
                      {"materials", hash.materials},
                      {"lights", hash.lights},
                      {"environment", hash.environment}},
-          .view = fmt::format("{} {}x{}", view_text(), width_, height_)};
+          .view = fmt::format("{} {}x{}", setup_.view_text(), setup_.width, setup_.height)};
 }
 
 solvers::Solver& Renderer::solver_for_file(const std::string& name, const std::filesystem::path& file,
                                            const char* nothing, const char* no_scene) {
-  if (!engine_) throw Error(file.string(), no_scene);
+  if (!setup_.engine) throw Error(file.string(), no_scene);
   if (solvers::Solver* found = solver(name); found && solvers::offered<solvers::Persistence>(*found))
     return *found;
   std::string components;
@@ -128,7 +124,7 @@ solvers::Solver& Renderer::solver_for_file(const std::string& name, const std::f
 void Renderer::solver_save(const std::string& name, const std::filesystem::path& file) {
   const solvers::Solver& found = solver_for_file(name, file, "there is nothing to save",
                                                  "there is nothing to save yet; load a scene first");
-  engine_->with(found, picture_view(), [&](const solvers::Picture& picture) {
+  setup_.engine->with(found, picture_view(), [&](const solvers::Picture& picture) {
     solvers::offered<solvers::Persistence>(found)->save(file.string(), picture, provenance());
   });
 }
@@ -136,16 +132,16 @@ void Renderer::solver_save(const std::string& name, const std::filesystem::path&
 void Renderer::solver_load(const std::string& name, const std::filesystem::path& file) {
   solvers::Solver& found = solver_for_file(name, file, "nothing would look it up",
                                            "this file is of a scene; load the scene first");
-  engine_->with(found, picture_view(), [&](const solvers::Picture& picture) {
-    solvers::offered<solvers::Persistence>(found)->load(file.string(), engine_->wavefront(), picture,
+  setup_.engine->with(found, picture_view(), [&](const solvers::Picture& picture) {
+    solvers::offered<solvers::Persistence>(found)->load(file.string(), setup_.engine->wavefront(), picture,
                                                         provenance());
   });
   restart(scene::Changes{});
 }
 
 void Renderer::finish_early() {
-  if (!engine_) return;
-  for (const auto& solver : engine_->solvers())
+  if (!setup_.engine) return;
+  for (const auto& solver : setup_.engine->solvers())
     if (auto* preparation = solvers::offered<solvers::Preparation>(*solver);
         preparation && !preparation->ready())
       preparation->finish_early();

@@ -3,55 +3,58 @@
 #include <cmath>
 #include <utility>
 
+#include "base/log.h"
 #include "session/renderer.h"
 
 namespace lucerna::session {
 
 bool Renderer::step(const std::function<bool()>& cancel) {
-  if (engine_) settle_mix();
-  if (engine_ && samples() > 0 && judged_otherwise()) change_schedule();
+  if (setup_.engine) settle_mix();
+  if (setup_.engine && samples() > 0 && judged_otherwise()) change_schedule();
   if (filter_due()) {
-    window_filter_->step(*engine_, picture_view(), *display_, filter_job(), view(), filter_progress(),
+    window_filter_->step(*setup_.engine, picture_view(), *display_, filter_job(), view(), filter_progress(),
                          cancel);
     return true;
   }
-  if (!engine_ || done()) return false;
-  clock_.go();
+  if (!setup_.engine || done()) return false;
+  progress_.resume();
   const Timer timer;
-  engine_->begin_samples(picture_view());
-  const bool prepares = preparing(), learns = engine_->learns(samples());
+  setup_.engine->begin_samples(picture_view());
+  const bool prepares = preparing() || choosing(), learns = setup_.engine->learns(samples());
   const bool progress = render_item(cancel);
-  if (window_filter_ && !mix_pending_) window_filter_->judge(*engine_, *display_, *film_, stats().paths);
-  render_s_ += timer.seconds();
+  if (window_filter_ && !mix_pending_)
+    window_filter_->judge(*setup_.engine, *display_, *setup_.film, stats().paths);
+  progress_.add_render_seconds(timer.seconds());
   if (display_) display_->plan().worked(timer.seconds());
   if (display_ && samples() > 0) {
-    display_->warm(engine_->wavefront().stream(), *film_);
-    engine_->developer().prepare_mix(engine_->wavefront().stream(), *film_, view());
+    display_->warm(setup_.engine->wavefront().stream(), *setup_.film);
+    setup_.engine->developer().prepare_mix(setup_.engine->wavefront().stream(), *setup_.film, view());
   }
   if (prepares)
-    prepared_s_ = clock_.seconds(), prepared_ = stats();
+    progress_.note_prepared();
   else if (progress && !learns)
-    note_progress(false);
+    progress_.note(false);
   if (done()) rest();
   return progress;
 }
 
 bool Renderer::render_item(const std::function<bool()>& cancel) {
   const PictureView view = picture_view();
-  transport::Wavefront& wavefront = engine_->wavefront();
-  if (engine_->learns(samples())) return engine_->learn(view, cancel);
-  if (solvers::Solver* next = engine_->unready()) {
-    const bool rounds = engine_->in_rounds(), went = engine_->prepare(*next, view, cancel);
-    if (engine_->in_rounds() != rounds && samples() == 0) start_schedule();
+  transport::Wavefront& wavefront = setup_.engine->wavefront();
+  if (choosing()) return run_pilot(cancel);
+  if (setup_.engine->learns(samples())) return setup_.engine->learn(view, cancel);
+  if (solvers::Solver* next = setup_.engine->unready()) {
+    const bool rounds = setup_.engine->in_rounds(), went = setup_.engine->prepare(*next, view, cancel);
+    if (setup_.engine->in_rounds() != rounds && samples() == 0) start_schedule();
     return went;
   }
   // As soon as every pixel has a sample, so that the picture does not wait, and before errors are published.
-  if (solvers::Solver* solver = samples() > 0 ? engine_->owing_errors(*film_) : nullptr) {
+  if (solvers::Solver* solver = samples() > 0 ? setup_.engine->owing_errors(*setup_.film) : nullptr) {
     const bool restarted = errors_restart_ != restarts_ || errors_of_ != solver;
     errors_restart_ = restarts_, errors_of_ = solver;
-    return engine_->with(*solver, view, [&](const solvers::Picture& picture) {
-      return solvers::offered<solvers::LookupErrors>(*solver)->estimate_errors(wavefront, *film_, picture,
-                                                                               restarted, cancel);
+    return setup_.engine->with(*solver, view, [&](const solvers::Picture& picture) {
+      return solvers::offered<solvers::LookupErrors>(*solver)->estimate_errors(wavefront, *setup_.film,
+                                                                               picture, restarted, cancel);
     });
   }
   if (const std::optional<bool> went = refine(cancel)) return *went;
@@ -61,7 +64,7 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
       adaptive->give_back();
       return *went;
     }
-    if (!wavefront.run(item, *film_, cancel)) {
+    if (!wavefront.run(item, *setup_.film, cancel)) {
       adaptive->give_back();
       return false;
     }
@@ -69,10 +72,11 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
     std::vector<schedule::TileErrors> errors(tiles.size());
     // One sample a pixel gives no error estimate and decides nothing.
     if (!tiles.empty() && adaptive->tiles()[tiles[0]].samples + item.sample_count > 1) {
-      engine_->estimator().estimate_stopping(wavefront.stream(), item.blocks, *film_, seen_range());
+      setup_.engine->estimator().estimate_stopping(wavefront.stream(), item.blocks, *setup_.film,
+                                                   setup_.seen_range());
       wavefront.account_stages();
       for (size_t i = 0; i < tiles.size(); ++i) {
-        const film::RelativeError e = film::relative_error(*film_, adaptive->blocks_of(tiles[i]));
+        const film::RelativeError e = film::relative_error(*setup_.film, adaptive->blocks_of(tiles[i]));
         errors[i] = {float(e.paths), float(e.records), float(e.interpolation)};
       }
     }
@@ -85,20 +89,49 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
     sampling_.uniform() = before;
     return *went;
   }
-  if (wavefront.run(item, *film_, cancel)) return true;
+  if (wavefront.run(item, *setup_.film, cancel)) return true;
   sampling_.uniform() = before;
   return false;
+}
+
+bool Renderer::run_pilot(const std::function<bool()>& cancel) {
+  if (!pilot_) pilot_ = std::make_unique<Pilot>(*device_, *setup_.engine, setup_.width, setup_.height);
+  if (!pilot_->step(*setup_.engine, picture_view(), cancel)) return false;
+  if (!pilot_->done()) return true;
+  findings_ = pilot_->findings();
+  pilot_.reset();
+  const std::array<plan::Choice, 4> before = setup_.engine->plan().choices;
+  scene::Changes changes;
+  try {
+    apply_plan(Transaction::Target(setup_), changes);
+  } catch (const Error& e) {
+    log::warning("components: paths compute what is chosen automatically: {}", e.what());
+    plan::Plan paths = setup_.engine->plan();
+    paths.undecided = false;
+    setup_.engine->set_plan(paths);
+  }
+  const std::array<plan::Choice, 4>& now = setup_.engine->plan().choices;
+  for (size_t c = 0; c < now.size(); ++c) {
+    const std::string key = std::string("components.") + paths::k_component_names[c];
+    if (now[c].reason != before[c].reason) log::info("{}: {}: {}", key, now[c].solver, now[c].reason);
+    if (now[c].solver != before[c].solver) changes.settings.insert(key);
+  }
+  // Nothing but paths: the picture goes on as it was begun.
+  if (changes.settings.empty()) return true;
+  notify_settings_changed();
+  restart(changes);
+  return true;
 }
 
 std::optional<bool> Renderer::prepare_round(const schedule::WorkItem& item,
                                             const std::function<bool()>& cancel) {
   if (item.blocks.empty()) return std::nullopt;
   const uint32_t sample = item.blocks.front().first_sample;  // of all of them
-  solvers::Solver* next = engine_->unready_for(sample);
+  solvers::Solver* next = setup_.engine->unready_for(sample);
   if (!next) return std::nullopt;
-  return engine_->with(*next, picture_view(), [&](const solvers::Picture& picture) {
-    return solvers::offered<solvers::Rounds>(*next)->prepare_round(engine_->wavefront(), picture, sample,
-                                                                   cancel);
+  return setup_.engine->with(*next, picture_view(), [&](const solvers::Picture& picture) {
+    return solvers::offered<solvers::Rounds>(*next)->prepare_round(setup_.engine->wavefront(), picture,
+                                                                   sample, cancel);
   });
 }
 
@@ -113,39 +146,41 @@ void Renderer::note_path_pace(double seconds) {
     return false;
   };
   if (before + 1 < DraftPlan::k_coarse_samples || !preparing() ||
-      std::any_of(engine_->solvers().begin(), engine_->solvers().end(), holds_light))
+      std::any_of(setup_.engine->solvers().begin(), setup_.engine->solvers().end(), holds_light))
     return;
-  transport::Wavefront& wavefront = engine_->wavefront();
+  transport::Wavefront& wavefront = setup_.engine->wavefront();
   wavefront.uncounted([&] {
-    engine_->estimator().estimate(wavefront.stream(), *coarse_, seen_range());
+    setup_.engine->estimator().estimate(wavefront.stream(), *setup_.coarse, setup_.seen_range());
     wavefront.account_stages();
   });
-  const double samples = before + 1, pixels = double(coarse_->width()) * coarse_->height();
+  const double samples = before + 1, pixels = double(setup_.coarse->width()) * setup_.coarse->height();
   path_pace_ = {.seconds = coarse_s_ / (samples * pixels),
-                .noise = film::image_error(coarse_->errors()).seen(0) * std::sqrt(samples)};
+                .noise = film::image_error(setup_.coarse->errors()).seen(0) * std::sqrt(samples)};
 }
 
 std::optional<stats::SamplePace> Renderer::path_pace() const {
   if (!path_pace_) return std::nullopt;
-  return stats::SamplePace{.seconds = path_pace_->seconds * width_ * height_, .noise = path_pace_->noise};
+  return stats::SamplePace{.seconds = path_pace_->seconds * setup_.width * setup_.height,
+                           .noise = path_pace_->noise};
 }
 
 bool Renderer::draw_draft(const std::function<bool()>& cancel) {
-  if (!engine_ || !display_) return false;
+  if (!setup_.engine || !display_) return false;
   const bool prepares = preparing();
   if (std::exchange(draft_preparing_, prepares) && !prepares) display_->light_changed();
   const bool filled = samples() > 0;
-  const bool sight = !filled && previewed(view()) && display_->sight_wanted(*engine_, picture_view());
+  const bool sight = !filled && previewed(view()) && display_->sight_wanted(*setup_.engine, picture_view());
   const std::optional<film::ShownError> off = display_->shares().error;
   const DraftPlan::Next what =
       display_->plan().next(prepares, filled, sight, off ? std::optional(off->median) : std::nullopt);
   if (what == DraftPlan::Next::nothing) return false;
-  clock_.go();
+  progress_.resume();
   const Timer timer;
-  if (!display_->draw(what, *engine_, picture_view(), *coarse_, cancel)) return false;
+  if (!display_->draw(what, *setup_.engine, picture_view(), *setup_.coarse, cancel)) return false;
   if (what == DraftPlan::Next::coarse) note_path_pace(timer.seconds());
-  display_->plan().drawn(what, timer.seconds(),
-                         what != DraftPlan::Next::sight || !display_->sight_wanted(*engine_, picture_view()));
+  display_->plan().drawn(
+      what, timer.seconds(),
+      what != DraftPlan::Next::sight || !display_->sight_wanted(*setup_.engine, picture_view()));
   return true;
 }
 

@@ -32,7 +32,8 @@ inline bool usable(const film::ShownError& e) {
 }
 
 struct ComponentStatus {
-  std::string solver = "path";  ///< the component's setting: "path", "cache+photons", "off", ...
+  std::string solver = "path";  ///< who computes it: "path", "cache+photons", "off", ...
+  std::string reason;           ///< why, if the setting is auto
   double mean_luminance = 0;    ///< of its layer
   double share = 0;             ///< of the mean luminance of the sum, 0..1
   double ms_per_sample = 0;     ///< device time of its rays per sample a pixel, without preparation

@@ -241,7 +241,8 @@ struct Session::Impl {
     next.accuracy = accuracy.publish(r, numbers || dirty);
     const auto ms = r.component_ms_a_sample();
     for (int c = 0; c < k_components; ++c) {
-      next.components[c].solver = r.settings().text(std::string("components.") + k_component_names[c]);
+      next.components[c].solver = r.choices()[size_t(c)].solver;
+      next.components[c].reason = r.choices()[size_t(c)].reason;
       next.components[c].ms_per_sample = ms[size_t(c)];
     }
     if (numbers) {

@@ -12,6 +12,7 @@
 
 #include "base/options.h"
 #include "scene/change.h"
+#include "solvers/prospect.h"
 
 namespace lucerna::solvers {
 
@@ -102,6 +103,8 @@ struct SolverInfo {
   bool provides_lookups = false, consumes_lookups = false;
   /// True if it separates light groups in films with compact groups (film::GroupStorage::compact).
   bool by_groups = false;
+  /// Expected cost and noise, by which components.X=auto compares solvers; null: never chosen so.
+  PredictProspect prospect = nullptr;
   std::vector<OptionInfo> options{};
   std::vector<ChangeRow> changes{};  ///< its own rows; default_changes() has those that most solvers share
   std::vector<ViewInfo> views{};

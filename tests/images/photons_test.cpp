@@ -341,6 +341,23 @@ TEST_CASE("without surfaces that focus light no photons are traced for caustics,
   CHECK(r.stats().rays <= path.stats.rays);
 }
 
+TEST_CASE("while no round finds what only photons can find, rounds are short; found light has full rounds") {
+  const auto light_paths = [](const scene::Scene& scene) {
+    session::Renderer r(test::renderer_options());
+    r.set_size(32, 32);
+    r.set_scene(std::make_shared<scene::Scene>(scene));
+    test::set(r, {{"components.caustic", "photons"}, {"photons.per_round", "16384"}, {"samples", "16"}});
+    test::finish(r);
+    return r.figure("light paths");
+  };
+  scene::Scene scene = test::turned_sun();
+  CHECK(light_paths(scene) == 16 * 16384);
+  // The mirror turns the sun upwards, out of the scene.
+  scene.meshes.pop_back(), scene.instances.pop_back();
+  test::add_quad(scene, {-1, 3, -1}, {2, 2, 0}, {0, 0, 2}, 1);
+  CHECK(light_paths(scene) == 16384 + 15 * 1024);
+}
+
 TEST_CASE("no lamp, an enclosed lamp, few photons and extreme radii give defined results") {
   scene::Scene dark = glass_room();
   dark.materials[1].emission = vec3(0);

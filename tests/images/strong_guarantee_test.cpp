@@ -76,6 +76,16 @@ const std::vector<Action>& actions() {
        [](session::Renderer& r) {
          test::set(r, {{"components.primary", "cache"}});
        }},
+      {"separate light groups, which need other films",
+       [](session::Renderer& r) {
+         test::set(r, {{"relight.enabled", "compact"}});
+       }},
+      {"a mix that changes the lights",
+       [](session::Renderer& r) {
+         test::set(r, {{"relight.mix", "sky: ev=1"}});
+       }},
+      {"lights and mix together",
+       [](session::Renderer& r) { r.set_lights({.environment_scale = 0.5f, .mix = "sky: ev=2"}); }},
       {"another size", [](session::Renderer& r) { r.set_size(40, 24); }},
       {"the shaders again", [](session::Renderer& r) { r.reload_shaders(); }},
   };
@@ -195,6 +205,24 @@ TEST_CASE("shaders that do not compile leave the kernels in use") {
     std::ofstream(file) << text;
     CHECK_NOTHROW(r.reload_shaders());
     CHECK(r.shown_picture(true).size() == 16 * 16 * 4);
+  }
+  {
+    // So does the first scene; without it, no film is left behind.
+    session::RendererOptions options = test::renderer_options();
+    options.shaders = shaders, options.interactive = true;
+    session::Renderer r(options);
+    r.set_size(16, 16);
+    const auto scene = std::make_shared<scene::Scene>(test::block_room(true));
+    const std::filesystem::path file = shaders / "film/preview_resolve.comp";
+    const std::string text = read_file(file);
+    std::ofstream(file) << text << "\nvoid broken() { nonsense; }\n";
+    CHECK_THROWS_WITH(r.set_scene(scene), Catch::Contains("nonsense"));
+    CHECK_FALSE(r.ready());
+    CHECK(r.scene() == nullptr);
+    std::ofstream(file) << text;
+    r.set_size(24, 24);
+    r.set_scene(scene);
+    CHECK(r.picture(true).size() == 24 * 24 * 4);
   }
   const film::Image wanted = render(nullptr);
   for (const char* broken : {"transport/shade.comp", "irradiance_cache/radius.comp", "film/tonemap.comp"}) {

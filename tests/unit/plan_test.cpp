@@ -23,13 +23,18 @@ scene::Scene one_triangle() {
   return s;
 }
 
+plan::Plan make_plan(const plan::Settings& settings) {
+  static const plan::SceneFacts facts = plan::facts_of(one_triangle());
+  return plan::make_plan(facts, settings);
+}
+
 }  // namespace
 
 TEST_CASE("every component has one solver of the registry, or none") {
   plan::Settings settings;
-  CHECK(plan::make_plan(settings).enabled() == 15);
+  CHECK(make_plan(settings).enabled() == 15);
   settings.set("components.secondary", "off");
-  const plan::Plan p = plan::make_plan(settings);
+  const plan::Plan p = make_plan(settings);
   CHECK(p.enabled() == 13);
   CHECK(p.solver[1] == nullptr);
   REQUIRE(p.solver[0] != nullptr);
@@ -48,7 +53,7 @@ TEST_CASE("every component has one solver of the registry, or none") {
     REQUIRE(option != nullptr);
     size_t served = 0;
     for (const solvers::SolverInfo* info : solvers::registered()) served += info->serves[c];
-    CHECK(option->choices.size() == served + 1 + (c == 3));  // light+photons
+    CHECK(option->choices.size() == served + 2 + (c == 3));  // auto, off; light+photons
     CHECK(option->choices.back() == "off");
   }
 }
@@ -56,7 +61,7 @@ TEST_CASE("every component has one solver of the registry, or none") {
 TEST_CASE(
     "a solver of primary light that needs lookups of secondary light is replaced by paths without them") {
   plan::Settings settings;
-  const auto primary = [&] { return plan::make_plan(settings).solver[0]->name; };
+  const auto primary = [&] { return make_plan(settings).solver[0]->name; };
   settings.set("components.primary", "cache");
   CHECK(primary() == "path");
   settings.set("components.secondary", "cache");
@@ -71,7 +76,7 @@ TEST_CASE(
 }
 
 TEST_CASE("light that the chosen solvers cannot find causes a warning, and nothing else does") {
-  const plan::Plan p = plan::make_plan({});
+  const plan::Plan p = make_plan({});
   scene::Scene s = one_triangle();
   CHECK(plan::unreachable_light(p, s).empty());
   s.lights.resize(2);
@@ -98,22 +103,22 @@ TEST_CASE("light that the chosen solvers cannot find causes a warning, and nothi
   // Components that are off cause no warning.
   plan::Settings some;
   for (const char* key : {"components.primary", "components.tertiary"}) some.set(key, "off");
-  REQUIRE(plan::unreachable_light(plan::make_plan(some), s).size() == 1);
-  CHECK(plan::unreachable_light(plan::make_plan(some), s)[0].find("tertiary") == std::string::npos);
+  REQUIRE(plan::unreachable_light(make_plan(some), s).size() == 1);
+  CHECK(plan::unreachable_light(make_plan(some), s)[0].find("tertiary") == std::string::npos);
   some.set("components.caustic", "off");
-  CHECK(plan::unreachable_light(plan::make_plan(some), s).empty());
+  CHECK(plan::unreachable_light(make_plan(some), s).empty());
   // Photons find it, for the components that they compute.
   plan::Settings photons;
   photons.set("components.caustic", "photons");
-  REQUIRE(plan::unreachable_light(plan::make_plan(photons), s).size() == 1);
-  CHECK(plan::unreachable_light(plan::make_plan(photons), s)[0].find("one.gltf: tertiary light") == 0);
+  REQUIRE(plan::unreachable_light(make_plan(photons), s).size() == 1);
+  CHECK(plan::unreachable_light(make_plan(photons), s)[0].find("one.gltf: tertiary light") == 0);
   photons.set("components.tertiary", "photons");
-  CHECK(plan::unreachable_light(plan::make_plan(photons), s).empty());
+  CHECK(plan::unreachable_light(make_plan(photons), s).empty());
   photons.set("components.caustic", "light+photons");
-  CHECK(plan::unreachable_light(plan::make_plan(photons), s).empty());
+  CHECK(plan::unreachable_light(make_plan(photons), s).empty());
   photons.set("components.caustic", "light");  // except for its mirror images
-  REQUIRE(plan::unreachable_light(plan::make_plan(photons), s).size() == 1);
-  CHECK(plan::unreachable_light(plan::make_plan(photons), s)[0].find("light+photons") != std::string::npos);
+  REQUIRE(plan::unreachable_light(make_plan(photons), s).size() == 1);
+  CHECK(plan::unreachable_light(make_plan(photons), s)[0].find("light+photons") != std::string::npos);
   for (scene::Light& l : s.lights) l.enabled = false;
   CHECK(plan::unreachable_light(p, s).empty());
 }
@@ -154,7 +159,7 @@ TEST_CASE("a scene without light gets a studio with a message; a scene with any 
 TEST_CASE("two solvers joined by a plus share a component, and both are used") {
   plan::Settings settings;
   settings.set("components.caustic", "light+photons");
-  const plan::Plan both = plan::make_plan(settings);
+  const plan::Plan both = make_plan(settings);
   const solvers::SolverInfo &light = *solvers::find("light"), &photons = *solvers::find("photons");
   CHECK(both.components_of(light) == 0b1000);
   CHECK(both.components_of(photons) == 0b1000);
@@ -163,7 +168,7 @@ TEST_CASE("two solvers joined by a plus share a component, and both are used") {
   CHECK(both.at_work().size() == 3);
   CHECK_FALSE(both.bias(3).has_value());  // that of photons
   settings.set("components.caustic", "light");
-  CHECK(plan::make_plan(settings).bias(3) == 0.0);
+  CHECK(make_plan(settings).bias(3) == 0.0);
   CHECK_THROWS_WITH(settings.set("components.caustic", "photons+light"), Catch::Contains("light+photons"));
   CHECK_THROWS(settings.set("components.secondary", "light"));
   CHECK(solvers::chooses("light+photons", "light"));

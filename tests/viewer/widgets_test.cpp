@@ -370,7 +370,7 @@ TEST_CASE("no id is used twice in a frame, and every control of every panel rece
     walk.act("window.keys");
     walk.check_ids("keys");
     walk.close();
-    ui.welcome = true, ui.errors = {"first", "second"};
+    ui.cards.welcome = true, ui.cards.errors = {"first", "second"};
     walk.frames(2);
     clicked = walk.click_all("cards",
                              [](const Control& c) { return c.name == "##begin" || c.name == "##dismiss"; });

@@ -54,6 +54,7 @@ const solvers::SolverInfo& info() {
       .looked_up = true,
       .consumes_lookups = true,
       .by_groups = true,
+      .prospect = prospect,
       .options = option_rows(),
       .changes = change_rows(),
       .views =

@@ -5,5 +5,7 @@
 namespace lucerna::irradiance_cache {
 
 const solvers::SolverInfo& info();
+/// SolverInfo::prospect
+std::optional<solvers::Prospect> prospect(const solvers::Findings& findings, uint32_t components);
 
 }  // namespace lucerna::irradiance_cache

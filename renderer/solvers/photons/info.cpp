@@ -111,6 +111,7 @@ const SolverInfo& info() {
       .finds_points = true,
       .provides_lookups = true,
       .by_groups = true,
+      .prospect = prospect,
       .options = option_rows(),
       .changes = change_rows(),
       .views = {{.option = "overlay.photons", .label = "Photons", .shortcut = 'O'},

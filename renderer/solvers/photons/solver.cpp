@@ -18,6 +18,9 @@ using solvers::Picture, solvers::Task, solvers::Cancel;
 namespace {
 
 constexpr uint32_t k_least_paths = 1u << 14, k_most_paths = 1u << 20;  // automatic number of paths
+// While rounds only seek light that paths cannot find, and have found none: their share of the paths, and the
+// minimum. Every round is unbiased on its own, whatever its number of paths.
+constexpr uint32_t k_vain_share = 16, k_vain_paths = 1024;
 constexpr uint32_t k_most_light_groups = 64;
 // A typical lookup finds about this many standing photons; errors there affect all lookups around. The radius
 // is constant, independent of the view, and at most as wide as for one photon per path on a cube inside the
@@ -401,7 +404,9 @@ bool PhotonSolver::prepare_round(transport::Wavefront& wavefront, const Picture&
     return true;
   }
   read_standing(wavefront, false);
-  const Round round = round_of(picture, sample);
+  Round round = round_of(picture, sample);
+  if (seeks_in_vain())
+    round.paths = std::max(round.paths / k_vain_share, std::min(round.paths, k_vain_paths));
   store_parts(round.parts);
   if (!map_.trace(wavefront, lights_, round, picture.frame, picture.task.enabled, cancel)) return false;
   if (map_.traced() > 0) return true;  // not complete yet
@@ -409,6 +414,8 @@ bool PhotonSolver::prepare_round(transport::Wavefront& wavefront, const Picture&
   account(map_.figures());
   return true;
 }
+
+bool PhotonSolver::seeks_in_vain() const { return whole_parts() == 0 && rounds_ > 0 && photons_ == 0; }
 
 void PhotonSolver::store_parts(uint32_t sent) {
   const uint32_t only = sent & ~whole_parts();

@@ -85,6 +85,8 @@ class PhotonSolver final : public solvers::Solver,
   uint32_t whole_parts() const;
   uint32_t sent_parts() const;
   bool reads_rounds() const;
+  /// True if no round has found what only rounds are sent for: later ones are short until one does.
+  bool seeks_in_vain() const;
   void store_parts(uint32_t sent);  ///< which of these rounds store completely
   /// Sets the routes below.
   void route(const solvers::Task& task);

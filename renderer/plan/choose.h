@@ -1,0 +1,53 @@
+#pragma once
+// Chooses a solver for the components whose setting is auto, from the scene's facts and the findings of a
+// pilot. Pure and deterministic; looks at nothing outside the scene.
+//
+// Every solver predicts a prospect (solvers/prospect.h): cost of preparation and samples, variance, and error
+// that samples do not reduce. Costs and variances of components add up, so the error of every combination
+// follows, for a given cost: (error - floor)^2 = variance / samples + prepared(samples)^2. The choice is the
+// combination with the least cost for the goal's error or, without one, with the least error for the goal's
+// cost; paths unless another combination is clearly ahead (k_clearly).
+#include <array>
+#include <optional>
+#include <string>
+
+#include "plan/facts.h"
+#include "plan/settings.h"
+#include "solvers/prospect.h"
+
+namespace lucerna::plan {
+
+/// What the picture is rendered for.
+struct Goal {
+  double samples = 256;           ///< cost that may be spent, in path-traced samples
+  std::optional<double> error{};  ///< error as seen that is to be reached with as little cost as possible
+};
+/// The settings' goal: samples, or the target error of adaptive sampling. `seconds`: limit of time, if any;
+/// counts once the findings have a duration.
+Goal goal_of(const Settings& settings, const solvers::Findings* findings, std::optional<double> seconds = {});
+
+struct Choice {
+  /// A value of components.X other than auto: a solver's name, two joined by '+', or off.
+  std::string solver;
+  std::string reason;  ///< a sentence; "" if the setting chose the solver
+};
+
+/// Value of components.X that leaves the choice to choose().
+inline constexpr const char* k_auto = "auto";
+
+/// Factor of cost, or of squared error, by which another combination must be ahead of paths.
+inline constexpr double k_clearly = 1.25;
+
+/// `findings`: null before the pilot: only facts decide, and undecided components are traced by paths.
+std::array<Choice, 4> choose(const SceneFacts& facts, const Settings& settings,
+                             const solvers::Findings* findings, const Goal& goal);
+
+/// Cost until the error as seen is reached, in path-traced samples, with these choices (of choose());
+/// nullopt: it is not reached, or a solver states no prospect.
+std::optional<double> predicted_cost(const solvers::Findings& findings, const std::array<Choice, 4>& choices,
+                                     double error);
+
+/// True if a component's choice waits for findings.
+bool undecided(const SceneFacts& facts, const Settings& settings);
+
+}  // namespace lucerna::plan

@@ -1,0 +1,117 @@
+#include "session/image_progress.h"
+
+#include <utility>
+
+#include "base/log.h"
+#include "stats/forecast.h"
+
+namespace lucerna::session {
+
+void ImageProgress::restart() {
+  ledger_.clear();
+  clock_.reset();
+  render_s_ = prepared_s_ = 0;
+  prepared_ = {};
+}
+
+void ImageProgress::note_prepared() { prepared_s_ = clock_.seconds(), prepared_ = stats(); }
+
+film::ImageError ImageProgress::estimate_error() const {
+  transport::Wavefront& wavefront = setup_.engine->wavefront();
+  setup_.engine->estimator().estimate(wavefront.stream(), *setup_.film, setup_.seen_range());
+  wavefront.account_stages();
+  return film::image_error(setup_.film->errors());
+}
+
+void ImageProgress::set_reference(const std::filesystem::path& file) {
+  if (!setup_.engine) throw Error(file.string(), "a reference is of a scene; load the scene first");
+  film::Reference reference = film::read_reference(file, setup_.width, setup_.height);
+  if (!reference.scene.empty() && reference.scene != setup_.world.scene->name)
+    throw_error(file.string(), "the reference is of the scene '{}', not of '{}'", reference.scene,
+                setup_.world.scene->name);
+  if (!reference.view.empty() && reference.view != setup_.view_text())
+    throw_error(file.string(), "the reference was taken with another camera ({}; now {})", reference.view,
+                setup_.view_text());
+  if (!reference.noise) log::warning("{}: its own noise is unknown and counts as error", file.string());
+  if (reference.seed == setup_.settings.text("seed"))
+    log::warning(
+        "{}: rendered with seed {} like this picture. Both share samples, so the measured error is too "
+        "small; use another seed",
+        file.string(), reference.seed);
+  reference_ = std::move(reference);
+}
+
+bool ImageProgress::reference_applies() const {
+  return reference_ && setup_.engine && reference_->width == setup_.width &&
+         reference_->height == setup_.height &&
+         (reference_->scene.empty() || reference_->scene == setup_.world.scene->name) &&
+         (reference_->view.empty() || reference_->view == setup_.view_text());
+}
+
+std::array<double, shared::k_component_count> ImageProgress::component_ms_a_sample() const {
+  std::array<double, shared::k_component_count> each{};
+  const double samples = double(stats().paths) / (double(setup_.film->width()) * setup_.film->height());
+  for (size_t c = 0; samples > 0 && c < each.size(); ++c)
+    each[c] = (stats().component_ms[c] - prepared_.component_ms[c]) / samples;
+  return each;
+}
+
+void ImageProgress::note(bool at_once) {
+  const transport::TransportStats& s = stats();
+  if (s.paths == 0 || !(at_once || ledger_.due(s.paths, uint64_t{setup_.width} * setup_.height))) return;
+  stats::Entry entry;
+  entry.wall_s = clock_.seconds();
+  entry.render_s = render_s_;
+  entry.prepared_s = prepared_s_;
+  entry.prepared_rays = prepared_.rays;
+  for (const auto& stage : s.stages) entry.device_s += 1e-3 * stage.ms;
+  entry.paths = s.paths;
+  entry.rays = s.rays;
+  entry.samples = double(s.paths) / (double(setup_.film->width()) * setup_.film->height());
+  entry.component_s[0] = entry.device_s;
+  for (int c = 0; c < paths::k_component_count; ++c) entry.component_s[c + 1] = 1e-3 * s.component_ms[c];
+  entry.has_error = sampling_.samples() >= 2;
+  if (entry.has_error) {
+    const film::ImageError error = estimate_error();
+    for (int k = 0; k < stats::k_layers; ++k)
+      entry.error[k] = error.seen(k), entry.of_mean.error[k] = error.relative(k);
+    entry.records = error.seen_records, entry.interpolation = error.seen_interpolation;
+    entry.degrees = error.seen_degrees;
+    entry.of_mean.records = error.relative_records();
+    entry.of_mean.interpolation = error.relative_interpolation();
+    const film::TileSpread tiles = film::tile_spread(film::tile_errors(*setup_.film, setup_.tile_side()));
+    entry.tile_median = tiles.median, entry.tile_worst_tenth = tiles.worst_tenth;
+  }
+  if (reference_applies()) {
+    const film::Image image = setup_.film->read();
+    entry.truth = film::true_errors(*reference_, image.components, image.samples);
+  }
+  entry.total_rays = total_rays();
+  ledger_.add(entry);
+}
+
+std::optional<stats::Band> ImageProgress::total_rays() const {
+  const schedule::AdaptiveSchedule* schedule = sampling_.adaptive();
+  if (!schedule) return std::nullopt;
+  std::vector<stats::TileProgress> tiles;
+  for (uint32_t t = 0; t < schedule->tiles().size(); ++t) {
+    const schedule::Tile& tile = schedule->tiles()[t];
+    tiles.push_back(
+        {.error = tile.error,
+         .goal = tile.goal(schedule->options().target_error),
+         .samples = double(tile.samples),
+         .pixels = 64.0 * double(schedule->blocks_of(t).size()),
+         .open = tile.state == schedule::TileState::waiting || tile.state == schedule::TileState::active,
+         .earlier_error = tile.earlier.error,
+         .earlier_samples = double(tile.earlier.samples)});
+  }
+  const schedule::AdaptiveOptions& o = schedule->options();
+  const std::optional<stats::Band> paths =
+      stats::total_paths(tiles, schedule->tiles_across(), o.target_error, o.min_samples, o.max_samples);
+  if (!paths) return std::nullopt;
+  const double before = double(prepared_.rays),
+               each = (double(stats().rays) - before) / double(stats().paths);
+  return stats::Band{before + each * paths->low, before + each * paths->middle, before + each * paths->high};
+}
+
+}  // namespace lucerna::session

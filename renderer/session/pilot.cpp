@@ -1,0 +1,44 @@
+#include "session/pilot.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "pilot/findings.h"
+
+namespace lucerna::session {
+namespace {
+
+/// Pixels along a side: whole blocks.
+uint32_t side(double pixels) { return 8 * uint32_t(std::clamp(pixels / 8 + 0.5, 1.0, 4096.0)); }
+
+double pixels_of(uint32_t width, uint32_t height) {
+  return std::min(Pilot::k_share * width * height, Pilot::k_most_pixels);
+}
+
+}  // namespace
+
+Pilot::Pilot(gpu::Device& device, const Engine& engine, uint32_t width, uint32_t height)
+    : width_(width),
+      height_(height),
+      film_(device, side(std::sqrt(pixels_of(width, height) * width / height)),
+            side(std::sqrt(pixels_of(width, height) * height / width))),
+      schedule_(film_.width() / 8 * (film_.height() / 8), k_samples, engine.wavefront().slots()) {}
+
+bool Pilot::step(Engine& engine, const PictureView& picture, const std::function<bool()>& cancel) {
+  const Timer timer;
+  const schedule::UniformSchedule before = schedule_;
+  const bool complete = engine.try_paths(picture, schedule_.next(), film_, cancel);
+  if (!complete) schedule_ = before;
+  seconds_ += timer.seconds();
+  return complete;
+}
+
+solvers::Findings Pilot::findings() const {
+  solvers::Findings findings = pilot::evaluate(film_.read(), k_samples);
+  findings.pixels = double(width_) * height_;
+  findings.seconds =
+      seconds_ / k_samples * findings.pixels / (double(film_.width()) * double(film_.height()));
+  return findings;
+}
+
+}  // namespace lucerna::session

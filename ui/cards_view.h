@@ -1,0 +1,32 @@
+#pragma once
+// What the cards over the picture show: notices, errors, the first steps, and the command in progress.
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lucerna::ui {
+
+struct CardsView {
+  /// A sentence over the picture that disappears by itself.
+  struct {
+    std::string text;
+    double until = 0;
+  } note;
+  std::vector<std::string> errors;  ///< the strip's, newest last
+  bool welcome = false;             ///< the first steps are shown
+  /// The command in progress and its start. Once a command is done and not shown yet, the first picture of it
+  /// is in progress.
+  struct {
+    uint64_t command = 0;  ///< its number in the session; 0: none
+    bool done = false;     ///< done, but no picture shows it yet
+    double since = 0;
+    std::string text;  ///< its line; "" for none
+  } busy;
+  /// Duration of the command in progress [s]; 0 while it is too short to show.
+  double busy_seconds(double now) const {
+    const double seconds = busy.command != 0 ? now - busy.since : 0;
+    return seconds > 0.5 ? seconds : 0;
+  }
+};
+
+}  // namespace lucerna::ui
