@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "chart.h"
+#include "effects_block.h"
 #include "panel_block.h"
 #include "plan/plan.h"
 #include "solvers/registry.h"
@@ -216,6 +217,10 @@ void draw_light_panel(Controls& controls, bool expanded, const Area& area) {
                   draw_mix(controls.actions, controls.open);
                   ImGui::PopStyleVar();
                 });
+  if (controls.open.scene)
+    panel_block(controls, "Effects", false,
+                controls.open.setting("effects.off").empty() ? "" : "some are off", 8,
+                [&] { draw_effects(controls); });
   panel_block(controls, "Render", true, "", 12, [&] { render_rows(controls); });
   hairline();
   ImGui::End();

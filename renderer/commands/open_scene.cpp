@@ -130,6 +130,11 @@ std::pair<float, float> OpenScene::environment() const {
   return {1, 0};
 }
 
+const plan::SceneFacts* OpenScene::facts() {
+  if (facts_of_ != scene) facts_ = scene ? plan::facts_of(*scene) : plan::SceneFacts{}, facts_of_ = scene;
+  return scene ? &facts_ : nullptr;
+}
+
 const scene::LightGroups& OpenScene::light_groups() {
   const std::string& text = setting("relight.groups");
   if (groups_of_ == scene && text == groups_by_) return groups_;

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "commands/document.h"
+#include "plan/facts.h"
 #include "scene/light_mix.h"
 #include "session/session.h"
 #include "solvers/info.h"
@@ -69,6 +70,8 @@ class OpenScene {
 
   /// The scene's light groups, by the setting relight.groups; none without a scene.
   const scene::LightGroups& light_groups();
+  /// What the scene calls for, whatever the setting effects.off; null without a scene.
+  const plan::SceneFacts* facts();
   scene::LightMix light_mix() const;      ///< the setting relight.mix; empty if invalid
   scene::MixPresets mix_presets() const;  ///< relight.presets likewise
 
@@ -143,6 +146,8 @@ class OpenScene {
   std::shared_ptr<const scene::Scene> groups_of_;  ///< scene of groups_, with these rules
   std::string groups_by_;
   scene::LightGroups groups_;
+  std::shared_ptr<const scene::Scene> facts_of_;  ///< scene of facts_
+  plan::SceneFacts facts_;
   int solo_ = -1;
   std::array<bool, session::k_components> shown_before_{};
   std::optional<Document> working_;

@@ -53,6 +53,10 @@ Plan make_plan(const SceneFacts& facts, const Settings& settings, const solvers:
   return plan;
 }
 
+std::vector<std::string> effects_off(const Settings& settings) {
+  return parse_effects(settings.text("effects.off"), "effects.off");
+}
+
 bool primary_by_paths(std::string_view primary, std::string_view secondary, std::string_view tertiary) {
   const solvers::SolverInfo* solver = solvers::find(primary);
   if (!solver || !solver->primary_with_secondary || secondary == primary) return false;

@@ -43,6 +43,9 @@ struct Plan {
 Plan make_plan(const SceneFacts& facts, const Settings& settings, const solvers::Findings* findings = nullptr,
                std::optional<double> seconds = {});
 
+/// Effects in the setting effects.off. Throws Error like parse_effects().
+std::vector<std::string> effects_off(const Settings& settings);
+
 /// True if paths compute primary light although another solver is chosen: one that reads its part together
 /// with secondary light (SolverInfo::primary_with_secondary), while paths continue for other light. Values of
 /// `components.*`.

@@ -184,12 +184,20 @@ void add_display_options(std::vector<OptionInfo>& list) {
   }
 }
 
+void add_effect_options(std::vector<OptionInfo>& list) {
+  list.push_back(text_option(
+      "effects.off",
+      "Effects that are left out of the scene, separated by commas, such as normal_map, coat: textures give "
+      "way to their factors; lobes, lights and absorption are removed. lucerna info --json lists them."));
+}
+
 std::vector<OptionInfo> make_options() {
   std::vector<OptionInfo> list;
   for (int c = 0; c < paths::k_component_count; ++c) list.push_back(component_option(c));
   add_sampling_options(list);
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const OptionInfo& option : solver->options) list.push_back(of_same_light(option));
+  add_effect_options(list);
   add_relight_options(list);
   add_display_options(list);
   return list;

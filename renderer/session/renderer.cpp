@@ -68,7 +68,8 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
 void Renderer::install(Transaction::Target target, const Progress& progress, const scene::Changes& changes) {
   rest();
   scene::check_range(target.camera);
-  plan::SceneFacts facts = plan::facts_of(*target.scene);
+  plan::SceneFacts facts =
+      plan::facts_of(*plan::without_effects(target.scene, plan::effects_off(target.settings)));
   plan::Plan plan = plan::make_plan(facts, target.settings);
   Transaction transaction(context_, setup_, std::move(target), std::move(plan));
   transaction.make_world(progress);
@@ -321,7 +322,7 @@ void Renderer::apply_settings() {
   if (changed("lights.portals"))
     target.scene = with_portals(target.scene, loaded_->portals, target.settings.text("lights.portals"));
   if (target.scene != setup_.world.scene || changed("tracer") || changed("path.batch") ||
-      changed("path.classes")) {
+      changed("path.classes") || changed("effects.off")) {
     install(std::move(target), {}, changes);
     return;
   }

@@ -133,7 +133,7 @@ class Renderer {
   /// Errors not contained in these, which only estimate noise: plan::Plan::bias of the current settings;
   /// nullopt before the first scene.
   std::optional<double> bias(size_t component) const;
-  /// What the scene calls for.
+  /// What the scene calls for, without the effects that are off.
   const plan::SceneFacts& facts() const { return facts_; }
   /// Solver of each component, and why it was chosen if the setting is auto; empty before the first scene.
   const std::array<plan::Choice, paths::k_component_count>& choices() const;
@@ -348,7 +348,7 @@ class Renderer {
   std::vector<vec3> mixed_;                         ///< weights of the last mix
   Timer since_mix_;
   std::shared_ptr<const scene::Scene> loaded_;  ///< as passed to set_scene()
-  plan::SceneFacts facts_;                      ///< of the scene as it was installed
+  plan::SceneFacts facts_;                      ///< of the scene as it was installed, without effects.off
   std::unique_ptr<Pilot> pilot_;                ///< while it runs
   std::optional<solvers::Findings> findings_;   ///< of this scene's pilot
   std::optional<double> seconds_limit_;

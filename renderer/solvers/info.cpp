@@ -21,6 +21,7 @@ std::span<const ChangeRow> default_changes() {
       {Change::shape, k_invalidates_all, "other surfaces"},
       {Change::shaders, k_invalidates_all, "whatever they compute"},
       {Change::restart, k_invalidates_all, "the user asks for everything from scratch"},
+      {"effects.", k_invalidates_all, "other surfaces and lights"},
       {"samples", k_invalidates_nothing, "of the picture alone"},
       {"sampling.", k_invalidates_nothing, "of the picture alone"},
       {"film.", k_invalidates_nothing, "how it is shown"},

@@ -1,0 +1,98 @@
+// links: session
+// Components with the setting auto: a pilot chooses their solvers; where it chooses paths, the picture is
+// that of paths bit for bit.
+#include <catch2/catch.hpp>
+
+#include "session/renderer.h"
+#include "support/render.h"
+#include "support/rooms.h"
+
+using namespace lucerna;
+
+namespace {
+
+test::Settings all(const char* solver) {
+  return {{"components.primary", solver},
+          {"components.secondary", solver},
+          {"components.tertiary", solver},
+          {"components.caustic", solver}};
+}
+
+struct Chosen {
+  film::Image image;
+  std::array<plan::Choice, 4> choices;
+  std::optional<solvers::Findings> findings;
+  uint64_t restarts = 0;
+};
+
+Chosen render(const scene::Scene& scene, test::Settings settings, const char* samples) {
+  session::Renderer r(test::renderer_options());
+  r.set_size(32, 32);
+  r.set_scene(std::make_shared<scene::Scene>(scene));
+  settings["samples"] = samples;
+  test::set(r, settings);
+  const uint64_t before = r.restarts();
+  Chosen result;
+  result.image = test::finish(r);
+  result.choices = r.choices();
+  result.findings = r.findings();
+  result.restarts = r.restarts() - before;
+  CHECK_FALSE(r.choosing());
+  CHECK(r.device().validation_messages() == 0);
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("for few samples paths are chosen, and the picture is that of paths, not begun again") {
+  const scene::Scene room = test::block_room();
+  const Chosen by_auto = render(room, all("auto"), "4"), by_path = render(room, all("path"), "4");
+  for (size_t c = 0; c < 4; ++c) {
+    INFO(by_auto.choices[c].reason);
+    CHECK(by_auto.choices[c].solver == "path");
+    CHECK_FALSE(by_auto.choices[c].reason.empty());
+    CHECK(test::identical(by_auto.image.components[c], by_path.image.components[c]));
+  }
+  CHECK(by_auto.restarts == 0);
+  REQUIRE(by_auto.findings);
+  CHECK(by_auto.findings->components[1].variance > 0);
+  CHECK_FALSE(by_path.findings);
+}
+
+TEST_CASE("with time for records, noisy interreflection is cached, as if the cache had been chosen") {
+  const scene::Scene room = test::block_room();
+  // A goal that records reach and paths do not soon; the picture ends earlier.
+  test::Settings settings = all("auto");
+  settings["samples"] = "4096";
+  session::Renderer r(test::renderer_options());
+  r.set_size(32, 32);
+  r.set_scene(std::make_shared<scene::Scene>(room));
+  test::set(r, settings);
+  while (r.choosing()) REQUIRE(r.step());
+  INFO(r.choices()[2].reason);
+  CHECK(r.choices()[1].solver == "cache");
+  CHECK(r.choices()[2].solver == "cache");
+  CHECK(r.choices()[3].solver == "path");
+  REQUIRE(r.solver("cache"));
+  // The choice stays when the picture is limited afterwards, and the picture is that of the cache.
+  r.settings().set("samples", "2");
+  r.apply_settings();
+  const bool kept = r.choices()[2].solver == "cache";
+  const film::Image image = test::finish(r);
+  test::Settings fixed = all("path");
+  fixed["components.secondary"] = fixed["components.tertiary"] = kept ? "cache" : "path";
+  const Chosen by_cache = render(room, fixed, "2");
+  for (size_t c = 0; c < 4; ++c) CHECK(test::identical(image.components[c], by_cache.image.components[c]));
+}
+
+TEST_CASE("the choice is the same in every run, whatever the batches") {
+  const scene::Scene room = test::block_room();
+  const Chosen a = render(room, all("auto"), "3");
+  test::Settings small = all("auto");
+  small["path.batch"] = "1024";
+  const Chosen b = render(room, small, "3");
+  for (size_t c = 0; c < 4; ++c) {
+    CHECK(a.choices[c].solver == b.choices[c].solver);
+    CHECK(a.findings->components[c].variance == b.findings->components[c].variance);
+  }
+}
