@@ -15,6 +15,7 @@
 #include "base/log.h"
 #include "bench/matrix.h"
 #include "plan/settings.h"
+#include "scene/range.h"
 #include "solvers/registry.h"
 #include "ui/script.h"
 #include "ui/viewer.h"
@@ -148,6 +149,24 @@ void Program::add_render() {
       ->allow_extra_args(false);
   render_->add_option("--size", r.size, "picture, WIDTHxHEIGHT")->capture_default_str();
   render_->add_option("--camera", r.camera, "name of a scene camera, or its number from 1");
+  render_
+      ->add_option("--f-number", r.f_number, "gives the camera a lens, for depth of field; film 36 mm wide")
+      ->check(finite() & CLI::Range(scene::k_least_f_number, scene::k_max_f_number));
+  render_
+      ->add_option(
+          "--focus", r.focus,
+          "metres to the lens's plane of focus, along the view axis; by default the scene's, or else "
+          "to the surface in the middle of the picture")
+      ->check(finite() & CLI::Range(scene::k_least_focus, scene::k_max_coordinate));
+  render_->add_flag(
+      "--upright", r.upright,
+      "level the camera and shift the lens so that the middle of the picture stays: vertical lines "
+      "become vertical");
+  render_->add_option("--shift", r.shift, "RIGHT UP, shift of the lens in widths and heights of the picture")
+      ->expected(2)
+      ->check(finite() & CLI::Range(-scene::k_max_shift, scene::k_max_shift));
+  render_->add_option("--blades", r.blades, "corners of the lens's aperture, at least 3; 0: round")
+      ->check(CLI::Range(int64_t(0), int64_t(scene::k_max_blades)));
   render_->add_option(
       "--error", r.error,
       "target error as seen of every tile, such as 0.02: tiles above it get more samples. The error is "

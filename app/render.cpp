@@ -15,6 +15,8 @@
 #include "base/json_text.h"
 #include "base/log.h"
 #include "base/timer.h"
+#include "commands/camera_control.h"
+#include "session/pick.h"
 #include "session/renderer.h"
 
 namespace lucerna::app {
@@ -130,6 +132,35 @@ void set_limits(session::Renderer& r, const RenderArguments& a,
   r.apply_settings();
 }
 
+/// The command line's lens and shift for the camera.
+void set_lens(session::Renderer& r, const RenderArguments& a) {
+  scene::Camera camera = r.camera();
+  if (!a.shift.empty()) camera.shift = vec2(a.shift[0], a.shift[1]);
+  if (a.upright) {
+    commands::Viewpoint view{.camera = camera};
+    if (!commands::upright(view, float(r.film().width()) / float(r.film().height())))
+      throw Error("--upright", "the camera is orthographic, or looks too steeply up or down");
+    camera = view.camera;
+  }
+  if (!a.shift.empty() || a.upright) r.set_camera(camera);
+  if (!a.f_number && !a.focus && !a.blades) return;
+  if (camera.orthographic) throw Error("--f-number", "the camera is orthographic, without depth of field");
+  if (a.f_number) camera.lens.f_number = float(*a.f_number);
+  if (camera.lens.f_number == 0)
+    throw Error(a.focus ? "--focus" : "--blades", "the camera has no lens; --f-number gives it one");
+  if (a.focus) camera.lens.focus_distance = float(*a.focus);
+  if (a.blades) camera.lens.blades = uint32_t(*a.blades);
+  if (camera.lens.focus_distance == 0) {
+    const float aspect = float(r.film().width()) / float(r.film().height());
+    const auto hit = session::pick(*r.scene(), camera, 0.5f, 0.5f, aspect);
+    if (!hit)
+      throw Error("--f-number", "there is no surface in the middle of the picture to focus on; give --focus");
+    camera.lens.focus_distance =
+        glm::dot(hit->position - commands::eye_of(camera), commands::forward_of(camera));
+  }
+  r.set_camera(camera);
+}
+
 /// Loads scene, camera, reference and solvers' work. False: interrupted.
 bool load(session::Renderer& r, const RenderArguments& a, const std::vector<session::SettingChange>& changes,
           const Interrupt& interrupt, bool terminal) {
@@ -151,6 +182,7 @@ bool load(session::Renderer& r, const RenderArguments& a, const std::vector<sess
   set_limits(r, a, changes);
   r.expect_seconds(a.seconds);
   if (!a.camera.empty()) r.choose_camera(a.camera);
+  set_lens(r, a);
   if (!a.reference.empty()) r.set_reference(a.reference);
   for (const auto& [name, file] : a.solver_load)
     if (!file.empty()) r.solver_load(name, file);

@@ -22,6 +22,10 @@ struct RenderArguments {
   std::optional<double> error;    ///< target error of every tile: adaptive sampling
   std::optional<double> seconds;  ///< time limit
   int64_t seed = -1;
+  std::optional<double> f_number, focus;  ///< of the camera's lens
+  std::optional<int64_t> blades;
+  bool upright = false;
+  std::vector<double> shift;     ///< right, up; empty: the scene's
   std::vector<std::string> set;  ///< key=value
   bool quiet = false;
   bool filter = false;        ///< files contain the filtered picture too

@@ -204,6 +204,8 @@ void handle_keys(Ui& ui) {
       ui.cards.welcome = false;
     else if (ui.dropper)
       ui.act("exposure.dropper", false);
+    else if (ui.scene_view.focusing)
+      ui.act("camera.focusing", false);
     else if (ui.open.loading())
       ui.act("scene.cancel");
     else if (!ui.cards.errors.empty())

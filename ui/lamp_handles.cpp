@@ -67,8 +67,11 @@ bool project(const scene::Camera& camera, const Area& shown, const vec3& point, 
   if (!camera.orthographic && depth <= 1e-6f) return false;
   const float half = camera.orthographic ? camera.ymag : depth * std::tan(0.5f * camera.yfov);
   const float scale = 0.5f * shown.height() / half;
-  at = {0.5f * (shown.lo.x + shown.hi.x) + scale * glm::dot(d, commands::right_of(camera)),
-        0.5f * (shown.lo.y + shown.hi.y) - scale * glm::dot(d, commands::up_of(camera))};
+  // Of the view axis, which a lens shift moves away from the middle.
+  const vec2 axis(0.5f * (shown.lo.x + shown.hi.x) - camera.shift.x * shown.width(),
+                  0.5f * (shown.lo.y + shown.hi.y) + camera.shift.y * shown.height());
+  at = {axis.x + scale * glm::dot(d, commands::right_of(camera)),
+        axis.y - scale * glm::dot(d, commands::up_of(camera))};
   return true;
 }
 
@@ -173,6 +176,7 @@ void drag_lamp(Actions& actions, const MarkedScene& marked, const LampHandle& ha
     if (!rays) return;
     const session::PickRay ray =
         session::pick_ray(marked.camera.view->camera, at.x, at.y, marked.camera.aspect);
+    if (ray.direction == vec3(0)) return;
     const auto hit = rays->nearest(ray.origin, ray.direction);
     const vec3 from = marked.open.light(handle.light).position;
     // Without a surface there, at the previous distance.

@@ -311,6 +311,15 @@ void camera_menu(Ui& ui) {
   if (entry("Walk along the floor", "H", "W A S D walk at eye height instead of flying.", ui.camera.walking,
             view))
     ui.act("camera.walking", !ui.camera.walking);
+  const bool lens = view && !ui.camera.view->camera.orthographic;
+  if (entry("Focus by a click", nullptr, "The next click in the picture puts the plane of focus there.",
+            ui.scene_view.focusing, lens))
+    ui.act("camera.focusing", !ui.scene_view.focusing);
+  if (entry("Make upright", nullptr,
+            "Levels the camera and shifts the lens so that the picture's middle stays: vertical lines become "
+            "vertical.",
+            false, lens))
+    ui.act("camera.upright");
   divide();
   if (entry("Bookmark this view", "Ctrl+B", "Saves the view for this scene, also for later runs.", false,
             view))

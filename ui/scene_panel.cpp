@@ -12,6 +12,7 @@
 #include "panel_block.h"
 #include "scene/display_name.h"
 #include "scene/lamp.h"
+#include "scene/range.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -74,7 +75,106 @@ void show_row(float y) {
     ImGui::SetScrollFromPosY(y - window.y, 0.5f);
 }
 
-void cameras(Controls& controls, const commands::Navigation& camera, const std::function<void()>& keep_view) {
+void lens_shift(Controls& controls, const scene::Camera& camera) {
+  if (button("##upright", "Make upright", false, ImGui::CalcItemWidth())) controls.act("camera.upright");
+  tooltip(
+      "Levels the camera and shifts the lens so that the picture's middle stays: vertical lines become "
+      "vertical.");
+  if (camera.shift == vec2(0)) return;
+  vec2 shift = camera.shift;
+  const Slider how{.lo = -1,
+                   .hi = 1,
+                   .decimals = 3,
+                   .bar = false,
+                   .sign = true,
+                   .typed_lo = -scene::k_max_shift,
+                   .typed_hi = scene::k_max_shift};
+  bool moved = slider("##shift_up", "Shift up", shift.y, how);
+  tooltip("Heights of the picture by which its middle is above the view axis.");
+  moved |= slider("##shift_right", "Shift right", shift.x, how);
+  tooltip("Widths of the picture by which its middle is to the right of the view axis.");
+  if (moved) controls.act("camera.shift", shift.x, shift.y);
+  if (button("##no_shift", "Remove shift", false, ImGui::CalcItemWidth())) controls.act("camera.shift", 0, 0);
+  tooltip("Puts the middle of the picture on the view axis again.");
+}
+
+void section_plane(Controls& controls, const Viewpoint& view) {
+  const scene::Section& section = view.camera.section;
+  if (button("##section", "Section plane", section.cuts(), ImGui::CalcItemWidth())) {
+    const vec3 ahead = commands::forward_of(view.camera);
+    if (section.cuts())
+      controls.act("camera.no_section");
+    else
+      controls.act("camera.section", commands::eye_of(view.camera) + 0.5f * view.distance * ahead, ahead);
+  }
+  tooltip("Cuts the view by a plane across it: the camera sees only what lies behind. Light is not cut.");
+  if (!section.cuts()) return;
+  float offset = section.offset;
+  const float reach = 2 * view.extent;
+  if (slider("##offset", "Plane at", offset,
+             {.lo = -reach,
+              .hi = reach,
+              .decimals = 3,
+              .unit = "m",
+              .bar = false,
+              .typed_lo = -1e6f,
+              .typed_hi = 1e6f}))
+    controls.act("camera.section", offset * section.normal, section.normal);
+  tooltip("Distance of the plane from the scene's origin, along the view that it was placed in.");
+}
+
+/// `focusing`: the next click in the picture focuses.
+void depth_of_field(Controls& controls, const scene::Lens& lens, bool focusing) {
+  const bool on = lens.f_number > 0;
+  if (button("##depth_of_field", "Depth of field", on, ImGui::CalcItemWidth())) {
+    if (on)
+      controls.act("camera.pinhole");
+    else
+      controls.act("camera.f_number", 2.8f);
+  }
+  tooltip("A lens instead of a pinhole: surfaces before and behind the plane of focus blur.");
+  if (!on) return;
+  float f_number = lens.f_number, focus = lens.focus_distance, rotation = lens.rotation * 180 / k_pi;
+  auto blades = static_cast<float>(lens.blades);
+  if (slider("##f_number", "f-number", f_number,
+             {.lo = 0.5f,
+              .hi = 32,
+              .log = true,
+              .decimals = 2,
+              .typed_lo = scene::k_least_f_number,
+              .typed_hi = scene::k_max_f_number}))
+    controls.act("camera.f_number", f_number);
+  tooltip("Focal length over the diameter of the lens, for film 36 mm wide. Smaller blurs more.");
+  if (slider("##focus", "Focus", focus,
+             {.lo = 0.05f,
+              .hi = 100,
+              .log = true,
+              .decimals = 3,
+              .unit = "m",
+              .typed_lo = scene::k_least_focus,
+              .typed_hi = 1e6f}))
+    controls.act("camera.focus_distance", focus);
+  tooltip("Distance of the plane of focus along the view axis.");
+  const float half = 0.5f * (ImGui::CalcItemWidth() - px(4));
+  if (button("##focusing", "Focus by a click", focusing, half)) controls.act("camera.focusing", !focusing);
+  tooltip("The next click in the picture puts the plane of focus there.");
+  ImGui::SameLine(0, px(4));
+  if (button("##show_focus", "Show", controls.open.setting_on("overlay.focus"), half))
+    controls.actions.toggle("overlay.focus");
+  tooltip(plan::find_option("overlay.focus")->help);
+  if (slider("##blades", "Blades", blades, {.lo = 0, .hi = 12, .decimals = 0, .step = 1, .at_zero = "round"}))
+    controls.act("camera.blades", static_cast<int>(blades < 0.5f ? 0 : std::max(3.0f, blades)));
+  tooltip("Corners of the aperture, which bright points out of focus take the shape of.");
+  if (lens.blades > 0) {
+    if (slider("##rotation", "Rotation", rotation,
+               {.lo = -180, .hi = 180, .decimals = 0, .unit = "\xC2\xB0"}))
+      controls.act("camera.blades", lens.blades, named("rotation", rotation));
+    tooltip("Rotation of the aperture.");
+  }
+}
+
+void cameras(Controls& controls, const commands::Navigation& camera, bool focusing,
+             const std::function<void()>& keep_view) {
   const auto& list = controls.open.scene->cameras;
   if (list.empty()) quiet_line("The scene has no camera");
   for (size_t i = 0; i < list.size(); ++i) {
@@ -104,6 +204,11 @@ void cameras(Controls& controls, const commands::Navigation& camera, const std::
     tooltip(fmt::format("Focal length for a frame 36 mm wide; the vertical field of view is {:.1f}\xC2\xB0.",
                         view.camera.yfov * 180 / k_pi));
   }
+  if (!view.camera.orthographic) {
+    lens_shift(controls, view.camera);
+    depth_of_field(controls, view.camera.lens, focusing);
+  }
+  section_plane(controls, view);
   float speed = camera.speed;
   if (slider("##speed", "Fly speed", speed,
              {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m/s"}))
@@ -465,7 +570,8 @@ void draw_scene_panel(Controls& controls, const commands::Navigation& camera, Sc
   if (reveal && camera.selection.kind == Kind::instance) controls.sections["Objects"] = true;
   if (reveal && camera.selection.kind == Kind::material) controls.sections["Materials"] = true;
   if (reveal && camera.selection.kind == Kind::light) controls.sections["Lights"] = true;
-  block("Camera", controls.open.scene->cameras.size(), true, [&] { cameras(controls, camera, keep_view); });
+  block("Camera", controls.open.scene->cameras.size(), true,
+        [&] { cameras(controls, camera, view.focusing, keep_view); });
   block("Lights", controls.open.scene->lights.size() + emitters(controls.open, camera).size(), true,
         [&] { light_rows(controls, camera, view, reveal); });
   block("Environment", 0, true, [&] { environment(controls); });

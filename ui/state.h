@@ -82,6 +82,8 @@ struct Ui {
   } drag;
   /// True: the next click in the picture sets the exposure.
   bool dropper = false;
+  /// ... does not select: it sets the exposure or the plane of focus.
+  bool click_taken() const { return dropper || scene_view.focusing; }
 
   CardsView cards;
   void notice(const std::string& text, double seconds = 6);

@@ -132,6 +132,7 @@ std::optional<vec3> under_pointer(Ui& ui, const Area& shown) {
   const float y = (at.y - shown.lo.y) / std::max(1.0f, shown.height());
   if (!rays || !ui.camera.view || x < 0 || x > 1 || y < 0 || y > 1) return std::nullopt;
   const session::PickRay ray = session::pick_ray(ui.camera.view->camera, x, y, ui.camera.aspect);
+  if (ray.direction == vec3(0)) return std::nullopt;
   const auto hit = rays->nearest(ray.origin, ray.direction);
   if (!hit) return std::nullopt;
   return hit->position;
@@ -167,7 +168,7 @@ void turn_sky(Ui& ui, float pixels, float width) {
 void begin_drag(Ui& ui, const Area& shown) {
   ui.drag.point = under_pointer(ui, shown);
   ui.drag.lamp.reset();
-  if (!ui.dropper && !ImGui::GetIO().KeyCtrl && ImGui::GetIO().MouseDown[0])
+  if (!ui.click_taken() && !ImGui::GetIO().KeyCtrl && ImGui::GetIO().MouseDown[0])
     ui.drag.lamp = lamp_handle_at(ui.marked(), shown, ImGui::GetIO().MousePos);
   if (ui.drag.lamp && ui.drag.lamp->part == LampHandle::Part::surface) ui.drag.lamp.reset();
   ui.drag.azimuth = ui.open.environment_rotation();
@@ -290,10 +291,10 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
 }
 
 /// A click selects the light whose mark is under it, otherwise the object. With the dropper it sets the
-/// exposure.
+/// exposure, and while focusing the plane of focus.
 void click(Ui& ui, const Area& shown) {
   const ImVec2 at = ImGui::GetIO().MousePos;
-  if (!ui.dropper)
+  if (!ui.click_taken())
     if (const auto lamp = lamp_handle_at(ui.marked(), shown, at))
       return ui.act("select", lamp->part == LampHandle::Part::surface ? "material" : "light",
                     lamp->light + 1);
@@ -303,6 +304,9 @@ void click(Ui& ui, const Area& shown) {
   if (ui.dropper) {
     ui.act("exposure.dropper", false);
     ui.act("exposure.at", x, y);
+  } else if (ui.scene_view.focusing) {
+    ui.act("camera.focusing", false);
+    ui.act("camera.focus", x, y);
   } else {
     ui.act("pick", x, y);
   }
@@ -444,7 +448,7 @@ void draw_picture(Ui& ui, const Area& area) {
     frame = {lo, {lo.x + w, lo.y + h}};
     if (ImGui::IsMouseDown(0))
       hot = ui.drag.lamp;
-    else if (ui.picture_hovered && !ui.dropper)
+    else if (ui.picture_hovered && !ui.click_taken())
       hot = lamp_handle_at(ui.marked(), frame, ImGui::GetIO().MousePos);
     draw_lamp_handles(ui.marked(), frame, hot);
     if (ui.brackets) draw_brackets(ui, frame);
@@ -468,7 +472,7 @@ void draw_picture(Ui& ui, const Area& area) {
     active = ImGui::IsItemActive();
     if (ImGui::IsItemActivated()) begin_drag(ui, frame);
     if (hot && ui.picture_hovered && !active) tooltip(help_of(ui, *hot));
-    if ((ui.dropper || hot) && ui.picture_hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    if ((ui.click_taken() || hot) && ui.picture_hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     if (ui.picture_hovered && ImGui::IsMouseReleased(0) && ImGui::IsItemDeactivated() &&
         ImGui::GetIO().MouseDragMaxDistanceSqr[0] < px(k_drag) * px(k_drag))
       click(ui, frame);

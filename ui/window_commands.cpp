@@ -148,8 +148,15 @@ void add_picture_commands(Ui& ui, const Add& add) {
       "exposure.dropper", "Makes the next click in the picture set the exposure from the clicked point.",
       {on()},
       [&ui](const Arguments& a) {
-        ui.dropper = a.boolean("on");
+        ui.dropper = a.boolean("on"), ui.scene_view.focusing = false;
         if (ui.dropper) ui.notice("Click a grey point to show it as middle grey. Esc cancels.");
+      },
+      false);
+  add(
+      "camera.focusing", "Makes the next click in the picture focus on the clicked point.", {on()},
+      [&ui](const Arguments& a) {
+        ui.scene_view.focusing = a.boolean("on"), ui.dropper = false;
+        if (ui.scene_view.focusing) ui.notice("Click a surface to focus on it. Esc cancels.");
       },
       false);
   add("view.divisor", "Sets the pixels of the window per pixel of the picture, along a side.",

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "commands/command_list.h"
+#include "commands/lens.h"
 #include "commands/workspace.h"
 #include "session/pick.h"
 
@@ -84,6 +85,11 @@ void Motions::add(std::string name, std::string help, std::vector<Parameter> par
 }
 
 void Motions::add_motions() {
+  std::vector<Parameter> placed = {
+      vector("eye", "where it stands, from the scene's origin (lucerna info)", "m"),
+      vector("target", "what it looks at", "m"), vector("up", "what is upwards in the picture", ""),
+      optional(fov()), optional(height())};
+  for (Parameter& p : lens_parameters()) placed.push_back(std::move(p));
   add("camera.orbit", "Turns the eye about what it looks at, or about any point.",
       {real("right", "counter-clockwise seen from above", "radians"), real("up", "raises the eye", "radians"),
        optional(vector("about", "a point of the scene", "m"))},
@@ -115,11 +121,8 @@ void Motions::add_motions() {
       });
   add("camera.place",
       "Puts the camera at a place, looking at a point that it then orbits about. With fov it is a "
-      "perspective camera, with height an orthographic one.",
-      {vector("eye", "where it stands, from the scene's origin (lucerna info)", "m"),
-       vector("target", "what it looks at", "m"), vector("up", "what is upwards in the picture", ""),
-       optional(fov()), optional(height())},
-      [&camera = camera_](Viewpoint& v, const Arguments& a) {
+      "perspective camera, with height an orthographic one. Otherwise the lens stays as it is.",
+      std::move(placed), [&camera = camera_, &open = open_](Viewpoint& v, const Arguments& a) {
         if (!place(v, a.vector("eye"), a.vector("target"), a.vector("up")))
           throw Error("", "eye and target must differ, and up must not point from one to the other");
         if (a.has("fov") && a.has("height")) throw Error("", "fov and height exclude each other: give one");
@@ -131,6 +134,8 @@ void Motions::add_motions() {
           if (!std::exchange(v.camera.orthographic, true)) v.camera.ymag = 1, v.camera.xmag = camera.aspect;
           set_height(v.camera, a.number("height"));
         }
+        set_lens(v.camera, a);
+        focus_somewhere(open, v, camera.aspect);
       });
   add("camera.frame",
       "Moves so that the selection, or else the whole scene, fills the picture; not into or behind a wall.",

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "scene/range.h"
+
 namespace lucerna::commands {
 namespace {
 
@@ -130,7 +132,39 @@ void frame(Viewpoint& view, const Box& box, float aspect) {
     const float half_x = std::atan(std::tan(half_y) * std::max(aspect, 1e-3f));
     view.distance = 1.05f * radius / std::sin(std::min(half_x, half_y));
   }
-  view.camera.to_world = placed(view.camera.to_world, box.centre() - view.distance * forward_of(view.camera));
+  // The box's centre in the middle of the picture, which a lens shift moves away from the view axis.
+  const float half =
+      view.camera.orthographic ? view.camera.ymag : view.distance * std::tan(0.5f * view.camera.yfov);
+  const vec2 aside = 2 * half * view.camera.shift * vec2(aspect, 1);
+  view.camera.to_world =
+      placed(view.camera.to_world, box.centre() - view.distance * forward_of(view.camera) -
+                                       aside.x * right_of(view.camera) - aside.y * up_of(view.camera));
+}
+
+bool upright(Viewpoint& view, float aspect) {
+  constexpr float k_most = 80 * k_pi / 180;  // of the view axis and the picture's middle from the horizon
+  scene::Camera& camera = view.camera;
+  const vec3 eye = eye_of(camera), axis = forward_of(camera);
+  const vec2 half = std::tan(0.5f * camera.yfov) * vec2(aspect, 1);
+  const vec3 middle =
+      axis + 2 * (camera.shift.x * half.x * right_of(camera) + camera.shift.y * half.y * up_of(camera));
+  const float flat = std::hypot(axis.x, axis.z);
+  if (camera.orthographic || !(flat > std::cos(k_most))) return false;
+  const vec3 level(axis.x / flat, 0, axis.z / flat), right(-level.z, 0, level.x);
+  const float ahead = glm::dot(middle, level);
+  if (!(ahead > std::cos(k_most) * glm::length(middle))) return false;
+  // Seen under the same angle around the middle: lengths in the plane of the picture grow with the ray's own
+  // length.
+  const float wider = 1 / ahead;
+  const float yfov = 2 * std::atan(half.y * wider);
+  const vec2 now_half = half * wider;
+  const vec2 shift = vec2(glm::dot(middle, right), middle.y) / (2 * ahead * now_half);
+  if (glm::any(glm::greaterThan(glm::abs(shift), vec2(scene::k_max_shift)))) return false;
+  camera.to_world = mat4(vec4(right, 0), vec4(0, 1, 0, 0), vec4(-level, 0), vec4(eye, 1));
+  camera.yfov = yfov, camera.shift = shift;
+  // Focus and pivot stay at the surface in the middle of the picture.
+  camera.lens.focus_distance *= ahead, view.distance *= ahead;
+  return true;
 }
 
 float walking_speed(float extent) { return std::max(1.5f, 0.15f * extent) * std::min(1.0f, extent); }
@@ -153,7 +187,8 @@ float yfov_from_focal_length(float millimetres, float aspect) {
 
 bool same_view(const scene::Camera& a, const scene::Camera& b) {
   return a.to_world == b.to_world && a.orthographic == b.orthographic && a.yfov == b.yfov &&
-         a.xmag == b.xmag && a.ymag == b.ymag && a.aspect == b.aspect;
+         a.xmag == b.xmag && a.ymag == b.ymag && a.aspect == b.aspect && a.lens == b.lens &&
+         a.shift == b.shift && a.section == b.section;
 }
 
 }  // namespace lucerna::commands

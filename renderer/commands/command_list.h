@@ -19,6 +19,7 @@ void add_environment_file_commands(Registry& registry, OpenScene& open);
 void add_shown_commands(Registry& registry, OpenScene& open);
 void add_history_commands(Workspace& work);
 void add_camera_commands(Registry& registry, const OpenScene& open, Navigation& camera);
+void add_lens_commands(Registry& registry, const OpenScene& open, Navigation& camera);
 void add_selection_commands(Workspace& work);
 void add_walking_commands(Registry& registry, Navigation& camera);
 void add_bookmark_commands(Workspace& work);

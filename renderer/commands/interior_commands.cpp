@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "commands/command_list.h"
+#include "commands/lens.h"
 #include "commands/workspace.h"
 
 namespace lucerna::commands {
@@ -124,6 +125,7 @@ void add_bookmark_commands(Workspace& work) {
          const Viewpoint& view = *work.camera.view;
          std::string text = Navigation::place_line(view);
          if (!view.camera.orthographic) text += " " + named("fov", view.camera.yfov * 180 / k_pi).text;
+         text += lens_words(view.camera);
          here[name] = text;
        }});
   work.registry.add({.name = "camera.go",

@@ -19,6 +19,7 @@ Workspace::Workspace(session::Session& s, WorkspaceEvents e)
   add_history_commands(*this);
   add_camera_commands(registry, open, camera);
   add_selection_commands(*this);
+  add_lens_commands(registry, open, camera);
   add_walking_commands(registry, camera);
   add_bookmark_commands(*this);
   add_exposure_commands(registry, open, camera, exposure);

@@ -32,7 +32,7 @@ uint32_t shown_components(const View& view) {
 
 bool PreviewCamera::operator==(const PreviewCamera& o) const {
   return axes.origin == o.axes.origin && axes.right == o.axes.right && axes.up == o.axes.up &&
-         axes.forward == o.axes.forward && orthographic == o.orthographic;
+         axes.forward == o.axes.forward && orthographic == o.orthographic && section == o.section;
 }
 
 Preview::Preview(gpu::Device& device, gpu::ShaderCompiler& compiler)

@@ -31,6 +31,7 @@ enum class Sampled { none, some, all };
 struct PreviewCamera {
   shared::PreviewCamera axes{};
   bool orthographic = false;
+  vec4 section{0};  ///< plane that cuts the view: normal, offset
   bool operator==(const PreviewCamera& o) const;
 };
 

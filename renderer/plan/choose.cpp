@@ -59,7 +59,7 @@ struct Combination {
   double sample_cost() const { return std::max(sum.sample, k_least_sample); }
   /// Error as seen with that many samples.
   double error(double samples) const {
-    return std::hypot(std::sqrt(sum.variance / samples), prepared_error(sum, samples)) + sum.floor;
+    return std::hypot(std::sqrt(sum.variance / samples), prepared_error(sum, samples), sum.floor);
   }
   /// Squared error after that cost, k_never before the first sample.
   double squared_error(double cost) const {
@@ -107,7 +107,7 @@ std::optional<Combination> combine(const Findings& findings, uint32_t decided, c
     all.sum.variance += p->variance;
     if (p->prepared > all.sum.prepared) all.sum.refined = p->refined;
     all.sum.prepared = std::hypot(all.sum.prepared, p->prepared);
-    all.sum.floor += p->floor;
+    all.sum.floor = std::hypot(all.sum.floor, p->floor);
   }
   return all;
 }

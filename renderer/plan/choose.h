@@ -4,7 +4,7 @@
 //
 // Every solver predicts a prospect (solvers/prospect.h): cost of preparation and samples, variance, and error
 // that samples do not reduce. Costs and variances of components add up, so the error of every combination
-// follows, for a given cost: (error - floor)^2 = variance / samples + prepared(samples)^2. The choice is the
+// follows, for a given cost: error^2 = variance / samples + prepared(samples)^2 + floor^2. The choice is the
 // combination with the least cost for the goal's error or, without one, with the least error for the goal's
 // cost; paths unless another combination is clearly ahead (k_clearly).
 #include <array>

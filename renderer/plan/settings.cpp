@@ -167,6 +167,10 @@ void add_display_options(std::vector<OptionInfo>& list) {
       boolean_option("overlay.light_arrival", "false",
                      "Draws the share of shadow rays towards lights that arrive, from the latest learning.",
                      "Shadow rays that arrive")));
+  list.push_back(without_restart(
+      boolean_option("overlay.focus", "false",
+                     "Tints surfaces that the camera's lens shows sharp, with a line in the plane of focus.",
+                     "Depth of field")));
   list.push_back(without_restart(choice_option(
       "preview.filter", "auto", {"auto", "off"}, "",
       "Preview in the window. auto: filters noise, and keeps the picture from before an edit until the new "

@@ -47,6 +47,25 @@ void check_range(const Camera& c) {
                 k_max_yfov);
   }
   if (!within(c.aspect, 0, 1e4f)) throw_error(where, "its aspect is {:.4g}, expected 0 to 10000", c.aspect);
+  if (!within(std::abs(c.shift.x), 0, k_max_shift) || !within(std::abs(c.shift.y), 0, k_max_shift))
+    throw_error(where, "its lens shift is {:.4g} widths and {:.4g} heights, expected -{} to {}", c.shift.x,
+                c.shift.y, k_max_shift, k_max_shift);
+  const bool plane = finite(c.section.normal) && std::abs(glm::length(c.section.normal) - 1) < 1e-3f &&
+                     within(std::abs(c.section.offset), 0, k_max_coordinate);
+  if (c.section.cuts() && !plane)
+    throw_error(where, "its section plane has no finite unit normal, or is beyond {:.0g} m from the origin",
+                k_max_coordinate);
+  const Lens& lens = c.lens;
+  if (lens.f_number != 0 && !within(lens.f_number, k_least_f_number, k_max_f_number))
+    throw_error(where, "its f-number is {:.4g}, expected {} to {}, or 0 for a pinhole", lens.f_number,
+                k_least_f_number, k_max_f_number);
+  if (lens.f_number != 0 && !within(lens.focus_distance, k_least_focus, k_max_coordinate))
+    throw_error(where, "its plane of focus is {:.4g} m ahead, expected {} to {:.0g}", lens.focus_distance,
+                k_least_focus, k_max_coordinate);
+  if (lens.blades != 0 && (lens.blades < 3 || lens.blades > k_max_blades))
+    throw_error(where, "its aperture has {} blades, expected 3 to {}, or 0 for a round one", lens.blades,
+                k_max_blades);
+  if (!std::isfinite(lens.rotation)) throw_error(where, "the rotation of its aperture is not finite");
 }
 
 void check_range(const Light& l) {

@@ -13,12 +13,21 @@ inline constexpr float k_max_coordinate = 1e9f;
 inline constexpr float k_max_strength = 1e30f;
 /// Largest field of view [radians].
 inline constexpr float k_max_yfov = 3.14f;
+inline constexpr float k_least_f_number = 0.1f, k_max_f_number = 1000;
+/// Smallest distance of the plane of focus [m].
+inline constexpr float k_least_focus = 1e-4f;
+inline constexpr uint32_t k_max_blades = 32;
+/// Largest lens shift, in sizes of the picture.
+inline constexpr float k_max_shift = 20;
 
 /// True if all coordinates are finite and at most k_max_coordinate.
 bool in_range(const vec3& position);
 
 /// The position is in range, the axes are finite and independent; yfov is above 0 and at most k_max_yfov, or
-/// xmag and ymag are above 0 and at most k_max_coordinate; aspect is 0 to 10^4.
+/// xmag and ymag are above 0 and at most k_max_coordinate; aspect is 0 to 10^4. The f-number is 0, or
+/// k_least_f_number to k_max_f_number with a plane of focus from k_least_focus to k_max_coordinate; blades
+/// are 0, or 3 to k_max_blades; shifts are -k_max_shift to k_max_shift. A
+/// section's normal is unit or 0, its offset at most k_max_coordinate.
 void check_range(const Camera& camera);
 /// The position is in range, the direction finite and not 0; the intensity is 0 to k_max_strength, the cones
 /// are 0 <= inner <= outer <= pi/2.

@@ -108,6 +108,26 @@ struct Instance {
   std::string group{};  ///< light group of its emitting parts: the node's extras.light_group; "": none given
 };
 
+/// Thin lens of a perspective camera, for depth of field. The film is 36 mm wide, so the field of view gives
+/// the focal length, and the f-number the lens's diameter.
+struct Lens {
+  float f_number = 0;  ///< focal length over the lens's diameter; 0: a pinhole, with everything sharp
+  float focus_distance =
+      0;                ///< from the eye to the plane of focus, along the view axis, metres; > 0 with a lens
+  uint32_t blades = 0;  ///< corners of the aperture, on the circle of that diameter; 0: round
+  float rotation = 0;   ///< of the first corner, from the camera's right towards up, radians
+  bool operator==(const Lens&) const = default;
+};
+/// Plane that cuts the view, and not the light: camera rays that start before it begin on it.
+struct Section {
+  vec3 normal{0};    ///< unit, into the part that stays visible; 0: there is none
+  float offset = 0;  ///< of the plane along it, metres
+  bool operator==(const Section&) const = default;
+  bool cuts() const { return normal != vec3(0); }
+};
+
+inline constexpr float k_film_width = 0.036f;  ///< metres
+
 /// Looks down its -Z, +Y up. Perspective: yfov in radians, of the picture's height. Orthographic: half
 /// heights.
 struct Camera {
@@ -117,6 +137,10 @@ struct Camera {
   float yfov = 0.8f;
   float xmag = 1, ymag = 1;  ///< orthographic half sizes, metres
   float aspect = 0;          ///< width / height; 0: that of the picture
+  Lens lens{};               ///< not used by orthographic cameras
+  /// Lens shift: moves the picture's middle from the view axis, right in its widths and up in its heights.
+  vec2 shift{0};
+  Section section{};  ///< in the world
 };
 
 enum class LightKind : uint32_t { point, spot, directional };

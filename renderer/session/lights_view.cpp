@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "base/figures.h"
-#include "plan/views.h"
 #include "shaders/shared/ramp.h"
 
 namespace lucerna::session {
@@ -80,8 +79,7 @@ std::string cluster_text(const upload::ClusterPlace& place, const upload::FlatSc
 }
 
 bool LightsView::shown(const plan::Settings& settings) {
-  return std::any_of(plan::views().begin(), plan::views().end(),
-                     [&](const solvers::ViewInfo& view) { return settings.boolean(view.option); });
+  return settings.boolean("overlay.lights") || settings.boolean("overlay.light_arrival");
 }
 
 void LightsView::draw(const overlay::Canvas& canvas, const transport::LightLearning* learning,

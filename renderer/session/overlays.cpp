@@ -21,7 +21,7 @@ bool Overlays::are_on() const {
     return option.key.starts_with("overlay.") && owner && setup_.engine->find(owner->name) &&
            setup_.settings.text(option.key) != option.fallback;
   };
-  return mode_.inspected || LightsView::shown(setup_.settings) ||
+  return mode_.inspected || LightsView::shown(setup_.settings) || FocusView::shown(setup_.settings) ||
          std::any_of(plan::options().begin(), plan::options().end(), on);
 }
 
@@ -73,6 +73,7 @@ std::vector<uint8_t> Overlays::finish(const film::View& shown, const std::functi
       },
       cancel);
   draw_lights(cancel);
+  draw_focus(cancel);
   if (scale() == 1) return setup_.film->read_picture();
   std::vector<uint8_t> pixels(uint64_t{setup_.width} * setup_.height * scale() * scale() * 4);
   sheet().picture(*setup_.film).read(pixels.data(), pixels.size());
@@ -99,6 +100,17 @@ void Overlays::draw_lights(const std::function<bool()>& cancel) {
                 engine.wavefront().learning(), setup_.world.flat,
                 engine.frame(view(), setup_.film->width(), setup_.film->height()), *setup_.world.scene,
                 setup_.settings, mode_.inspected);
+}
+
+void Overlays::draw_focus(const std::function<bool()>& cancel) {
+  if (!setup_.engine || !setup_.film || !FocusView::shown(setup_.settings)) {
+    if (focus_) focus_->forget();
+    return;
+  }
+  if (!focus_) focus_ = std::make_unique<FocusView>(context_.device, context_.compiler);
+  Engine& engine = *setup_.engine;
+  focus_->draw({engine.wavefront(), *setup_.film, *setup_.coarse, sheet(), cancel},
+               engine.frame(view(), setup_.film->width(), setup_.film->height()));
 }
 
 }  // namespace lucerna::session

@@ -1,11 +1,13 @@
 #pragma once
-// What is drawn over the picture: the views of solvers and of learned lights, with the inspected place.
+// What is drawn over the picture: the views of solvers, of learned lights and of the depth of field, with the
+// inspected place.
 #include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "overlay/sheet.h"
+#include "session/focus_view.h"
 #include "session/lights_view.h"
 #include "session/transaction.h"
 
@@ -40,6 +42,10 @@ class Overlays {
   const solvers::Report* lights_report() const {
     return lights_ && lights_->report() ? &*lights_->report() : nullptr;
   }
+  /// ... of the depth of field.
+  const solvers::Report* focus_report() const {
+    return focus_ && focus_->report() ? &*focus_->report() : nullptr;
+  }
 
   /// Call when surfaces or kernels have changed.
   void forget_surfaces();
@@ -47,12 +53,13 @@ class Overlays {
   void retry() { fails_ = false; }
 
  private:
-  /// True if a view of a solver, or of the lights, is on.
+  /// True if a view of a solver, of the lights or of the depth of field is on.
   bool are_on() const;
   overlay::Sheet& sheet();
   /// To the picture, at most at that scale.
   void fit(uint32_t scale);
   void draw_lights(const std::function<bool()>& cancel);
+  void draw_focus(const std::function<bool()>& cancel);
   PictureView view() const { return setup_.view(context_.automaton); }
 
   const SetupContext& context_;
@@ -61,6 +68,7 @@ class Overlays {
   bool fails_ = false;                     ///< no memory for the surfaces
   std::unique_ptr<overlay::Sheet> sheet_;  ///< null until something is drawn
   std::unique_ptr<LightsView> lights_;     ///< null until it is shown
+  std::unique_ptr<FocusView> focus_;       ///< likewise
 };
 
 }  // namespace lucerna::session

@@ -56,14 +56,22 @@ PickRay pick_ray(const scene::Camera& camera, float x, float y, float aspect) {
   const vec3 right = glm::normalize(vec3(m[0])), up = glm::normalize(vec3(m[1]));
   const vec3 forward = -glm::normalize(vec3(m[2]));
   const float half = camera.orthographic ? camera.ymag : std::tan(0.5f * camera.yfov);
-  const vec3 offset = (2 * x - 1) * half * aspect * right + (1 - 2 * y) * half * up;
-  if (camera.orthographic) return {vec3(m[3]) + offset, forward};
-  return {vec3(m[3]), glm::normalize(forward + offset)};
+  const vec3 offset =
+      (2 * (x + camera.shift.x) - 1) * half * aspect * right + (1 - 2 * (y - camera.shift.y)) * half * up;
+  PickRay ray{vec3(m[3]), glm::normalize(forward + offset)};
+  if (camera.orthographic) ray = {vec3(m[3]) + offset, forward};
+  const scene::Section& section = camera.section;
+  const float before = section.offset - glm::dot(ray.origin, section.normal);
+  if (!section.cuts() || before <= 0) return ray;
+  const float speed = glm::dot(ray.direction, section.normal);
+  if (speed > 0) return {ray.origin + before / speed * ray.direction, ray.direction};
+  return {ray.origin, vec3(0)};
 }
 
 std::optional<Picked> pick(const scene::Scene& scene, const scene::Camera& camera, float x, float y,
                            float aspect) {
   const auto [origin, direction] = pick_ray(camera, x, y, aspect);
+  if (direction == vec3(0)) return std::nullopt;
   std::optional<Picked> best;
   float nearest = k_infinity;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {

@@ -13,7 +13,7 @@ namespace lucerna::session {
 struct Picked {
   uint32_t instance = 0;  ///< index into Scene::instances
   uint32_t material = 0;  ///< index into Scene::materials
-  float distance = 0;     ///< from the eye (orthographic: from the camera's plane), metres
+  float distance = 0;     ///< from the origin of the ray, metres
   vec3 position{0};       ///< in the world, metres
   vec3 normal{0};         ///< of the surface, unit, towards the eye
 };
@@ -21,7 +21,8 @@ struct Picked {
 struct PickRay {
   vec3 origin, direction;  ///< unit
 };
-/// The ray through a point of the picture: `x` to the right and `y` down, 0..1; `aspect` its width / height.
+/// The ray through a point of the picture, from the section plane where that cuts the view; with direction 0
+/// if it never passes the plane: `x` to the right and `y` down, 0..1; `aspect` its width / height.
 PickRay pick_ray(const scene::Camera& camera, float x, float y, float aspect);
 
 /// Tests one ray against all triangles: a few milliseconds for 300 000 triangles; for clicks. `x` to the

@@ -25,8 +25,9 @@ class Pilot {
   /// again.
   bool step(Engine& engine, const PictureView& picture, const std::function<bool()>& cancel);
   bool done() const { return schedule_.done(); }
-  /// Requires done(). Depends on scene, view, settings and seed only, except its duration.
-  solvers::Findings findings() const;
+  /// Requires done(). Depends on scene, view, settings and seed only, except its duration. `learns`: the
+  /// picture's paths will learn which lights arrive (lights.sampling), the pilot's do not.
+  solvers::Findings findings(bool learns) const;
 
  private:
   uint32_t width_, height_;  ///< of the picture

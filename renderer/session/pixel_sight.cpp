@@ -12,7 +12,9 @@ constexpr uint32_t k_most_turns = 6;
 }  // namespace
 
 film::PreviewCamera preview_camera(const shared::Frame& f) {
-  return {{f.camera_origin, f.camera_right, f.camera_up, f.camera_forward}, f.orthographic != 0};
+  return {{f.camera_origin, f.camera_right, f.camera_up, f.camera_forward},
+          f.orthographic != 0,
+          vec4(f.section_normal, f.section_offset)};
 }
 
 const gpu::Buffer* PixelSight::surfaces(const film::PreviewCamera& camera, uint32_t width,

@@ -171,6 +171,7 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
   if (display_) display_->restart(changes, factor.value_or(vec3(1)), known);
   if (changes.edits.contains(scene::Change::shape) || changes.edits.contains(scene::Change::shaders))
     overlays_.forget_surfaces();
+  begun_lens_ = setup_.camera.lens;
   draft_preparing_ = false;
   if (!known) path_pace_.reset();
   ++restarts_;
@@ -187,6 +188,8 @@ bool Renderer::keeps_light(const scene::Changes& changes) const {
     const OptionInfo* option = plan::find_option(key);
     return option && option->same_light;
   };
+  // Through another lens, pixels mix the light of other surfaces.
+  if (setup_.camera.lens != begun_lens_) return false;
   return std::all_of(changes.edits.begin(), changes.edits.end(),
                      [](scene::Change edit) {
                        return edit == scene::Change::camera || edit == scene::Change::size;

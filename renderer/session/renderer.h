@@ -362,6 +362,7 @@ class Renderer {
   bool draft_preparing_ = false;                ///< state at the latest preview sample
   double coarse_s_ = 0;                         ///< of the coarse preview samples since they began
   std::optional<stats::SamplePace> path_pace_;  ///< for a picture of one pixel
+  scene::Lens begun_lens_;                      ///< of the picture begun last
   Sampling sampling_;
   ImageProgress progress_{setup_, sampling_};
   film::SeenRange seen_;  ///< seen_range() of the errors in the adaptive schedule

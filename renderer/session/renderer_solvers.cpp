@@ -65,6 +65,8 @@ std::vector<std::shared_ptr<const solvers::Report>> Renderer::reports() {
   });
   if (const solvers::Report* lights = overlays_.lights_report())
     all.push_back(std::make_shared<const solvers::Report>(*lights));
+  if (const solvers::Report* focus = overlays_.focus_report())
+    all.push_back(std::make_shared<const solvers::Report>(*focus));
   return all;
 }
 

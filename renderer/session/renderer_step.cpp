@@ -98,7 +98,7 @@ bool Renderer::run_pilot(const std::function<bool()>& cancel) {
   if (!pilot_) pilot_ = std::make_unique<Pilot>(*device_, *setup_.engine, setup_.width, setup_.height);
   if (!pilot_->step(*setup_.engine, picture_view(), cancel)) return false;
   if (!pilot_->done()) return true;
-  findings_ = pilot_->findings();
+  findings_ = pilot_->findings(setup_.settings.text("lights.sampling") == "learned");
   pilot_.reset();
   const std::array<plan::Choice, 4> before = setup_.engine->plan().choices;
   scene::Changes changes;

@@ -9,6 +9,12 @@
 
 namespace lucerna::transport {
 
+float lens_radius(const scene::Camera& camera, float half_width) {
+  if (camera.orthographic || camera.lens.f_number == 0) return 0;
+  const float focal_length = 0.5f * scene::k_film_width / half_width;
+  return 0.5f * focal_length / camera.lens.f_number;
+}
+
 shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& camera,
                          const paths::Automaton& automaton, const FrameOptions& options) {
   shared::Frame f{};
@@ -19,8 +25,18 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.camera_origin = vec3(m[3]);
   f.camera_right = right * half_w;
   f.camera_up = up * half_h;
-  f.camera_forward = -glm::normalize(vec3(m[2]));
+  f.camera_axis = -glm::normalize(vec3(m[2]));
+  f.camera_forward = f.camera_axis;
+  if (camera.shift != vec2(0)) {
+    const vec3 aside = 2 * (camera.shift.x * f.camera_right + camera.shift.y * f.camera_up);
+    (camera.orthographic ? f.camera_origin : f.camera_forward) += aside;
+  }
   f.orthographic = camera.orthographic;
+  f.section_normal = camera.section.normal, f.section_offset = camera.section.offset;
+  f.lens_radius = lens_radius(camera, half_w);
+  f.focus_distance = camera.lens.focus_distance;
+  f.lens_blades = camera.lens.blades;
+  f.lens_rotation = camera.lens.rotation;
   f.width = options.width;
   f.height = options.height;
   f.seed = options.seed;
@@ -37,10 +53,14 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.most_branches = ~0u;
   f.scene_radius = flat.scene_radius;
   Box start;
-  start.grow(f.camera_origin);
+  start.grow(f.camera_origin - vec3(f.lens_radius)), start.grow(f.camera_origin + vec3(f.lens_radius));
   if (camera.orthographic)
     for (const float x : {-1.0f, 1.0f})
       for (const float y : {-1.0f, 1.0f}) start.grow(f.camera_origin + x * f.camera_right + y * f.camera_up);
+  // On a plane that cuts the view, paths may start anywhere.
+  if (camera.section.cuts())
+    start.grow(flat.scene_centre - vec3(flat.scene_radius)),
+        start.grow(flat.scene_centre + vec3(flat.scene_radius));
   f.camera_in_solids = upload::meets_solids(flat, start);
   if (flat.groups) f.sky_group = flat.groups->sky, f.sun_group = flat.groups->sun;
   const bool met = flat.effects.emissive || flat.environment_radiance != vec3(0);

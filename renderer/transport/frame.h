@@ -7,6 +7,10 @@
 
 namespace lucerna::transport {
 
+/// Radius of the circle around the lens [m]; 0: a pinhole. `half_width`: half the picture's width at
+/// distance 1.
+float lens_radius(const scene::Camera& camera, float half_width);
+
 struct FrameOptions {
   uint32_t width = 1, height = 1;
   uint32_t seed = 1;

@@ -13,6 +13,7 @@ using namespace shared;
 
 struct Wavefront::Impl {
   gpu::Device& device;
+  gpu::ShaderCompiler& compiler;
   gpu::Stream stream;
   HostTrace host_trace;
   uint32_t slots;
@@ -28,7 +29,12 @@ struct Wavefront::Impl {
   gpu::Buffer frame, blocks, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states,
       counters, branching, branching_queue;
   std::array<gpu::Buffer, 2> queues, shadow_queues;
-  gpu::Kernel camera, shade, shadow, film_add, film_add_images, lanes_add, lanes_add_images, groups_add,
+  /// Of cameras with a lens (+ 1), and with a section plane (+ 2); those but the first are compiled at the
+  /// first frame that needs them.
+  std::array<gpu::Kernel, 4> cameras;
+  gpu::Defines camera_defines;
+  size_t camera_kind = 0;
+  gpu::Kernel shade, shadow, film_add, film_add_images, lanes_add, lanes_add_images, groups_add,
       groups_add_images, unmixed_add, unmixed_add_images, trace_closest, trace_any, trace_non_opaque;
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
   gpu::Resources film_resources;
@@ -37,8 +43,9 @@ struct Wavefront::Impl {
   std::shared_ptr<LightLearning> learning;
   TransportStats stats;
 
-  Impl(gpu::Device& d, uint32_t n, const upload::Effects& effects, HostTrace trace)
+  Impl(gpu::Device& d, gpu::ShaderCompiler& c, uint32_t n, const upload::Effects& effects, HostTrace trace)
       : device(d),
+        compiler(c),
         stream(d),
         host_trace(std::move(trace)),
         slots(n),
@@ -68,6 +75,14 @@ struct Wavefront::Impl {
     branching_queue = make("branching queue", uint64_t(n) * 4, gpu::Memory::device);
     for (auto& q : queues) q = make("queue", uint64_t(n) * 4, queue_memory);
     for (auto& q : shadow_queues) q = make("shadow queue", uint64_t(n) * 4, queue_memory);
+  }
+
+  void compile_camera(size_t kind) {
+    if (cameras[kind]) return;
+    gpu::Defines defines = camera_defines;
+    if (kind & 1) defines["LUCERNA_THIN_LENS"] = "1";
+    if (kind & 2) defines["LUCERNA_SECTION"] = "1";
+    cameras[kind] = gpu::Kernel(device, compiler, "transport/camera.comp", defines);
   }
 
   void rebind_lookup() {
@@ -220,13 +235,14 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
                      uint32_t slots, HostTrace host_trace, const gpu::Defines& extra_defines,
                      std::function<void(gpu::Resources&)> bind_lookup, const HitClassRules& rules,
                      std::shared_ptr<LightLearning> learning)
-    : impl_(std::make_unique<Impl>(device, slots, scene.effects(), std::move(host_trace))) {
+    : impl_(std::make_unique<Impl>(device, compiler, slots, scene.effects(), std::move(host_trace))) {
   Impl& w = *impl_;
   const Timer timer;
   gpu::Defines defines = scene.defines();
   for (const auto& [name, value] : extra_defines) defines[name] = value;
   w.writes_bias = defines.contains("LUCERNA_LOOKUP_BIAS");
-  w.camera = gpu::Kernel(device, compiler, "transport/camera.comp", defines);
+  w.camera_defines = defines;
+  w.compile_camera(0);
   w.shade = gpu::Kernel(device, compiler, "transport/shade.comp", defines);
   w.shadow = gpu::Kernel(device, compiler, "transport/shadow.comp", defines);
   gpu::Defines adding = defines;
@@ -264,7 +280,7 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   }
   // Drivers that compile at the first dispatch do so here: an item of no paths.
   w.stream.fill(w.counters, 0);
-  w.stream.dispatch(w.camera, w.main[0], TransportPush{0, 0, 64, 0}, 1);
+  w.stream.dispatch(w.cameras[0], w.main[0], TransportPush{0, 0, 64, 0}, 1);
   w.stream.dispatch(w.shade, w.main[0], TransportPush{}, 1);
   w.stream.dispatch(w.shadow, w.shade_shadow[0], TransportPush{}, 1);
   if (!w.host_trace) {
@@ -280,6 +296,10 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
 Wavefront::~Wavefront() = default;
 
 void Wavefront::set_frame(const Frame& frame, uint32_t enabled) {
+  Impl& w = *impl_;
+  const size_t kind = (frame.lens_radius > 0 ? 1 : 0) + (frame.section_normal != vec3(0) ? 2 : 0);
+  w.compile_camera(kind);
+  w.camera_kind = kind;
   Frame known = frame;
   if (impl_->learning) impl_->learning->describe(known);
   impl_->frame.write(&known, sizeof known);
@@ -347,7 +367,9 @@ bool Wavefront::probe(const schedule::WorkItem& item, const std::function<bool()
   if (count > w.slots) throw_error("transport", "work item of {} paths, room for {}", count, w.slots);
   w.blocks.write(std::span<const WorkBlock>(item.blocks));
   const TransportPush push{count, 0, static_cast<uint32_t>(item.blocks.size()) * 64, 0};
-  const auto begin = [&] { w.stream.dispatch(w.camera, w.main[0], push, Impl::workgroups(count), "camera"); };
+  const auto begin = [&] {
+    w.stream.dispatch(w.cameras[w.camera_kind], w.main[0], push, Impl::workgroups(count), "camera");
+  };
   return w.trace_paths(count, {.begin = begin, .first_hits = {}, .end = {}}, cancel);
 }
 

@@ -73,7 +73,8 @@ class Wavefront {
             std::shared_ptr<LightLearning> learning = {});
   ~Wavefront();
 
-  /// Sets the frame's constants; `enabled`: computed components (bit i).
+  /// Sets the frame's constants; `enabled`: computed components (bit i). Compiles the kernel of cameras with
+  /// a lens or a section plane for the first of them (throws Error, located).
   void set_frame(const shared::Frame& frame, uint32_t enabled);
   /// Binds the scene's buffers, after DeviceScene::exchange.
   void rebind(const upload::DeviceScene& scene);

@@ -77,6 +77,11 @@ bool preview_lit(PreviewLight l, PreviewSurface s) { return l.of[0].w >= 0.0 || 
 
 // Centre of a pixel in a picture, -1..1 to the right and up.
 vec2 preview_position(uvec2 pixel, vec2 size) { return vec2(2.0, -2.0) * (vec2(pixel) + 0.5) / size + vec2(-1.0, 1.0); }
+// The unit view axis, without lens shift.
+vec3 preview_axis(PreviewCamera camera) {
+  vec3 across = normalize(cross(camera.right, camera.up));
+  return dot(across, camera.forward) < 0.0 ? -across : across;
+}
 // The point at that position and depth, from the camera's origin; `parallel`: orthographic.
 vec3 preview_point(PreviewCamera camera, bool parallel, vec2 position, float depth) {
   vec3 ray = position.x * camera.right + position.y * camera.up;
@@ -84,9 +89,11 @@ vec3 preview_point(PreviewCamera camera, bool parallel, vec2 position, float dep
 }
 // Where a point from the camera's origin is in a picture [pixels], if its depth is above 0.
 vec2 preview_projection(PreviewCamera camera, bool parallel, vec3 point, vec2 size, out float depth) {
-  depth = dot(point, camera.forward);
+  vec3 axis = preview_axis(camera);
+  depth = dot(point, axis);
   float ratio = parallel ? 1.0 : 1.0 / depth;
-  vec2 q = ratio * vec2(dot(point, camera.right) / dot(camera.right, camera.right), dot(point, camera.up) / dot(camera.up, camera.up));
+  point = ratio * point - (camera.forward - axis);
+  vec2 q = vec2(dot(point, camera.right) / dot(camera.right, camera.right), dot(point, camera.up) / dot(camera.up, camera.up));
   return (q * vec2(0.5, -0.5) + 0.5) * size;
 }
 // Depth of a point where there is no surface.

@@ -42,6 +42,15 @@ vec3 camera_shift(vec2 xy) {
 }
 vec3 camera_direction(vec3 shift) { return normalize(frame.camera_forward + (frame.orthographic != 0u ? vec3(0.0) : shift)); }
 
+// Distance along a camera ray to the plane that cuts the view, if the ray starts before it, else 0; infinite if it never passes
+// the plane: then it sees nothing.
+float section_distance(vec3 origin, vec3 direction) {
+  float before = frame.section_offset - dot(origin, frame.section_normal);
+  float speed = dot(direction, frame.section_normal);
+  if (before <= 0.0) return 0.0;
+  return speed > 0.0 ? before / speed : k_infinity;
+}
+
 uint path_automaton(PathState p) { return p.bits & k_path_state_mask; }
 uint path_depth(PathState p) { return (p.bits & ~k_path_branched) >> k_path_events_shift; }
 

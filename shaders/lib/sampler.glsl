@@ -9,6 +9,7 @@
 
 // Pads: 0 pixel, 1 lens, then k_pads_per_vertex for every scattering event.
 const uint k_pad_pixel = 0u;
+const uint k_pad_lens = 1u;
 const uint k_pad_first_vertex = 2u;
 const uint k_pads_per_vertex = 5u;
 const uint k_pad_light_choice = 0u;  // x: which light, y: roulette

@@ -181,6 +181,16 @@
 #define LUCERNA_STOPPING_ONLY 0
 #endif
 
+// The camera has a lens (Frame::lens_radius).
+#ifndef LUCERNA_THIN_LENS
+#define LUCERNA_THIN_LENS 0
+#endif
+
+// The view is cut (Frame::section_normal).
+#ifndef LUCERNA_SECTION
+#define LUCERNA_SECTION 0
+#endif
+
 // Light tracing: splats read by camera paths, and targets of connected light.
 #ifndef LUCERNA_SPLATS
 #define LUCERNA_SPLATS 0

@@ -5,11 +5,15 @@
 // x stands for irradiance F / dA there, so that the pixel gets
 //   F f_D(wi, we) |wi.ns| / |wi.ng| * |we.ng| d / (z^3 A),
 // d: distance to the eye, z: the part of it along the view, A: the pixel's area; for dA |we.ng| / d^2 is a solid angle of
-// cos^3 times an area of that plane. With parallel rays it is |we.ng| / A, A the area of the pixel itself.
+// cos^3 times an area of that plane. With parallel rays it is |we.ng| / A, A the area of the pixel itself. With a lens the eye is a
+// random point of it: its density is the inverse of the lens's area, over which the pixel is a mean (lib/lens.glsl).
 #include "shaders/shared/emission.h"
 #include "transport/light_vertex.glsl"
 #include "shaders/shared/splat.h"
 #include "lib/emission.glsl"
+#if LUCERNA_THIN_LENS
+#include "lib/lens.glsl"
+#endif
 #if LUCERNA_SPLATS_WEIGHED
 layout(scalar) readonly buffer LightRoundBlock { EmitPush light_round; };
 #endif
@@ -27,20 +31,29 @@ struct Seen {
   bool inside;      // the pixel is in the band
 };
 
-Seen camera_sees(vec3 x) {
+// `eye`: from the camera's origin.
+Seen camera_sees(vec3 x, vec3 eye) {
   vec3 off = x - frame.camera_origin;
-  float z = dot(off, frame.camera_forward), d = length(off);
+#if LUCERNA_THIN_LENS
+  off -= eye;
+#endif
+  float z = dot(off, frame.camera_axis), d = length(off);
   bool parallel = frame.orthographic != 0u;
+  vec3 aside = frame.camera_forward - frame.camera_axis;
   float right2 = dot(frame.camera_right, frame.camera_right), up2 = dot(frame.camera_up, frame.camera_up);
   float scale = parallel ? 1.0 : 1.0 / max(z, 1e-30);
   vec2 ndc = vec2(dot(off, frame.camera_right) / right2, -dot(off, frame.camera_up) / up2) * scale;
+  ndc -= vec2(dot(aside, frame.camera_right) / right2, -dot(aside, frame.camera_up) / up2);
+#if LUCERNA_THIN_LENS
+  ndc += vec2(dot(eye, frame.camera_right) / right2, -dot(eye, frame.camera_up) / up2) / frame.focus_distance;
+#endif
   vec2 at = floor((ndc * 0.5 + 0.5) * vec2(frame.width, frame.height));
   float area = 4.0 * sqrt(right2 * up2) / (float(frame.width) * float(frame.height));
   Seen s;
   s.inside = z > 0.0 && at.x >= 0.0 && at.y >= 0.0 && at.x < float(frame.width) && at.y < float(frame.height);
   s.pixel = s.inside ? uint(at.y) * frame.width + uint(at.x) - splat_frame.first : 0u;
   s.inside = s.inside && s.pixel < splat_frame.pixels;
-  s.towards = parallel ? -frame.camera_forward : -off / max(d, 1e-30);
+  s.towards = parallel ? -frame.camera_axis : -off / max(d, 1e-30);
   s.distance = parallel ? z : d;
   s.per_cosine = (parallel ? 1.0 : d / (z * z * z)) / area;
   return s;
@@ -74,8 +87,22 @@ void main() {
   bool diffuse = max3(v.bsdf.diffuse_albedo + v.bsdf.transmitted_albedo) > 0.0;
   // The number of events of the whole path, including this surface's, is within the limit of eye paths.
   bool wanted = v.lit && diffuse && automaton_component(state) < k_component_count && depth <= frame.max_depth;
-  Seen seen = camera_sees(v.surface.position);
+  vec3 eye = vec3(0.0);
+#if LUCERNA_THIN_LENS
+  eye = lens_point(sample_vertex(random, depth, k_pad_light_uv));  // free behind the emission
+#endif
+  Seen seen = camera_sees(v.surface.position, eye);
   wanted = wanted && seen.inside;
+#if LUCERNA_SECTION
+  // What the plane cuts off is not visible; what lies behind it is, whatever is before the plane.
+  float behind = dot(v.surface.position, frame.section_normal) - frame.section_offset;
+  float nearing = -dot(seen.towards, frame.section_normal);
+  bool cut = seen.distance * nearing > behind;  // the eye is before the plane
+  if (cut) {
+    wanted = wanted && behind >= 0.0;
+    seen.distance = min(seen.distance, behind / max(nearing, 1e-30));
+  }
+#endif
   // Alpha coverage: the visible share of the surface.
   vec3 light = v.coverage * v.arriving * reflected_to_eye(v.surface, seen.towards, -ray.direction) *
                (abs(dot(seen.towards, v.surface.normal_g)) * seen.per_cosine);

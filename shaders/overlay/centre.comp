@@ -15,6 +15,11 @@ void main() {
   ray.origin = frame.camera_origin + (frame.orthographic != 0u ? shift : vec3(0.0));
   ray.direction = camera_direction(shift);
   ray.tmax = k_infinity;
+  float cut = section_distance(ray.origin, ray.direction);
+  if (cut >= k_infinity)
+    ray.tmax = -1.0, cut = 0.0;
+  else
+    ray.origin += cut * ray.direction;
   ray.slot = slot;
   store_ray(slot, ray);
   PathState p;
@@ -27,7 +32,7 @@ void main() {
 #if LUCERNA_VOLUMES
   for (uint once = 0u; once < frame.camera_in_solids; ++once) p.media = media_at(ray.origin, p.pixel);
 #endif
-  p.travelled = 0.0;
+  p.travelled = cut;
   p.eta_scale = 1.0;
   p.nulls = 0u;
   p.light_group = 0u;

@@ -53,7 +53,7 @@ Seen seen_at(uint pixel, uint width, uint height) {
     s.solid = surface.w > 0.0;
     place_seen(s, (vec2(sheet_xy) + 0.5) / vec2(width, height), surface.w);
     s.size = 2.0 * length(frame.camera_up) / float(height) * (frame.orthographic != 0u ? 1.0 : s.depth);
-    s.normal = s.solid ? surface.xyz : -frame.camera_forward;
+    s.normal = s.solid ? surface.xyz : -frame.camera_axis;
     return s;
   }
   uvec2 film = uvec2(sheet.film_width, sheet.film_height), xy = sheet_xy / sheet.scale;
@@ -66,7 +66,7 @@ Seen seen_at(uint pixel, uint width, uint height) {
   count = sampled ? count : coarse_count[coarse];
   float hits = albedo.w;
   s.solid = hits > 0.5 * float(count) && hits > 0.0;
-  s.normal = dot(sums.xyz, sums.xyz) > 0.0 ? normalize(sums.xyz) : -frame.camera_forward;
+  s.normal = dot(sums.xyz, sums.xyz) > 0.0 ? normalize(sums.xyz) : -frame.camera_axis;
   vec2 at = (vec2(sheet_xy) + 0.5) / vec2(width, height);
   vec2 known = sampled ? (vec2(xy) + 0.5) / vec2(film) : (vec2(coarse_xy) + 0.5) / vec2(coarse_film);
   float depth = sums.w / max(hits, 1.0), moved = depth_on_plane(s.normal, known, depth, at);
@@ -95,9 +95,11 @@ float depth_between(float a, float b, float t) {
 // Projection: pixels from the upper left corner, and depth; 0 or less behind the eye, where the pixels are invalid.
 vec3 to_picture(vec3 position, uint width, uint height) {
   vec3 away = position - frame.camera_origin;
-  float depth = dot(away, frame.camera_forward);
+  float depth = dot(away, frame.camera_axis);
   float scale = frame.orthographic != 0u ? 1.0 : 1.0 / max(depth, 1e-20);
-  vec2 ndc = scale * vec2(dot(away, frame.camera_right) / dot(frame.camera_right, frame.camera_right),
+  // Within the plane at distance 1, from the middle of the picture.
+  away = scale * away - (frame.camera_forward - frame.camera_axis);
+  vec2 ndc = vec2(dot(away, frame.camera_right) / dot(frame.camera_right, frame.camera_right),
                           -dot(away, frame.camera_up) / dot(frame.camera_up, frame.camera_up));
   return vec3((0.5 * ndc + 0.5) * vec2(width, height), depth);
 }

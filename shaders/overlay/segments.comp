@@ -17,8 +17,8 @@ void main() {
   uint number = push.first + index;
   if (piece == 0u) inks[number] = vec4(s.color, s.alpha);
   slack = s.slack;
-  float from = dot(s.from - frame.camera_origin, frame.camera_forward);
-  float to = dot(s.to - frame.camera_origin, frame.camera_forward), near = k_near * max(from, to);
+  float from = dot(s.from - frame.camera_origin, frame.camera_axis);
+  float to = dot(s.to - frame.camera_origin, frame.camera_axis), near = k_near * max(from, to);
   vec3 a = from < near ? mix(s.from, s.to, (near - from) / (to - from)) : s.from;
   vec3 b = to < near ? mix(s.to, s.from, (near - to) / (from - to)) : s.to;
   draw_stroke(to_picture(a, push.width, push.height), to_picture(b, push.width, push.height),

@@ -72,6 +72,14 @@ struct OverlayLayPush {
   float edge_alpha;  ///< of dark edges
 };
 
+/// Depth of field over the picture (overlay/focus.comp). Depths along the view axis [m], colours encoded.
+struct OverlayFocusPush {
+  uint width, height;
+  float focus;              ///< of the plane of focus
+  float nearest, farthest;  ///< between which surfaces are sharp
+  vec3 line, tint;          ///< of the plane of focus, and of what is sharp
+};
+
 /// A line over the picture, between positions in pixels from its upper left corner; faint where a surface hides it.
 struct OverlayLine {
   vec2 from, to;

@@ -25,7 +25,7 @@ LUCERNA_CONST uint k_preview_surface_before = 1u;  ///< the previous picture
 LUCERNA_CONST uint k_preview_surface_seen = 2u;    ///< a traced ray
 
 struct PreviewCamera {
-  vec3 origin, right, up, forward;  ///< as Frame's
+  vec3 origin, right, up, forward;  ///< as Frame's; forward to the middle of the picture
 };
 
 struct PreviewPackPush {

@@ -111,8 +111,15 @@ struct Frame {
   uint height;
   vec3 camera_up;          ///< likewise, half the height
   uint orthographic;
-  vec3 camera_forward;     ///< unit
+  vec3 camera_forward;     ///< to the middle of the picture; its part along camera_axis is 1 (lens shift)
   uint seed;
+  vec3 camera_axis;        ///< unit, across camera_right and camera_up; depths are along it
+  vec3 section_normal;     ///< unit, into the part that the camera sees; 0: the view is not cut
+  float section_offset;    ///< of the plane along it [m]
+  float lens_radius;       ///< of the circle around the lens [m]; 0: a pinhole, which kernels without LUCERNA_THIN_LENS assume
+  float focus_distance;    ///< of the plane of focus, along camera_forward [m]
+  uint lens_blades;        ///< corners of the lens; 0: round
+  float lens_rotation;     ///< of its first corner, from camera_right towards camera_up
   vec3 environment_radiance;  ///< factor of the environment map
   uint light_count;
   uint first_lamp, lamp_count;  ///< lamps among the lights, for resampling (LUCERNA_LAMP_CANDIDATES)

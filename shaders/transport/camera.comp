@@ -4,6 +4,9 @@
 #include "lib/sampler.glsl"
 #include "lib/blocks.glsl"
 #include "lib/media.glsl"
+#if LUCERNA_THIN_LENS
+#include "lib/lens.glsl"
+#endif
 #if LUCERNA_SPLATS
 #include "shaders/shared/splat.h"
 layout(scalar) readonly buffer SplatBlock { SplatFrame splat_frame; };
@@ -29,7 +32,20 @@ void main() {
   Ray ray;
   ray.origin = frame.camera_origin + (frame.orthographic != 0u ? shift : vec3(0.0));
   ray.direction = normalize(frame.camera_forward + (frame.orthographic != 0u ? vec3(0.0) : shift));
+#if LUCERNA_THIN_LENS
+  vec3 from = lens_point(sample_2d(s, k_pad_lens));
+  ray.origin += from;
+  ray.direction = normalize(frame.camera_forward + shift - from / frame.focus_distance);
+#endif
   ray.tmax = inside ? k_infinity : -1.0;
+#if LUCERNA_SECTION
+  // The ray starts on the plane. Without a way through it, it ends at once, without a hit.
+  float cut = section_distance(ray.origin, ray.direction);
+  if (cut >= k_infinity)
+    ray.tmax = -1.0;
+  else
+    ray.origin += cut * ray.direction;
+#endif
   ray.slot = slot;
   store_ray(slot, ray);
   PathState p;

@@ -30,7 +30,7 @@ struct View {
     f.width = width, f.height = height;
     f.camera_right = vec3(half() * float(width) / float(height), 0, 0);
     f.camera_up = vec3(0, half(), 0);
-    f.camera_forward = vec3(0, 0, -1);
+    f.camera_forward = f.camera_axis = vec3(0, 0, -1);
     f.orthographic = parallel;
     return f;
   }

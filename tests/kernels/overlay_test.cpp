@@ -35,13 +35,15 @@ struct Bed {
   overlay::Painter painter{device, compiler};
   shared::Frame frame{};
 
-  Bed(uint32_t width, uint32_t height, bool orthographic = false, uint32_t enlarged = 1)
+  /// `aside`: lens shift, in halves of the picture.
+  Bed(uint32_t width, uint32_t height, bool orthographic = false, uint32_t enlarged = 1, vec2 aside = vec2(0))
       : film(device, width, height), coarse(device, std::max(1u, width / 4), std::max(1u, height / 4)) {
     frame.width = width, frame.height = height;
     const float scale = orthographic ? 2.0f : 0.5f;
     frame.camera_right = vec3(scale * float(width) / float(height), 0, 0);
     frame.camera_up = vec3(0, scale, 0);
-    frame.camera_forward = vec3(0, 0, -1);
+    frame.camera_axis = vec3(0, 0, -1);
+    frame.camera_forward = frame.camera_axis + aside.x * frame.camera_right + aside.y * frame.camera_up;
     frame.orthographic = orthographic;
     wavefront.set_frame(frame, 15);
     shared::Frame sheet_frame = frame;
@@ -118,8 +120,9 @@ OverlaySegment line(const vec3& from, const vec3& to, const glm::ivec3& bytes) {
 TEST_CASE(
     "points in front of a surface, and where there is none, are drawn in their colour; those behind are "
     "not") {
-  for (const bool orthographic : {false, true}) {
-    Bed bed(48, 32, orthographic);
+  for (const auto& [orthographic, aside] :
+       {std::pair(false, vec2(0)), std::pair(true, vec2(0)), std::pair(false, vec2(1.5f, -0.75f))}) {
+    Bed bed(48, 32, orthographic, 1, aside);
     std::vector<OverlayPoint> points;
     std::vector<uint32_t> expected(bed.canvas.pixels(), k_base);
     // Near and far alternately; the nearest ones behind the wall are within the tolerance of half a per cent

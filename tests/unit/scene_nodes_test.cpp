@@ -138,6 +138,33 @@ TEST_CASE("cameras") {
   CHECK(flat.cameras[0].ymag == 2);
 }
 
+TEST_CASE("a camera's lens is read from its extras, and an invalid one leaves a pinhole") {
+  const auto loaded = [](const json& own) {
+    return with_camera({{"type", "perspective"},
+                        {"perspective", {{"yfov", 0.5}, {"znear", 0.1}}},
+                        {"extras", {{"lucerna", own}}}})
+        .load();
+  };
+  const Scene scene = loaded(
+      {{"f_number", 2.8}, {"focus_distance", 1.5}, {"aperture_blades", 6}, {"aperture_rotation", 0.25}});
+  CHECK(scene.cameras.at(0).lens ==
+        scene::Lens{.f_number = 2.8f, .focus_distance = 1.5f, .blades = 6, .rotation = 0.25f});
+  CHECK(loaded({{"unknown", 1}}).cameras.at(0).lens == scene::Lens{});
+  for (const auto& [own, why] :
+       {std::pair<json, std::string>{{{"f_number", 0}, {"focus_distance", 1}}, "f_number: 0 is not above 0"},
+        {{{"f_number", 2}}, "its plane of focus is 0 m ahead"},
+        {{{"f_number", 2}, {"focus_distance", -1}}, "its plane of focus is -1 m ahead"},
+        {{{"f_number", "wide"}}, "expected a number"},
+        {{{"f_number", 2}, {"focus_distance", 1}, {"aperture_blades", 2}},
+         "aperture_blades: 2 is neither 0"}}) {
+    INFO(own.dump());
+    const Scene pinhole = loaded(own);
+    CHECK(pinhole.cameras.at(0).lens.f_number == 0);
+    CHECK(warnings_with(pinhole, "1 lenses of cameras that cannot be used: pinholes instead") == 1);
+    CHECK(warnings_with(pinhole, why) == 1);
+  }
+}
+
 TEST_CASE("an invalid camera does not prevent a scene from loading") {
   const auto left_out = [](const json& camera, const std::string& why) {
     Asset asset = with_camera(camera);

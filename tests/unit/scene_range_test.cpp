@@ -50,6 +50,28 @@ TEST_CASE("cameras far away, or without a frame or a lens, are refused") {
   }
 }
 
+TEST_CASE("lenses without a sensible f-number, focus or aperture are refused, and pinholes need none") {
+  scene::Camera camera;
+  camera.lens = {.f_number = 0, .focus_distance = -1};
+  CHECK(refusal(camera).empty());
+  for (const float f : {-1.f, 0.01f, 2000.f, k_inf, k_nan}) {
+    camera.lens = {.f_number = f, .focus_distance = 1};
+    CHECK_THAT(refusal(camera), Contains("camera: its f-number is") && Contains("0 for a pinhole"));
+  }
+  for (const float focus : {0.f, -2.f, 2e9f, k_inf, k_nan}) {
+    camera.lens = {.f_number = 2, .focus_distance = focus};
+    CHECK_THAT(refusal(camera), Contains("camera: its plane of focus is"));
+  }
+  for (const uint32_t blades : {1u, 2u, 33u}) {
+    camera.lens = {.f_number = 2, .focus_distance = 1, .blades = blades};
+    CHECK_THAT(refusal(camera), Contains("blades, expected 3 to 32"));
+  }
+  camera.lens = {.f_number = 2, .focus_distance = 1, .blades = 6, .rotation = k_nan};
+  CHECK_THAT(refusal(camera), Contains("rotation"));
+  camera.lens.rotation = 7;
+  CHECK(refusal(camera).empty());
+}
+
 TEST_CASE("lamps, materials and environments beyond the range of sums of paths are refused") {
   scene::Light lamp;
   lamp.name = "Lamp";

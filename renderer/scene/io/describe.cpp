@@ -134,6 +134,12 @@ Json describe_cameras(const Scene& scene) {
     else
       item["yfov_degrees"] = glm::degrees(camera.yfov);
     if (camera.aspect > 0) item["aspect"] = camera.aspect;
+    if (camera.shift != vec2(0)) item["shift"] = {camera.shift.x, camera.shift.y};
+    if (const Lens& lens = camera.lens; !camera.orthographic && lens.f_number > 0) {
+      item["f_number"] = lens.f_number, item["focus_distance"] = lens.focus_distance;
+      item["aperture_blades"] = lens.blades;
+      if (lens.blades > 0) item["aperture_rotation_degrees"] = glm::degrees(lens.rotation);
+    }
     item["position"] = rgb(vec3(camera.to_world[3]));
     list.push_back(item);
   }

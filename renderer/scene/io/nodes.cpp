@@ -6,6 +6,7 @@
 #include <map>
 
 #include "scene/io/accessor.h"
+#include "scene/range.h"
 
 namespace lucerna::scene {
 namespace {
@@ -335,12 +336,45 @@ class Walker {
       document_.warnings.add("{} cameras that cannot be used: left out", error.what());
       return;
     }
+    if (!camera.orthographic) try {
+        Camera with_lens = camera;
+        read_extras(item, with_lens);
+        check_range(with_lens);
+        camera = with_lens;
+      } catch (const Error& error) {
+        document_.warnings.add("{} lenses of cameras that cannot be used: pinholes instead", error.what());
+      }
     if (camera.xmag < 0) x = -x;
     if (camera.ymag < 0) y = -y;
     camera.xmag = std::abs(camera.xmag), camera.ymag = std::abs(camera.ymag);
     camera.to_world = mat4(dmat4(dvec4(x, 0), dvec4(y, 0), dvec4(z, 0), dvec4(0, 0, 0, 1)));
     placement_.cameras.push_back(world);
     scene_.cameras.push_back(camera);
+  }
+
+  /// extras.lucerna of a glTF camera: what no extension covers.
+  static void read_extras(const Item& item, Camera& camera) {
+    const auto extras = item.find("extras");
+    if (!extras || !extras->json().is_object()) return;
+    const auto own = extras->find("lucerna");
+    if (!own) return;
+    Lens& lens = camera.lens;
+    if (const auto f = own->find("f_number")) {
+      lens.f_number = static_cast<float>(f->number());
+      if (!(lens.f_number > 0)) f->fail("{} is not above 0", lens.f_number);
+    }
+    if (const auto focus = own->find("focus_distance"))
+      lens.focus_distance = static_cast<float>(focus->number());
+    if (own->find("aperture_blades")) {
+      const double blades = own->at("aperture_blades").number();
+      if (!(blades == 0 || (blades >= 3 && blades <= k_max_blades)) || blades != std::floor(blades))
+        own->at("aperture_blades")
+            .fail("{} is neither 0 nor a whole number from 3 to {}", blades, k_max_blades);
+      lens.blades = static_cast<uint32_t>(blades);
+    }
+    lens.rotation = static_cast<float>(own->number("aperture_rotation", 0));
+    camera.shift.x = static_cast<float>(own->number("shift_right", 0));
+    camera.shift.y = static_cast<float>(own->number("shift_up", 0));
   }
 
   // Fills what a glTF camera says of its lens; negative xmag and ymag, which mirror the picture, stay so.

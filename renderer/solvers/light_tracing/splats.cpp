@@ -20,16 +20,21 @@ Splats::Splats(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::De
       block_(device, {.name = "splats", .bytes = sizeof(SplatFrame)}),
       round_(device, {.name = "round of light paths", .bytes = sizeof(EmitPush)}),
       picture_(device, {.name = "picture of splats", .bytes = 16, .texel = true}) {
-  summed_ = compile(false);
+  kernels(false, false, false);
   write_frame();
 }
 
-Splats::Kernels Splats::compile(bool weighed) const {
+const Splats::Kernels& Splats::kernels(bool weighed, bool lens, bool section) {
+  Kernels& k = kernels_[weighed][lens][section];
+  if (k.vertex) return k;
   gpu::Defines defines = scene_defines_;
   defines["LUCERNA_SPLATS_SUMMED"] = "1";
   if (weighed) defines["LUCERNA_SPLATS_WEIGHED"] = "1";
-  return {.vertex = gpu::Kernel(device_, compiler_, "light_tracing/trace.comp", defines),
-          .arrival = gpu::Kernel(device_, compiler_, "transport/shadow.comp", defines)};
+  k.arrival = gpu::Kernel(device_, compiler_, "transport/shadow.comp", defines);
+  if (lens) defines["LUCERNA_THIN_LENS"] = "1";
+  if (section) defines["LUCERNA_SECTION"] = "1";
+  k.vertex = gpu::Kernel(device_, compiler_, "light_tracing/trace.comp", defines);
+  return k;
 }
 
 void Splats::bind(gpu::Resources& resources) const {
@@ -86,20 +91,21 @@ void Splats::clear(transport::Wavefront& wavefront) {
 }
 
 Splats::Went Splats::batch(transport::Wavefront& wavefront, const transport::LightSource& lights,
-                           const transport::LightRound& round, const Kernels& kernels, const Frame& picture,
+                           const transport::LightRound& round, bool weighed, const Frame& picture,
                            uint32_t enabled, const std::function<bool()>& cancel) {
+  const Kernels& used = kernels(weighed, picture.lens_radius > 0, picture.section_normal != vec3(0));
   if (!tracing_ || next_.round != round.number || next_.paths != round.paths) {
     next_ = {.round = round.number, .paths = round.paths};
     traced_ = 0, tracing_ = true, band_ = 0;
   }
-  if (traced_ == 0) write_frame(&kernels == &weighed_);
+  if (traced_ == 0) write_frame(weighed);
   const uint32_t count = std::min(wavefront.slots(), round.paths - traced_);
   const EmitPush push{count, traced_, round.number, 1 / float(round.paths),
                       transport::LightEmitter::stratum_step(round.paths)};
   round_.write(&push, sizeof push);
   uint32_t counts[k_splat_counts] = {};
   counts_.write(counts, sizeof counts);
-  const transport::LightVertexWork work{.vertex = &kernels.vertex,
+  const transport::LightVertexWork work{.vertex = &used.vertex,
                                         .stage = "light vertex",
                                         .bind =
                                             [&](gpu::Resources& r) {
@@ -109,7 +115,7 @@ Splats::Went Splats::batch(transport::Wavefront& wavefront, const transport::Lig
                                               r.set("LightRoundBlock", round_);
                                               if (contributions_) r.set("SplatContributions", contributions_);
                                             },
-                                        .arrival = &kernels.arrival};
+                                        .arrival = &used.arrival};
   const Timer timer;
   if (!emitter_.trace(wavefront, lights, round, traced_, count, work, picture, enabled, cancel)) {
     // Part of its light has arrived already.
@@ -131,7 +137,7 @@ bool Splats::trace(transport::Wavefront& wavefront, const transport::LightSource
                    const std::function<bool()>& cancel) {
   complete_ = false;
   if (lights.power() > 0) {
-    const Went went = batch(wavefront, lights, round, summed_, picture, enabled, cancel);
+    const Went went = batch(wavefront, lights, round, false, picture, enabled, cancel);
     if (went != Went::complete) return went == Went::on;
   } else {
     next_ = {.round = round.number};
@@ -172,7 +178,6 @@ std::optional<std::vector<double>> Splats::weigh(transport::Wavefront& wavefront
                                                  const transport::LightSource& lights,
                                                  const transport::LightRound& round, const Frame& picture,
                                                  uint32_t enabled, const std::function<bool()>& cancel) {
-  if (!weighed_.vertex) weighed_ = compile(true);
   const uint32_t strata = lights.strata();
   if (!tracing_) {
     gpu::make_room(
@@ -181,7 +186,7 @@ std::optional<std::vector<double>> Splats::weigh(transport::Wavefront& wavefront
     wavefront.stream().fill(contributions_, 0);
     wavefront.account_stages();
   }
-  const Went went = batch(wavefront, lights, round, weighed_, picture, enabled, cancel);
+  const Went went = batch(wavefront, lights, round, true, picture, enabled, cancel);
   if (went != Went::complete) return std::nullopt;
   tracing_ = false;
   std::vector<double> contributions;

@@ -58,11 +58,12 @@ class Splats {
   struct Kernels {
     gpu::Kernel vertex, arrival;
   };
-  Kernels compile(bool weighed) const;
+  /// Compiled at the first use.
+  const Kernels& kernels(bool weighed, bool lens, bool section);
   enum class Went { cancelled, on, complete };
   Went batch(transport::Wavefront& wavefront, const transport::LightSource& lights,
-             const transport::LightRound& round, const Kernels& kernels, const shared::Frame& picture,
-             uint32_t enabled, const std::function<bool()>& cancel);
+             const transport::LightRound& round, bool weighed, const shared::Frame& picture, uint32_t enabled,
+             const std::function<bool()>& cancel);
   void write_frame(bool whole = false);  ///< whole: covers all bands
   uint32_t bands() const { return (frame_.width * frame_.height - 1) / band_pixels_ + 1; }
   uint32_t pixels_of_band() const;
@@ -75,7 +76,7 @@ class Splats {
   gpu::Defines scene_defines_;
   bool groups_;
   transport::LightEmitter emitter_;
-  Kernels summed_, weighed_;  ///< weighed_: compiled at the first use
+  Kernels kernels_[2][2][2];  ///< weighed or not, through a lens or not, with a section plane or not
   gpu::Kernel resolve_;
   gpu::Buffer counts_, block_, round_, picture_, contributions_;
   /// LongSum of each pixel of a band: red, green, blue. One buffer for all three would be the largest buffer

@@ -1,0 +1,22 @@
+#pragma once
+// Words of commands for the camera's lens.
+#include <string>
+#include <vector>
+
+#include "commands/camera_control.h"
+#include "commands/registry.h"
+
+namespace lucerna::commands {
+
+class OpenScene;
+
+/// Optional parameters f_number, focus [m], blades, rotation [degrees], pinhole, shift_right, shift_up.
+std::vector<Parameter> lens_parameters();
+/// Sets what the arguments name; the rest stays. Throws Error: 1 or 2 blades, a pinhole with an f-number.
+void set_lens(scene::Camera& camera, const Arguments& arguments);
+/// If a lens has no plane of focus: puts it at the surface in the middle of the picture, else at the pivot.
+void focus_somewhere(const OpenScene& open, Viewpoint& view, float aspect);
+/// The lens as these words of a line, with a blank before each.
+std::string lens_words(const scene::Camera& camera);
+
+}  // namespace lucerna::commands
