@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "pilot/findings.h"
 
@@ -26,6 +27,7 @@ Pilot::Pilot(gpu::Device& device, const Engine& engine, uint32_t width, uint32_t
 
 bool Pilot::step(Engine& engine, const PictureView& picture, const std::function<bool()>& cancel) {
   const Timer timer;
+  if (!std::exchange(begun_, true)) film_.clear(engine.wavefront().stream());
   const schedule::UniformSchedule before = schedule_;
   const bool complete = engine.try_paths(picture, schedule_.next(), film_, cancel);
   if (!complete) schedule_ = before;

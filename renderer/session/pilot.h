@@ -33,6 +33,7 @@ class Pilot {
   uint32_t width_, height_;  ///< of the picture
   film::Film film_;
   schedule::UniformSchedule schedule_;
+  bool begun_ = false;
   double seconds_ = 0;
 };
 

@@ -59,6 +59,7 @@ Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
                      uint64_t memory, const Relight& before) {
   Relight r;
   scene = plan::without_effects(std::move(scene), plan::effects_off(settings));
+  r.without = settings.text("effects.off");
   const std::string& rules_text = settings.text("relight.groups");
   const std::vector<scene::LightGroupRule> rules = scene::parse_group_rules(rules_text);
   const scene::LightMix mix = scene::parse_mix(settings.text("relight.mix"));

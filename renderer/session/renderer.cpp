@@ -143,6 +143,7 @@ uint32_t Renderer::enabled_components() const { return setup_.engine ? setup_.en
 void Renderer::restart(const scene::Changes& changes, const std::optional<std::vector<vec3>>& factors) {
   if (!setup_.engine || !setup_.film) return;
   setup_.kept.note(changes.edits);
+  pilot_.reset();  // of another view, or of other light
   setup_.engine->begin(picture_view(), changes, factors);
   transport::Wavefront& wavefront = setup_.engine->wavefront();
   const std::optional<vec3> factor = factors ? scene::common_factor(*factors) : std::nullopt;

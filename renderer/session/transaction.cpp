@@ -34,7 +34,8 @@ Relight Transaction::make_relight() const {
                                           uint64_t{target_.width} * target_.height,
                                           context_.device.info().memory_bytes, setup_.relight);
   keep_written(relight, setup_.relight);
-  if (target_.scene == setup_.world.scene && relight.baked == setup_.relight.baked)
+  if (target_.scene == setup_.world.scene && relight.baked == setup_.relight.baked &&
+      relight.without == setup_.relight.without)
     relight.lit = setup_.world.lit;
   return relight;
 }

@@ -10,10 +10,11 @@ using namespace lucerna;
 
 namespace {
 
-/// A room with a lamp, a panel that emits, and a sky that it does not see.
+/// A room under a sky, with a lamp, and a distant one.
 scene::Scene lit_room() {
-  scene::Scene s = test::block_room();
-  s.lights.push_back({.name = "lamp", .intensity = vec3(2), .position = {0.3f, 0.5f, 0.2f}});
+  scene::Scene s = test::block_room(true);
+  s.lights.push_back({.name = "moon", .kind = scene::LightKind::directional, .intensity = vec3(0.5f)});
+  s.lights.back().direction = {0, -1, 0};
   return s;
 }
 
