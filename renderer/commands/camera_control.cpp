@@ -147,7 +147,7 @@ bool upright(Viewpoint& view, float aspect) {
   const vec3 eye = eye_of(camera), axis = forward_of(camera);
   const vec2 half = std::tan(0.5f * camera.yfov) * vec2(aspect, 1);
   const vec3 middle =
-      axis + 2 * (camera.shift.x * half.x * right_of(camera) + camera.shift.y * half.y * up_of(camera));
+      axis + 2.0f * (camera.shift.x * half.x * right_of(camera) + camera.shift.y * half.y * up_of(camera));
   const float flat = std::hypot(axis.x, axis.z);
   if (camera.orthographic || !(flat > std::cos(k_most))) return false;
   const vec3 level(axis.x / flat, 0, axis.z / flat), right(-level.z, 0, level.x);

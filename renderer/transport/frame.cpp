@@ -28,7 +28,7 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.camera_axis = -glm::normalize(vec3(m[2]));
   f.camera_forward = f.camera_axis;
   if (camera.shift != vec2(0)) {
-    const vec3 aside = 2 * (camera.shift.x * f.camera_right + camera.shift.y * f.camera_up);
+    const vec3 aside = 2.0f * (camera.shift.x * f.camera_right + camera.shift.y * f.camera_up);
     (camera.orthographic ? f.camera_origin : f.camera_forward) += aside;
   }
   f.orthographic = camera.orthographic;
