@@ -10,7 +10,8 @@ namespace lucerna::commands {
 
 class OpenScene;
 
-/// Optional parameters f_number, focus [m], blades, rotation [degrees], pinhole, shift_right, shift_up.
+/// Optional parameters f_number, focus [m], blades, rotation [degrees], pinhole, shift_right, shift_up,
+/// section_normal, section_offset [m].
 std::vector<Parameter> lens_parameters();
 /// Sets what the arguments name; the rest stays. Throws Error: 1 or 2 blades, a pinhole with an f-number.
 void set_lens(scene::Camera& camera, const Arguments& arguments);

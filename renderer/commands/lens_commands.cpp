@@ -49,7 +49,14 @@ std::vector<Parameter> lens_parameters() {
        .help = "true: no lens, everything is sharp",
        .optional = true},
       real("shift_right", "of the lens", -scene::k_max_shift, scene::k_max_shift, "picture widths"),
-      real("shift_up", "of the lens", -scene::k_max_shift, scene::k_max_shift, "picture heights")};
+      real("shift_up", "of the lens", -scene::k_max_shift, scene::k_max_shift, "picture heights"),
+      {.name = "section_normal",
+       .type = Type::vector,
+       .help = "of the plane that cuts the view, into the part that stays visible; 0,0,0: none",
+       .lo = -1e9,
+       .hi = 1e9,
+       .optional = true},
+      real("section_offset", "of that plane from the scene's origin, along its normal", -1e9, 1e9, "m")};
 }
 
 void set_lens(scene::Camera& camera, const Arguments& a) {
@@ -66,6 +73,14 @@ void set_lens(scene::Camera& camera, const Arguments& a) {
   if (pinhole) lens.f_number = 0;
   if (a.has("shift_right")) camera.shift.x = a.number("shift_right");
   if (a.has("shift_up")) camera.shift.y = a.number("shift_up");
+  if (a.has("section_offset")) camera.section.offset = a.number("section_offset");
+  if (a.has("section_normal")) {
+    const vec3 normal = a.vector("section_normal");
+    if (glm::length(normal) > 1e-6f)
+      camera.section.normal = glm::normalize(normal);
+    else
+      camera.section = {};
+  }
 }
 
 void focus_somewhere(const OpenScene& open, Viewpoint& view, float aspect) {
@@ -79,6 +94,8 @@ std::string lens_words(const scene::Camera& camera) {
   const scene::Lens& lens = camera.lens;
   std::string text =
       " " + named("shift_right", camera.shift.x).text + " " + named("shift_up", camera.shift.y).text;
+  text += " " + named("section_normal", camera.section.normal).text;
+  if (camera.section.cuts()) text += " " + named("section_offset", camera.section.offset).text;
   if (camera.orthographic) return text;
   if (lens.f_number == 0) return text + " pinhole=true";
   text += " " + named("f_number", lens.f_number).text + " " + named("focus", lens.focus_distance).text;

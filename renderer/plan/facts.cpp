@@ -270,16 +270,30 @@ std::vector<Row> texture_rows() {
   };
 }
 
+/// Evidence: cameras of which that holds.
+template <bool (*holds)(const scene::Camera&)>
+List of_cameras(const Context& c) {
+  List list;
+  for (size_t i = 0; i < c.scene.cameras.size(); ++i)
+    if (holds(c.scene.cameras[i]))
+      list.push_back(
+          {Evidence::Kind::camera, Id(i), scene::display_name(c.scene.cameras[i].name, "Camera", i)});
+  return list;
+}
+bool is_parallel(const scene::Camera& c) { return c.orthographic; }
+bool has_lens(const scene::Camera& c) { return !c.orthographic && c.lens.f_number > 0; }
+bool is_shifted(const scene::Camera& c) { return c.shift != vec2(0); }
+bool is_cut(const scene::Camera& c) { return c.section.cuts(); }
+
 std::vector<Row> camera_rows() {
-  return {{"orthographic", "Parallel projection", EffectGroup::camera, "rays of the camera",
-           "no camera has it", [](const Context& c) {
-             List list;
-             for (size_t i = 0; i < c.scene.cameras.size(); ++i)
-               if (c.scene.cameras[i].orthographic)
-                 list.push_back({Evidence::Kind::camera, Id(i),
-                                 scene::display_name(c.scene.cameras[i].name, "Camera", i)});
-             return list;
-           }}};
+  const auto group = EffectGroup::camera;
+  const char* none = "no camera has it";
+  return {{"orthographic", "Parallel projection", group, "rays of the camera", none, of_cameras<is_parallel>},
+          {"depth_of_field", "Depth of field", group, "code for a lens in the camera's kernels", none,
+           of_cameras<has_lens>},
+          {"lens_shift", "Lens shift", group, "rays of the camera", none, of_cameras<is_shifted>},
+          {"section", "Section plane", group, "code for a plane in the camera's kernels", none,
+           of_cameras<is_cut>}};
 }
 
 const std::vector<Row>& table() {

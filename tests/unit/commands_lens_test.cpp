@@ -98,7 +98,8 @@ TEST_CASE("an upright camera is level, with the middle of the picture where it w
   CHECK(glm::distance(ray(after, 0.51f, 0.5f), ray(after, 0.49f, 0.5f)) ==
         Approx(glm::distance(ray(before, 0.51f, 0.5f), ray(before, 0.49f, 0.5f))).epsilon(0.01));
   // Focused on the same point of the middle's ray.
-  CHECK(after.lens.focus_distance / glm::dot(ray(after, 0.5f, 0.5f), forward_of(after)) == Approx(3).epsilon(1e-4));
+  CHECK(after.lens.focus_distance / glm::dot(ray(after, 0.5f, 0.5f), forward_of(after)) ==
+        Approx(3).epsilon(1e-4));
   b.run("camera.bookmark upright");
   b.run("camera.shift 0 0");
   CHECK(b.work.camera.view->camera.shift == vec2(0));
@@ -108,6 +109,20 @@ TEST_CASE("an upright camera is level, with the middle of the picture where it w
   CHECK(b.work.camera.view->camera.shift == vec2(-0.25f, 0.5f));
   b.run("camera.go upright");
   CHECK(b.work.camera.view->camera.shift == after.shift);
+  CHECK_FALSE(b.work.camera.view->camera.section.cuts());
+  b.run("camera.section 0,0,2 0,0,-4");
+  const scene::Section cut = b.work.camera.view->camera.section;
+  CHECK(cut == scene::Section{.normal = {0, 0, -1}, .offset = -2});
+  b.run("camera.bookmark cut");
+  b.run("camera.go upright");
+  CHECK_FALSE(b.work.camera.view->camera.section.cuts());
+  b.run("camera.go cut");
+  CHECK(b.work.camera.view->camera.section == cut);
+  b.run("camera.no_section");
+  CHECK_FALSE(b.work.camera.view->camera.section.cuts());
+  b.run("undo");
+  CHECK(b.work.camera.view->camera.section == cut);
+  CHECK_THAT(b.failure("camera.section 0,0,2 0,0,0"), Contains("normal: its length is 0"));
   b.run("camera.place 1,1.7,6 1,9,5.5 0,1,0 shift_right=0 shift_up=0");
   CHECK_THAT(b.failure("camera.upright"), Contains("too steeply"));
   for (const char* line : {"camera.shift nan 0", "camera.shift 0 21", "camera.shift 0"}) {

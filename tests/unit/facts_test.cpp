@@ -155,3 +155,18 @@ TEST_CASE("lists of effects: blanks and repetitions, unknown effects, effects th
                         Catch::Contains("there is no such effect") && Catch::Contains("normal_map"));
   CHECK_THROWS_WITH(plan::parse_effects("metal", "effects.off"), Catch::Contains("cannot be off"));
 }
+
+TEST_CASE("cameras call for a lens, a lens shift and a section plane, each by its name") {
+  scene::Scene s = triangles(1);
+  s.cameras.resize(4);
+  for (size_t i = 0; i < 4; ++i) s.cameras[i].name = std::string(1, char('a' + i));
+  s.cameras[0].lens = {.f_number = 0, .focus_distance = 2, .blades = 6};  // a pinhole
+  s.cameras[1].lens = {.f_number = 2, .focus_distance = 2};
+  s.cameras[2].shift = {0, 0.25f};
+  s.cameras[3].section = {.normal = {0, 1, 0}};
+  CHECK(plan::evidence_text(facts_of(s).effect("depth_of_field")) == "camera 'b'");
+  CHECK(plan::evidence_text(facts_of(s).effect("lens_shift")) == "camera 'c'");
+  CHECK(plan::evidence_text(facts_of(s).effect("section")) == "camera 'd'");
+  s.cameras[1].orthographic = true;
+  CHECK_FALSE(facts_of(s).has("depth_of_field"));
+}
