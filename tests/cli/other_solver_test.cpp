@@ -15,7 +15,7 @@ TEST_CASE("a registered solver is in --help, computes its component and is in th
   const auto help = test::run_command(program + " render --help");
   CHECK(help.status == 0);
   CHECK_THAT(help.out,
-             Catch::Contains("ambient.radiance") && Catch::Contains("path|cache|photons|ambient|off"));
+             Catch::Contains("ambient.radiance") && Catch::Contains("path|cache|photons|ambient|auto|off"));
   const std::string stats = (folder.path / "stats.json").string();
   const std::string scene = std::string(LUCERNA_SOURCE_DIR) + "/scenes/furnace-closed/furnace-closed.gltf";
   const auto rendered = test::run_command(program + " render " + scene +
