@@ -100,7 +100,7 @@ void lens_shift(Controls& controls, const scene::Camera& camera) {
 
 void section_plane(Controls& controls, const Viewpoint& view) {
   const scene::Section& section = view.camera.section;
-  if (button("##section", "Section plane", section.cuts(), ImGui::CalcItemWidth())) {
+  if (button("##section_plane", "Section plane", section.cuts(), ImGui::CalcItemWidth())) {
     const vec3 ahead = commands::forward_of(view.camera);
     if (section.cuts())
       controls.act("camera.no_section");
@@ -173,8 +173,17 @@ void depth_of_field(Controls& controls, const scene::Lens& lens, bool focusing) 
   }
 }
 
-void cameras(Controls& controls, const commands::Navigation& camera, bool focusing,
-             const std::function<void()>& keep_view) {
+/// What few views need: shift, depth of field, section.
+void lens_and_section(Controls& controls, const commands::Navigation& camera, bool focusing) {
+  if (!camera.view) return;
+  if (!camera.view->camera.orthographic) {
+    lens_shift(controls, camera.view->camera);
+    depth_of_field(controls, camera.view->camera.lens, focusing);
+  }
+  section_plane(controls, *camera.view);
+}
+
+void cameras(Controls& controls, const commands::Navigation& camera, const std::function<void()>& keep_view) {
   const auto& list = controls.open.scene->cameras;
   if (list.empty()) quiet_line("The scene has no camera");
   for (size_t i = 0; i < list.size(); ++i) {
@@ -204,11 +213,6 @@ void cameras(Controls& controls, const commands::Navigation& camera, bool focusi
     tooltip(fmt::format("Focal length for a frame 36 mm wide; the vertical field of view is {:.1f}\xC2\xB0.",
                         view.camera.yfov * 180 / k_pi));
   }
-  if (!view.camera.orthographic) {
-    lens_shift(controls, view.camera);
-    depth_of_field(controls, view.camera.lens, focusing);
-  }
-  section_plane(controls, view);
   float speed = camera.speed;
   if (slider("##speed", "Fly speed", speed,
              {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m/s"}))
@@ -570,8 +574,8 @@ void draw_scene_panel(Controls& controls, const commands::Navigation& camera, Sc
   if (reveal && camera.selection.kind == Kind::instance) controls.sections["Objects"] = true;
   if (reveal && camera.selection.kind == Kind::material) controls.sections["Materials"] = true;
   if (reveal && camera.selection.kind == Kind::light) controls.sections["Lights"] = true;
-  block("Camera", controls.open.scene->cameras.size(), true,
-        [&] { cameras(controls, camera, view.focusing, keep_view); });
+  block("Camera", controls.open.scene->cameras.size(), true, [&] { cameras(controls, camera, keep_view); });
+  block("Lens and section", 0, false, [&] { lens_and_section(controls, camera, view.focusing); });
   block("Lights", controls.open.scene->lights.size() + emitters(controls.open, camera).size(), true,
         [&] { light_rows(controls, camera, view, reveal); });
   block("Environment", 0, true, [&] { environment(controls); });

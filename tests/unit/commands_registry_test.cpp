@@ -150,7 +150,7 @@ TEST_CASE("settings are commands, with the option table's messages") {
   CHECK_THAT(failure(work.registry, "film.ev 99", "x"),
              Contains("x: set: film.ev = '99': expected a number from -20 to 20 EV"));
   CHECK_THAT(failure(work.registry, "components.primary of"),
-             Contains("expected one of path, cache, photons, off"));
+             Contains("expected one of path, cache, photons, auto, off"));
   CHECK_THAT(work.manual("settings"), Contains("film.tone_curve neutral|agx|linear"));
   CHECK_THROWS_WITH(work.manual("camera.orbti"), Contains("did you mean 'camera.orbit'?"));
 }

@@ -156,8 +156,8 @@ TEST_CASE("a dropped image lights the scene; the first steps are shown on reques
 TEST_CASE("a lamp's strength, temperature and position are dragged in the panel, each drag one step") {
   if (test::no_display()) return;
   const auto lines =
-      session_of("select light 3\nwait 0.3\n" + drag(1200, 494, 10, 0) + drag(1200, 546, 10, 0) +
-                 drag(1250, 598, 10, 0) + drag(1240, 624, 10, 0) + "key ctrl+z\nkey ctrl+z\nkey ctrl+z\n");
+      session_of("select light 3\nwait 0.3\n" + drag(1200, 526, 10, 0) + drag(1200, 578, 10, 0) +
+                 drag(1250, 630, 10, 0) + drag(1240, 656, 10, 0) + "key ctrl+z\nkey ctrl+z\nkey ctrl+z\n");
   REQUIRE(lines.size() == 8);
   CHECK_THAT(lines[1], Catch::StartsWith("light.set 3 intensity="));
   CHECK_THAT(lines[2], Catch::StartsWith("light.set 3 kelvin="));
@@ -171,8 +171,8 @@ TEST_CASE("a colour is picked; emissive surfaces are listed among the lights") {
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   const auto lines =
-      session_of("select light 3\nwait 0.3\nmouse.move 1200 520\nmouse.down\nmouse.up\nwait 0.4\n" +
-                 ("screenshot " + file("picker.png") + "\n") + drag(1230, 600, 8, 8) +
+      session_of("select light 3\nwait 0.3\nmouse.move 1200 552\nmouse.down\nmouse.up\nwait 0.4\n" +
+                 ("screenshot " + file("picker.png") + "\n") + drag(1230, 632, 8, 8) +
                  "key escape\nwait 0.3\nwindow.section Camera false\nmaterial.set 1 strength=2\nselect "
                  "material 1\nwait 0.4\n"
                  "screenshot " +
