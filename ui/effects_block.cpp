@@ -44,10 +44,10 @@ void effect_row(Controls& controls, const plan::Effect& effect, std::vector<std:
   ImGui::InvisibleButton("##effect", {width - px(26), px(36)});
   tooltip(fmt::format("{}\nSwitches on: {}.\nCalled for by {}.", effect.label, effect.switches,
                       plan::evidence_text(effect, 12)));
-  draw_text(list, at, {at.x + width - px(26), at.y + px(20)}, std::string(effect.label),
-            on ? colour::text : colour::text_faint);
+  draw_text(list, at, {at.x + width - px(26), at.y + px(20)},
+            elided(std::string(effect.label), width - px(26)), on ? colour::text : colour::text_faint);
   draw_text(list, {at.x, at.y + px(17)}, {at.x + width - px(26), at.y + px(36)},
-            on ? plan::evidence_text(effect) : "off", colour::text_faint);
+            on ? elided(plan::evidence_text(effect), width - px(26)) : "off", colour::text_faint);
   ImGui::SetCursorScreenPos({at.x, at.y + px(40)});
   ImGui::PopID();
 }
