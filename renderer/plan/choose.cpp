@@ -61,10 +61,16 @@ struct Combination {
   double error(double samples) const {
     return std::hypot(std::sqrt(sum.variance / samples), prepared_error(sum, samples), sum.floor);
   }
-  /// Squared error after that cost, k_never before the first sample.
-  double squared_error(double cost) const {
-    const double samples = (cost - sum.preparation) / sample_cost();
-    return samples >= 1 ? error(samples) * error(samples) : k_never;
+  /// Squared error after the goal's cost, k_never before the first sample.
+  double squared_error(const Goal& goal) const {
+    const double most = goal.cuts_preparation ? 0.5 * goal.samples : goal.samples;
+    const double preparation = std::min(sum.preparation, most);
+    const double samples = (goal.samples - preparation) / sample_cost();
+    if (!(samples >= 1)) return k_never;
+    // Data that is prepared in part has larger errors.
+    Combination cut = *this;
+    if (preparation > 0) cut.sum.prepared *= sum.preparation / preparation;
+    return cut.error(samples) * cut.error(samples);
   }
   /// Cost until the error is reached, k_never if it is not.
   double cost(double target) const {
@@ -77,9 +83,7 @@ struct Combination {
     }
     return sum.preparation + sample_cost() * high;
   }
-  double badness(const Goal& goal) const {
-    return goal.error ? cost(*goal.error) : squared_error(goal.samples);
-  }
+  double badness(const Goal& goal) const { return goal.error ? cost(*goal.error) : squared_error(goal); }
 };
 
 double variance_of(const Findings& findings, uint32_t components) {
@@ -140,8 +144,7 @@ std::string advantage(const Combination& chosen, const Combination& other, const
     if (b == k_never) return fmt::format("{} is not reached otherwise", percent(*goal.error));
     return fmt::format("{:.2g} times sooner at {}", b / a, percent(*goal.error));
   }
-  const double a = std::sqrt(chosen.squared_error(goal.samples)),
-               b = std::sqrt(other.squared_error(goal.samples));
+  const double a = std::sqrt(chosen.squared_error(goal)), b = std::sqrt(other.squared_error(goal));
   return fmt::format("an error of {} instead of {} in equal time", percent(std::min(a, 1.0)),
                      percent(std::min(b, 1.0)));
 }
@@ -169,6 +172,7 @@ Goal goal_of(const Settings& settings, const Findings* findings, std::optional<d
   Goal goal;
   if (seconds && findings && findings->seconds > 0) {
     goal.samples = *seconds / findings->seconds;
+    goal.cuts_preparation = true;
   } else if (settings.text("sampling.mode") == "adaptive") {
     goal.error = settings.real("sampling.target_error");
     goal.samples = settings.real("sampling.max_samples");

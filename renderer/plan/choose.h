@@ -21,6 +21,8 @@ namespace lucerna::plan {
 struct Goal {
   double samples = 256;           ///< cost that may be spent, in path-traced samples
   std::optional<double> error{};  ///< error as seen that is to be reached with as little cost as possible
+  /// Preparation ends when half of the cost is spent, as with a limit of time.
+  bool cuts_preparation = false;
 };
 /// The settings' goal: samples, or the target error of adaptive sampling. `seconds`: limit of time, if any;
 /// counts once the findings have a duration.

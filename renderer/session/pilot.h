@@ -34,7 +34,7 @@ class Pilot {
   film::Film film_;
   schedule::UniformSchedule schedule_;
   bool begun_ = false;
-  double seconds_ = 0;
+  double pixel_seconds_ = 0;  ///< of a sample of a pixel
 };
 
 }  // namespace lucerna::session

@@ -166,7 +166,7 @@ std::optional<stats::SamplePace> Renderer::path_pace() const {
 
 bool Renderer::draw_draft(const std::function<bool()>& cancel) {
   if (!setup_.engine || !display_) return false;
-  const bool prepares = preparing();
+  const bool prepares = preparing() || choosing();
   if (std::exchange(draft_preparing_, prepares) && !prepares) display_->light_changed();
   const bool filled = samples() > 0;
   const bool sight = !filled && previewed(view()) && display_->sight_wanted(*setup_.engine, picture_view());

@@ -94,6 +94,12 @@ TEST_CASE("interreflection goes to the cache where it has the noise and there is
   CHECK(with_time[2].reason.find("instead of") != std::string::npos);
   // No time for records.
   CHECK(plan::choose(facts, settings, &noisy, Goal{.samples = 16})[2].solver == "path");
+  // With a limit of time, half of it is for records.
+  CHECK(plan::choose(facts, settings, &noisy, Goal{.samples = 60})[2].solver == "path");
+  CHECK(plan::choose(facts, settings, &noisy, Goal{.samples = 60, .cuts_preparation = true})[2].solver ==
+        "cache");
+  CHECK(plan::choose(facts, settings, &noisy, Goal{.samples = 4, .cuts_preparation = true})[2].solver ==
+        "path");
   // Direct light has the noise: records would only cost.
   const Findings direct = findings(20, 0.5, 0.3, 0);
   CHECK(plan::choose(facts, settings, &direct, Goal{.samples = 400})[2].solver == "path");
@@ -136,4 +142,5 @@ TEST_CASE("goals: samples, the target of adaptive sampling, a limit of time once
   CHECK(plan::goal_of(settings, &f, 10).error);
   f.seconds = 0.5;
   CHECK(plan::goal_of(settings, &f, 10).samples == 20);
+  CHECK(plan::goal_of(settings, &f, 10).cuts_preparation);
 }
