@@ -42,9 +42,9 @@ bool place(Viewpoint& view, const vec3& eye, const vec3& target, const vec3& up)
 void fly(Viewpoint& view, const vec3& metres);
 /// Keeps the direction and moves so that the sphere around `box` fills the picture (aspect = width / height).
 void frame(Viewpoint& view, const Box& box, float aspect);
-/// Levels a perspective camera, so that vertical lines are vertical in the picture, and shifts the lens so that the
-/// middle of the picture stays, at the same scale. False, without a change, if the camera is orthographic, or looks
-/// too steeply (80 degrees) up or down. `aspect`: width / height of the picture.
+/// Levels a perspective camera, so that vertical lines are vertical in the picture, and shifts the lens so
+/// that the middle of the picture stays, at the same scale. False, without a change, if the camera is
+/// orthographic, or looks too steeply (80 degrees) up or down. `aspect`: width / height of the picture.
 bool upright(Viewpoint& view, float aspect);
 /// A walking pace for a scene of that extent, m/s: 1.5 in a room, proportional beyond.
 float walking_speed(float extent);

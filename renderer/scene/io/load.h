@@ -28,9 +28,9 @@
 // values of settings.json go to Scene::settings, nested objects as dotted keys: {"film": {"ev": 1}} is
 // "film.ev" = "1".
 //
-// Perspective cameras with extras {"lucerna": {"f_number": .., "focus_distance": ..}} have a lens (Lens), with
-// "aperture_blades" and "aperture_rotation" [radians] if given; "shift_right" and "shift_up" are Camera::shift. An invalid lens is left out with a
-// warning.
+// Perspective cameras with extras {"lucerna": {"f_number": .., "focus_distance": ..}} have a lens (Lens),
+// with "aperture_blades" and "aperture_rotation" [radians] if given; "shift_right" and "shift_up" are
+// Camera::shift. An invalid lens is left out with a warning.
 //
 // Nodes or meshes with extras {"portal": true} are portals of the sky instead of surfaces (portals.h).
 //
