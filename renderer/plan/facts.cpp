@@ -84,11 +84,6 @@ bool focuses(const Material& m) {
   return (has_metal(m) || has_transmission(m)) &&
          (m.roughness <= k_most_roughness || m.metallic_roughness_texture);
 }
-bool reflects_smoothly(const Material& m) {
-  const bool reflects = m.metallic > 0 || m.transmission > 0 || (m.specular > 0 && m.ior != 1);
-  return !m.unlit && reflects && !is_rough(m);
-}
-
 bool has_emission(const Material& m) { return m.emission != vec3(0) && !m.unlit; }
 void drop_emission(Material& m) { m.emission = vec3(0), m.emission_texture = {}; }
 bool has_coat(const Material& m) {
@@ -163,7 +158,7 @@ List caustics(const Context& c) {
 /// Light of lamps without size by way of smooth surfaces.
 List point_caustics(const Context& c) {
   const bool lamps = !c.lamps([](const scene::Light&) { return true; }).empty();
-  return lamps && !c.materials(has_diffuse).empty() ? c.materials(reflects_smoothly) : List{};
+  return lamps && !c.materials(has_diffuse).empty() ? c.materials(polished) : List{};
 }
 
 std::vector<Row> component_rows() {
@@ -323,6 +318,11 @@ std::string_view group_name(EffectGroup group) {
   return names.at(size_t(group));
 }
 
+bool polished(const Material& m) {
+  const bool reflects = m.metallic > 0 || m.transmission > 0 || (m.specular > 0 && m.ior != 1);
+  return !m.unlit && reflects && !is_rough(m);
+}
+
 const Effect& SceneFacts::effect(std::string_view key) const {
   for (const Effect& e : effects)
     if (e.key == key) return e;
@@ -381,6 +381,7 @@ std::vector<std::string> parse_effects(const std::string& list, const std::strin
 
 std::shared_ptr<const Scene> without_effects(std::shared_ptr<const Scene> scene,
                                              const std::vector<std::string>& keys) {
+  if (keys.empty()) return scene;
   const Context context(*scene);
   std::shared_ptr<Scene> less;
   for (const std::string& key : keys) {

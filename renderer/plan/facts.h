@@ -1,6 +1,6 @@
 #pragma once
 // What a scene calls for: its effects, each with the objects that prove it. Pure and cheap, without a device.
-// Plans, `lucerna info`, --stats and the window's Effects panel read the same table. A new effect is a row in
+// Plans, `lucerna info` and the window's section Effects read the same table. A new effect is a row in
 // facts.cpp.
 #include <cstdint>
 #include <memory>
@@ -47,6 +47,10 @@ struct SceneFacts {
   bool has(std::string_view key) const { return effect(key).called_for(); }
 };
 SceneFacts facts_of(const scene::Scene& scene);
+
+/// True if some lobes of a material are so smooth that they count as deltas. Textures count by their factors:
+/// they can only make a surface smoother, and seldom polish all of it.
+bool polished(const scene::Material& material);
 
 /// The first objects by name, then how many more: "material 'Glass', 'Bottle' and 3 more"; "" without
 /// evidence.

@@ -1,5 +1,5 @@
 #pragma once
-// The table of effects as text (lucerna info) and as JSON (lucerna info --json, --stats).
+// The table of effects as text (lucerna info) and as JSON (lucerna info --json).
 #include <nlohmann/json.hpp>
 #include <string>
 

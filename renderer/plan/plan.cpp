@@ -1,7 +1,5 @@
 #include "plan/plan.h"
 
-#include "shaders/shared/bsdf_table.h"
-
 namespace lucerna::plan {
 
 uint32_t Plan::enabled() const {
@@ -64,13 +62,6 @@ bool primary_by_paths(std::string_view primary, std::string_view secondary, std:
 }
 
 namespace {
-
-/// True if some lobes of a material are so smooth that they count as deltas. Textures count by their factors:
-/// they can only make a surface smoother, and seldom polish all of it.
-bool polished(const scene::Material& m) {
-  const bool reflects = m.metallic > 0 || m.transmission > 0 || (m.specular > 0 && m.ior != 1);
-  return !m.unlit && reflects && m.roughness * m.roughness < shared::k_delta_alpha;
-}
 
 /// Names of the polished materials that surfaces have.
 std::vector<std::string> polished_materials(const scene::Scene& scene) {
