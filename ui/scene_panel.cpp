@@ -439,6 +439,47 @@ void environment(Controls& controls) {
   }
 }
 
+// Coat, sheen, brushing and thin film: a row each for its strength, and the others once it is there.
+void material_layers(Controls& controls, uint32_t index, const scene::Material& m) {
+  if (m.unlit) return;
+  const auto textured = [](const scene::TextureUse& use) { return use ? " \xC3\x97 texture" : ""; };
+  const auto set = [&](const auto& value) { controls.act("material.set", index + 1, value); };
+  const auto share = [&](const char* id, const std::string& label, float value, const char* key,
+                         const char* help) {
+    if (slider(id, label, value, {.decimals = 3})) set(named(key, value));
+    tooltip(help);
+  };
+  share("##coat", std::string("Clear coat") + textured(m.clearcoat_texture), m.clearcoat, "clearcoat",
+        "Strength of a coat of varnish over the material.");
+  if (m.clearcoat > 0)
+    share("##coat_roughness", std::string("Coat roughness") + textured(m.clearcoat_roughness_texture),
+          m.clearcoat_roughness, "clearcoat_roughness", "0 is a glossy coat, 1 is matt.");
+  vec3 sheen = m.sheen_color;
+  if (colour_field("##sheen", "Sheen", sheen, textured(m.sheen_color_texture))) set(named("sheen", sheen));
+  tooltip("Reflectance of fibres that stand up, as of velvet; black is none. Press to choose a colour.");
+  if (m.sheen_color != vec3(0))
+    share("##sheen_roughness", std::string("Sheen roughness") + textured(m.sheen_roughness_texture),
+          m.sheen_roughness, "sheen_roughness", "0 shines at the rim alone, 1 all over.");
+  share("##anisotropy", std::string("Brushed") + textured(m.anisotropy_texture), m.anisotropy, "anisotropy",
+        "Stretches reflections along a direction of the surface, as on brushed metal.");
+  if (m.anisotropy > 0) {
+    float turn = glm::degrees(std::remainder(m.anisotropy_rotation, 2 * k_pi));
+    if (slider("##brushing", "Brushing direction", turn,
+               {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0"}))
+      set(named("anisotropy_rotation", turn));
+    tooltip("Rotates that direction.");
+  }
+  share("##film", std::string("Thin film") + textured(m.iridescence_texture), m.iridescence, "iridescence",
+        "Colours of interference, as on soap bubbles and tempered steel.");
+  if (m.iridescence > 0) {
+    float thick = m.iridescence_maximum;
+    if (slider("##film_thickness", std::string("Film thickness") + textured(m.iridescence_thickness_texture),
+               thick, {.lo = 0, .hi = 1500, .decimals = 0, .unit = "nm"}))
+      set(named("film_thickness", thick));
+    tooltip("Thickness of the film; it decides the colours.");
+  }
+}
+
 void material_details(Controls& controls, uint32_t index, const scene::Material& m) {
   const auto colour_text = [](const vec3& c) { return fmt::format("{:.3f} {:.3f} {:.3f}", c.x, c.y, c.z); };
   const auto textured = [](const scene::TextureUse& use) { return use ? " \xC3\x97 texture" : ""; };
@@ -466,6 +507,7 @@ void material_details(Controls& controls, uint32_t index, const scene::Material&
     if (button("##glow", "Add emission", false, ImGui::CalcItemWidth())) set(named("strength", 1));
     tooltip("Makes the surface a light of radiance 1; edit it here or under Lights.");
   }
+  material_layers(controls, index, m);
   if (m.transmission > 0)
     value_row("Transmission", fmt::format("{:.3f}{}", m.transmission, textured(m.transmission_texture)),
               "Share of light that is transmitted.");
@@ -496,7 +538,23 @@ void material_details(Controls& controls, uint32_t index, const scene::Material&
   if (m.double_sided) value_row("Double-sided", "yes", "The back side emits like the front side.");
 }
 
+// The file's variants of the materials, and clay.
+void material_sets(Controls& controls) {
+  const std::vector<std::string>& variants = controls.open.scene->variants;
+  if (!variants.empty()) {
+    std::vector<std::string> names{"default"};
+    names.insert(names.end(), variants.begin(), variants.end());
+    const auto found = std::find(names.begin() + 1, names.end(), controls.open.setting("scene.variant"));
+    int chosen = found == names.end() ? 0 : static_cast<int>(found - names.begin());
+    if (choice("##variant", "Variant", names, chosen))
+      controls.act("set", "scene.variant", chosen > 0 ? names[static_cast<size_t>(chosen)] : "");
+    tooltip("Sets of materials that the scene's file offers. The picture starts again.");
+  }
+  option_control(controls, "scene.clay", "Clay");
+}
+
 void materials(Controls& controls, const Selection& selection, SceneView& view, bool reveal) {
+  material_sets(controls);
   const auto& list = controls.open.scene->materials;
   for (size_t i = 0; i < list.size(); ++i) {
     const auto index = static_cast<uint32_t>(i);

@@ -24,6 +24,11 @@ struct Document {
     vec3 color{1};  ///< all members as in scene::Material
     float roughness = 1, metallic = 0;
     vec3 emission{0};
+    float clearcoat = 0, clearcoat_roughness = 0;
+    vec3 sheen_color{0};
+    float sheen_roughness = 0;
+    float anisotropy = 0, anisotropy_rotation = 0;
+    float iridescence = 0, iridescence_maximum = 400;
     bool emits = true;  ///< false: its emission is stored, but switched off
     /// The values that the scene has.
     Material in_scene() const;

@@ -328,7 +328,47 @@ void add_material_commands(Registry& registry, OpenScene& open) {
              .hi = 1e9,
              .unit = "W/(m2 sr)",
              .optional = true},
-            {.name = "on", .type = Type::boolean, .help = "turns emission on or off", .optional = true}},
+            {.name = "on", .type = Type::boolean, .help = "turns emission on or off", .optional = true},
+            {.name = "clearcoat",
+             .type = Type::real,
+             .help = "strength of a coat of varnish",
+             .lo = 0,
+             .hi = 1,
+             .optional = true},
+            {.name = "clearcoat_roughness", .type = Type::real, .lo = 0, .hi = 1, .optional = true},
+            {.name = "sheen",
+             .type = Type::vector,
+             .help = "linear; reflectance of fibres, as of velvet",
+             .lo = 0,
+             .hi = 1,
+             .optional = true},
+            {.name = "sheen_roughness", .type = Type::real, .lo = 0, .hi = 1, .optional = true},
+            {.name = "anisotropy",
+             .type = Type::real,
+             .help = "0: reflects equally in all directions, 1: most brushed",
+             .lo = 0,
+             .hi = 1,
+             .optional = true},
+            {.name = "anisotropy_rotation",
+             .type = Type::real,
+             .help = "of the brushing",
+             .lo = -360,
+             .hi = 360,
+             .unit = "degrees",
+             .optional = true},
+            {.name = "iridescence",
+             .type = Type::real,
+             .help = "strength of a thin film",
+             .lo = 0,
+             .hi = 1,
+             .optional = true},
+            {.name = "film_thickness",
+             .type = Type::real,
+             .help = "of that film",
+             .lo = 0,
+             .hi = 1e5,
+             .unit = "nm",
+             .optional = true}},
        .check =
            [](const Arguments& a) {
              for (const char* part : {"emission_color", "kelvin", "strength"}) exclude(a, "emission", part);
@@ -340,6 +380,15 @@ void add_material_commands(Registry& registry, OpenScene& open) {
              if (a.has("color")) m.color = a.vector("color");
              if (a.has("roughness")) m.roughness = a.number("roughness");
              if (a.has("metallic")) m.metallic = a.number("metallic");
+             if (a.has("clearcoat")) m.clearcoat = a.number("clearcoat");
+             if (a.has("clearcoat_roughness")) m.clearcoat_roughness = a.number("clearcoat_roughness");
+             if (a.has("sheen")) m.sheen_color = a.vector("sheen");
+             if (a.has("sheen_roughness")) m.sheen_roughness = a.number("sheen_roughness");
+             if (a.has("anisotropy")) m.anisotropy = a.number("anisotropy");
+             if (a.has("anisotropy_rotation"))
+               m.anisotropy_rotation = glm::radians(a.number("anisotropy_rotation"));
+             if (a.has("iridescence")) m.iridescence = a.number("iridescence");
+             if (a.has("film_thickness")) m.iridescence_maximum = a.number("film_thickness");
              if (a.has("emission")) m.emission = a.vector("emission");
              float strength = strength_of(m.emission);
              const vec3 tint = requested_tint(a, "emission_color", tint_of(m.emission));

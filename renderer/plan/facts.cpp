@@ -103,6 +103,23 @@ bool absorbs(const Material& m) {
 void drop_absorption(Material& m) { m.attenuation_distance = k_infinity; }
 bool is_translucent(const Material& m) { return m.diffuse_transmission > 0; }
 void drop_translucency(Material& m) { m.diffuse_transmission = 0; }
+bool has_clearcoat(const Material& m) { return m.clearcoat > 0 && !m.unlit; }
+void drop_clearcoat(Material& m) {
+  m.clearcoat = 0;
+  m.clearcoat_texture = m.clearcoat_roughness_texture = m.clearcoat_normal_texture = {};
+}
+bool has_sheen(const Material& m) { return m.sheen_color != vec3(0) && !m.unlit; }
+void drop_sheen(Material& m) {
+  m.sheen_color = vec3(0);
+  m.sheen_color_texture = m.sheen_roughness_texture = {};
+}
+bool is_brushed(const Material& m) { return m.anisotropy > 0 && !m.unlit; }
+void drop_brushing(Material& m) { m.anisotropy = 0, m.anisotropy_texture = {}; }
+bool has_film(const Material& m) { return m.iridescence > 0 && !m.unlit; }
+void drop_film(Material& m) {
+  m.iridescence = 0;
+  m.iridescence_texture = m.iridescence_thickness_texture = {};
+}
 bool is_cut_out(const Material& m) { return m.alpha_mode == AlphaMode::mask; }
 void drop_cut_outs(Material& m) {
   if (m.alpha_mode == AlphaMode::mask) m.alpha_mode = AlphaMode::opaque;
@@ -224,6 +241,14 @@ std::vector<Row> surface_rows() {
        of_materials<absorbs>, of_each<drop_absorption>},
       {"diffuse_transmission", "Translucent sheets", group, "diffuse lobe to the other side",
        "no surface has it", of_materials<is_translucent>, of_each<drop_translucency>},
+      {"clearcoat", "Clear coats", group, "specular lobe over the material", "no surface has it",
+       of_materials<has_clearcoat>, of_each<drop_clearcoat>},
+      {"sheen", "Sheen of fibres", group, "lobe at grazing angles over the material", "no surface has it",
+       of_materials<has_sheen>, of_each<drop_sheen>},
+      {"anisotropy", "Brushed surfaces", group, "tangents and a specular lobe of two widths",
+       "no surface has it", of_materials<is_brushed>, of_each<drop_brushing>},
+      {"iridescence", "Thin films", group, "interference in the specular lobe", "no surface has it",
+       of_materials<has_film>, of_each<drop_film>},
       {"alpha_mask", "Cut-outs", group, "tests of coverage along rays", "no surface has it",
        of_materials<is_cut_out>, of_each<drop_cut_outs>},
       {"alpha_blend", "Partial coverage", group, "random passage of rays", "no surface has it",
@@ -262,6 +287,24 @@ std::vector<Row> texture_rows() {
       {"diffuse_transmission_color_texture", "Colour of diffuse transmission", group, "texture array", none,
        of_texture<&Material::diffuse_transmission_color_texture>,
        drop_texture<&Material::diffuse_transmission_color_texture>},
+      {"clearcoat_texture", "Clear coat", group, "texture array", none,
+       of_texture<&Material::clearcoat_texture>, drop_texture<&Material::clearcoat_texture>},
+      {"clearcoat_roughness_texture", "Roughness of clear coat", group, "texture array", none,
+       of_texture<&Material::clearcoat_roughness_texture>,
+       drop_texture<&Material::clearcoat_roughness_texture>},
+      {"clearcoat_normal_map", "Normal maps of clear coat", group, "tangents and the coat's normals", none,
+       of_texture<&Material::clearcoat_normal_texture>, drop_texture<&Material::clearcoat_normal_texture>},
+      {"sheen_color_texture", "Colour of sheen", group, "texture array", none,
+       of_texture<&Material::sheen_color_texture>, drop_texture<&Material::sheen_color_texture>},
+      {"sheen_roughness_texture", "Roughness of sheen", group, "texture array", none,
+       of_texture<&Material::sheen_roughness_texture>, drop_texture<&Material::sheen_roughness_texture>},
+      {"anisotropy_texture", "Direction of brushing", group, "texture array", none,
+       of_texture<&Material::anisotropy_texture>, drop_texture<&Material::anisotropy_texture>},
+      {"iridescence_texture", "Thin film", group, "texture array", none,
+       of_texture<&Material::iridescence_texture>, drop_texture<&Material::iridescence_texture>},
+      {"iridescence_thickness_texture", "Thickness of film", group, "texture array", none,
+       of_texture<&Material::iridescence_thickness_texture>,
+       drop_texture<&Material::iridescence_thickness_texture>},
   };
 }
 

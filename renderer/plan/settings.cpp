@@ -184,6 +184,15 @@ void add_display_options(std::vector<OptionInfo>& list) {
   }
 }
 
+void add_scene_options(std::vector<OptionInfo>& list) {
+  list.push_back(
+      text_option("scene.variant",
+                  "The variant of the materials, of those that the scene's file names; empty: the file's "
+                  "default. lucerna info lists them."));
+  list.push_back(boolean_option("scene.clay", "false",
+                                "All surfaces are matt grey, but those that transmit or emit light."));
+}
+
 void add_effect_options(std::vector<OptionInfo>& list) {
   list.push_back(text_option(
       "effects.off",
@@ -197,6 +206,7 @@ std::vector<OptionInfo> make_options() {
   add_sampling_options(list);
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const OptionInfo& option : solver->options) list.push_back(of_same_light(option));
+  add_scene_options(list);
   add_effect_options(list);
   add_relight_options(list);
   add_display_options(list);

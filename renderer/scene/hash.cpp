@@ -48,7 +48,7 @@ uint64_t geometry(const Scene& scene) {
   for (const Mesh& mesh : scene.meshes) {
     Hash hash;
     for (const Primitive& primitive : mesh.primitives) {
-      const auto& [positions, normals, tangents, uv0, uv1, colors, triangles, material] = primitive;
+      const auto& [positions, normals, tangents, uv0, uv1, colors, triangles, variants, material] = primitive;
       hash.add_values(positions);
       hash.add_values(normals);
       hash.add_values(tangents);
@@ -77,15 +77,17 @@ uint64_t materials(const Scene& scene, Images& images) {
                  double_sided, unlit, ior, specular, specular_texture, specular_color, specular_color_texture,
                  transmission, transmission_texture, thickness, attenuation_color, attenuation_distance,
                  diffuse_transmission, diffuse_transmission_texture, diffuse_transmission_color,
-                 diffuse_transmission_color_texture, group] = m;
+                 diffuse_transmission_color_texture, clearcoat, clearcoat_texture, clearcoat_roughness,
+                 clearcoat_roughness_texture, clearcoat_normal_texture, clearcoat_normal_scale, sheen_color,
+                 sheen_color_texture, sheen_roughness, sheen_roughness_texture, anisotropy,
+                 anisotropy_rotation, anisotropy_texture, iridescence, iridescence_texture, iridescence_ior,
+                 iridescence_minimum, iridescence_maximum, iridescence_thickness_texture, group] = m;
     add_all(hash, base_color, metallic, roughness, normal_scale, emission, alpha_mode, alpha_cutoff,
             double_sided, unlit, ior, specular, specular_color, transmission, thickness, attenuation_color,
-            attenuation_distance, diffuse_transmission, diffuse_transmission_color);
-    for (const TextureUse* use :
-         {&base_color_texture, &metallic_roughness_texture, &normal_texture, &emission_texture,
-          &specular_texture, &specular_color_texture, &transmission_texture, &diffuse_transmission_texture,
-          &diffuse_transmission_color_texture})
-      images.add(hash, *use);
+            attenuation_distance, diffuse_transmission, diffuse_transmission_color, clearcoat,
+            clearcoat_roughness, clearcoat_normal_scale, sheen_color, sheen_roughness, anisotropy,
+            anisotropy_rotation, iridescence, iridescence_ior, iridescence_minimum, iridescence_maximum);
+    for (const TextureSlot& slot : k_texture_slots) images.add(hash, m.*slot.use);
   }
   return hash.low();
 }

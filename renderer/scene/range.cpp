@@ -86,6 +86,17 @@ void check_range(const Material& m) {
   if (!within(vec3(m.base_color), k_max_strength) || !within(m.roughness, 0, k_max_strength) ||
       !within(m.metallic, 0, k_max_strength))
     throw_error(where, "its colour, roughness or metallic is negative or not finite");
+  if (!within(m.clearcoat, 0, 1) || !within(m.clearcoat_roughness, 0, 1))
+    throw_error(where, "its clear coat has strength {:.4g} and roughness {:.4g}, expected 0 to 1",
+                m.clearcoat, m.clearcoat_roughness);
+  if (!within(m.sheen_color, 1) || !within(m.sheen_roughness, 0, 1))
+    throw_error(where, "its sheen has a colour or roughness that is not between 0 and 1");
+  if (!within(m.anisotropy, 0, 1) || !std::isfinite(m.anisotropy_rotation))
+    throw_error(where, "its anisotropy {:.4g} is not between 0 and 1, or its rotation is not finite",
+                m.anisotropy);
+  if (!within(m.iridescence, 0, 1) || !within(m.iridescence_ior, 1, k_max_strength) ||
+      !within(m.iridescence_minimum, 0, k_max_strength) || !within(m.iridescence_maximum, 0, k_max_strength))
+    throw_error(where, "its thin film has a strength, index or thickness out of range");
   if (!within(m.emission, k_max_strength))
     throw_error(where, "it emits ({:.4g}, {:.4g}, {:.4g}), expected 0 to {:.0g}", m.emission.x, m.emission.y,
                 m.emission.z, k_max_strength);

@@ -76,13 +76,62 @@ struct Material {
   TextureUse diffuse_transmission_texture;  ///< a
   vec3 diffuse_transmission_color{1};
   TextureUse diffuse_transmission_color_texture;  ///< rgb
+  float clearcoat = 0;                            ///< KHR_materials_clearcoat: strength of a coat of varnish
+  TextureUse clearcoat_texture;                   ///< r
+  float clearcoat_roughness = 0;
+  TextureUse clearcoat_roughness_texture;  ///< g
+  TextureUse clearcoat_normal_texture;     ///< without it the coat follows the vertices' normals
+  float clearcoat_normal_scale = 1;
+  vec3 sheen_color{0};             ///< KHR_materials_sheen: reflectance of fibres; 0: none
+  TextureUse sheen_color_texture;  ///< rgb
+  float sheen_roughness = 0;
+  TextureUse sheen_roughness_texture;  ///< a
+  float anisotropy = 0;            ///< KHR_materials_anisotropy: 0 equal in all directions, 1 most brushed
+  float anisotropy_rotation = 0;   ///< of the brushing, from the tangent towards the bitangent, radians
+  TextureUse anisotropy_texture;   ///< rg direction, b strength
+  float iridescence = 0;           ///< KHR_materials_iridescence: strength of a thin film
+  TextureUse iridescence_texture;  ///< r
+  float iridescence_ior = 1.3f;
+  /// Thickness of the film where the texture is 0 and 1; without a texture it is the maximum. Nanometres.
+  float iridescence_minimum = 100, iridescence_maximum = 400;
+  TextureUse iridescence_thickness_texture;  ///< g
   std::string group;  ///< light group, if it emits: extras.light_group; "": none given (light_groups.h)
   bool operator==(const Material&) const = default;
 };
 
+/// A texture of a material, by a name for people and files.
+struct TextureSlot {
+  const char* name;
+  TextureUse Material::*use;
+};
+/// All of them, in the order of shared::k_use_*.
+inline constexpr TextureSlot k_texture_slots[] = {
+    {"base_color", &Material::base_color_texture},
+    {"metallic_roughness", &Material::metallic_roughness_texture},
+    {"normal", &Material::normal_texture},
+    {"emission", &Material::emission_texture},
+    {"specular", &Material::specular_texture},
+    {"specular_color", &Material::specular_color_texture},
+    {"transmission", &Material::transmission_texture},
+    {"diffuse_transmission", &Material::diffuse_transmission_texture},
+    {"diffuse_transmission_color", &Material::diffuse_transmission_color_texture},
+    {"clearcoat", &Material::clearcoat_texture},
+    {"clearcoat_roughness", &Material::clearcoat_roughness_texture},
+    {"clearcoat_normal", &Material::clearcoat_normal_texture},
+    {"sheen_color", &Material::sheen_color_texture},
+    {"sheen_roughness", &Material::sheen_roughness_texture},
+    {"anisotropy", &Material::anisotropy_texture},
+    {"iridescence", &Material::iridescence_texture},
+    {"iridescence_thickness", &Material::iridescence_thickness_texture},
+};
+/// Whether shading needs the directions of texture coordinates on the surface: Primitive::tangents.
+inline bool needs_tangents(const Material& m) {
+  return m.normal_texture || m.clearcoat_normal_texture || m.anisotropy > 0;
+}
+
 /// Triangles of one material in object space. Streams are empty or have one entry per vertex. After loading:
 /// positions finite, triangles in range and not degenerate, normals present (unit length), tangents present
-/// (xyz unit, w = +-1) if the material has a normal texture.
+/// (xyz unit, w = +-1) if the material needs them (needs_tangents).
 struct Primitive {
   std::vector<vec3> positions;
   std::vector<vec3> normals;
@@ -90,7 +139,8 @@ struct Primitive {
   std::vector<vec2> uv0, uv1;
   std::vector<vec4> colors;  ///< COLOR_0, linear; multiplies base_color
   std::vector<uvec3> triangles;
-  Id material = 0;  ///< always valid; glTF's default material is added where a primitive has none
+  std::vector<Id> variants;  ///< by variant of the scene: its material there; k_none or missing: `material`
+  Id material = 0;           ///< always valid; glTF's default material is added where a primitive has none
 };
 
 struct Mesh {
@@ -197,7 +247,8 @@ struct Scene {
   std::vector<Material> materials;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
-  std::vector<Portal> portals;  ///< at most k_max_portals
+  std::vector<Portal> portals;        ///< at most k_max_portals
+  std::vector<std::string> variants;  ///< names of variants of the materials (variants.h)
   Environment environment;
   /// Render settings from settings.json beside the scene, key -> value as text, in file order; checked by
   /// plan/.

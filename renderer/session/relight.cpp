@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "plan/facts.h"
+#include "plan/traced_scene.h"
 #include "scene/light_factor.h"
 #include "solvers/solver.h"
 
@@ -58,8 +58,8 @@ Relight make_relight(const plan::Plan& plan, const plan::Settings& settings,
                      std::shared_ptr<const scene::Scene> scene, bool interactive, uint64_t pixels,
                      uint64_t memory, const Relight& before) {
   Relight r;
-  scene = plan::without_effects(std::move(scene), plan::effects_off(settings));
-  r.without = settings.text("effects.off");
+  scene = plan::traced_scene(std::move(scene), settings);
+  r.traced = plan::traced_scene_key(settings);
   const std::string& rules_text = settings.text("relight.groups");
   const std::vector<scene::LightGroupRule> rules = scene::parse_group_rules(rules_text);
   const scene::LightMix mix = scene::parse_mix(settings.text("relight.mix"));

@@ -20,7 +20,7 @@ struct Relight {
   std::string why_not;                                    ///< if not: the reason, for messages
   std::vector<vec3> weights;                              ///< by group
   std::shared_ptr<const scene::Scene> lit;                ///< the traced scene
-  std::string without;                                    ///< effects.off, as removed from `lit`
+  std::string traced;                                     ///< plan::traced_scene_key(), as applied to `lit`
   std::string baked;  ///< settings applied to `lit`; "": none, it is the scene itself
   /// By group: strength of the scene's lights over those of `lit`, to which a mix was applied; empty: equal.
   /// Included in the weights.

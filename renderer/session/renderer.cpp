@@ -6,6 +6,7 @@
 
 #include "base/log.h"
 #include "plan/plan.h"
+#include "plan/traced_scene.h"
 #include "scene/default_light.h"
 #include "scene/io/load.h"
 #include "scene/light_factor.h"
@@ -68,8 +69,7 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
 void Renderer::install(Transaction::Target target, const Progress& progress, const scene::Changes& changes) {
   rest();
   scene::check_range(target.camera);
-  plan::SceneFacts facts =
-      plan::facts_of(*plan::without_effects(target.scene, plan::effects_off(target.settings)));
+  plan::SceneFacts facts = plan::facts_of(*plan::traced_scene(target.scene, target.settings));
   plan::Plan plan = plan::make_plan(facts, target.settings);
   Transaction transaction(context_, setup_, std::move(target), std::move(plan));
   transaction.make_world(progress);
@@ -323,7 +323,9 @@ void Renderer::apply_settings() {
   if (changed("lights.portals"))
     target.scene = with_portals(target.scene, loaded_->portals, target.settings.text("lights.portals"));
   if (target.scene != setup_.world.scene || changed("tracer") || changed("path.batch") ||
-      changed("path.classes") || changed("effects.off")) {
+      changed("path.classes") ||
+      std::any_of(std::begin(plan::k_traced_scene_settings), std::end(plan::k_traced_scene_settings),
+                  changed)) {
     install(std::move(target), {}, changes);
     return;
   }

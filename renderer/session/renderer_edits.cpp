@@ -61,13 +61,7 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
   const scene::Material before = std::exchange(m, material);
   bool same = m.alpha_mode == before.alpha_mode && (m.transmission > 0) == (before.transmission > 0) &&
               (m.thickness > 0) == (before.thickness > 0);
-  for (const auto use :
-       {&scene::Material::base_color_texture, &scene::Material::metallic_roughness_texture,
-        &scene::Material::normal_texture, &scene::Material::emission_texture,
-        &scene::Material::specular_texture, &scene::Material::specular_color_texture,
-        &scene::Material::transmission_texture, &scene::Material::diffuse_transmission_texture,
-        &scene::Material::diffuse_transmission_color_texture})
-    same &= m.*use == before.*use;
+  for (const auto& slot : scene::k_texture_slots) same &= m.*slot.use == before.*slot.use;
   if (!same)
     throw_error("material", "'{}': its textures, alpha mode, transmission and thickness cannot be changed",
                 before.name);

@@ -35,7 +35,7 @@ Relight Transaction::make_relight() const {
                                           context_.device.info().memory_bytes, setup_.relight);
   keep_written(relight, setup_.relight);
   if (target_.scene == setup_.world.scene && relight.baked == setup_.relight.baked &&
-      relight.without == setup_.relight.without)
+      relight.traced == setup_.relight.traced)
     relight.lit = setup_.world.lit;
   return relight;
 }

@@ -22,6 +22,7 @@ std::span<const ChangeRow> default_changes() {
       {Change::shaders, k_invalidates_all, "whatever they compute"},
       {Change::restart, k_invalidates_all, "the user asks for everything from scratch"},
       {"effects.", k_invalidates_all, "other surfaces and lights"},
+      {"scene.", k_invalidates_all, "other materials"},
       {"samples", k_invalidates_nothing, "of the picture alone"},
       {"sampling.", k_invalidates_nothing, "of the picture alone"},
       {"film.", k_invalidates_nothing, "how it is shown"},

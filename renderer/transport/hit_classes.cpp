@@ -89,6 +89,15 @@ gpu::Defines defines_of(const HitClass& hits, const gpu::Defines& all) {
   keep("LUCERNA_TEX_SPECULAR", needs(k_feature_specular_texture));
   keep("LUCERNA_TEX_TRANSMISSION", needs(k_feature_transmission_texture));
   keep("LUCERNA_TEX_DIFFUSE_TRANSMISSION", needs(k_feature_diffuse_transmission_texture));
+  keep("LUCERNA_CLEARCOAT", needs(k_feature_clearcoat));
+  keep("LUCERNA_TEX_CLEARCOAT", needs(k_feature_clearcoat_texture));
+  keep("LUCERNA_CLEARCOAT_NORMALS", needs(k_feature_clearcoat_normal));
+  keep("LUCERNA_SHEEN", needs(k_feature_sheen));
+  keep("LUCERNA_TEX_SHEEN", needs(k_feature_sheen_texture));
+  keep("LUCERNA_ANISOTROPY", needs(k_feature_anisotropy));
+  keep("LUCERNA_TEX_ANISOTROPY", needs(k_feature_anisotropy_texture));
+  keep("LUCERNA_IRIDESCENCE", needs(k_feature_iridescence));
+  keep("LUCERNA_TEX_IRIDESCENCE", needs(k_feature_iridescence_texture));
   return d;
 }
 

@@ -134,6 +134,42 @@ static_assert(shared::k_table_cells == k_columns * k_rows);
 static_assert(shared::k_table_schlick_texels == 2 * shared::k_table_cells + k_rows);
 static_assert(shared::k_table_glass_block == shared::k_table_cells + k_rows);
 static_assert(shared::k_table_glass_texels == 3 * shared::k_table_glass_block);
+static_assert(shared::k_table_first_glass == shared::k_table_schlick_texels + shared::k_table_glass_block);
+
+/// Directional albedo of a white sheen (shaders/lib/sheen.glsl), by a product rule over the hemisphere.
+void sheen_table(vec4* table) {
+  const auto fit = [](double x, double share) {
+    const auto mix = [share](double a, double b) { return a + (b - a) * share; };
+    return mix(21.5473, 25.3245) / (1 + mix(3.82987, 3.32435) * std::pow(x, mix(0.19823, 0.16801))) +
+           mix(-1.97760, -1.27393) * x + mix(-4.32054, -4.85967);
+  };
+  const auto hidden = [&](double c, double alpha) {
+    const double share = (1 - alpha) * (1 - alpha);
+    return c < 0.5 ? std::exp(fit(c, share)) : std::exp(2 * fit(0.5, share) - fit(1 - c, share));
+  };
+  constexpr int k_heights = 48, k_turns = 24;
+  for (uint32_t j = 0; j < k_table_rough; ++j) {
+    const double r = std::max(double(j) / (k_table_rough - 1), double(shared::k_least_sheen_roughness)),
+                 alpha = r * r;
+    vec4* row = table + j * k_table_mu;
+    for (uint32_t i = 0; i < k_table_mu; ++i) {
+      const double t = double(i) / (k_table_mu - 1), mu = std::max(t * t, 1e-4);
+      const Vec wo{std::sqrt(1 - mu * mu), 0, mu};
+      double sum = 0;
+      for (int a = 0; a < k_heights; ++a)
+        for (int b = 0; b < k_turns; ++b) {
+          const double z = (a + 0.5) / k_heights, s = std::sqrt(1 - z * z);
+          const double turn = k_tau / 2 * (b + 0.5) / k_turns;  // the other half is alike
+          const Vec wi{s * std::cos(turn), s * std::sin(turn), z};
+          const Vec h = normalized({wo.x + wi.x, wi.y, wo.z + wi.z});
+          const double d =
+              (2 + 1 / alpha) * std::pow(std::max(h.x * h.x + h.y * h.y, 1e-12), 0.5 / alpha) / k_tau;
+          sum += d / ((1 + hidden(mu, alpha) + hidden(z, alpha)) * 4 * mu);
+        }
+      row[i] = vec4(float(sum * k_tau / (k_heights * k_turns)), 0, 0, 0);
+    }
+  }
+}
 
 void append_schlick(const vec4* points, std::vector<vec4>& out) {
   for (uint32_t j = 0; j < k_rows; ++j)
@@ -190,10 +226,22 @@ const std::vector<vec4>& kept_schlick_tables() {
   return tables;
 }
 
+const std::vector<vec4>& kept_sheen_table() {
+  static const std::vector<vec4> table = [] {
+    std::vector<vec4> made, points(k_points);
+    sheen_table(points.data());
+    append_glass(points.data(), 0, made);
+    return made;
+  }();
+  return table;
+}
+
 }  // namespace
 
-std::vector<vec4> build_bsdf_tables(std::span<const float> glass_iors) {
+std::vector<vec4> build_bsdf_tables(std::span<const float> glass_iors, bool sheen) {
   std::vector<vec4> tables = kept_schlick_tables();
+  if (sheen) tables.insert(tables.end(), kept_sheen_table().begin(), kept_sheen_table().end());
+  tables.resize(shared::k_table_first_glass);
   for (const float ior : glass_iors) {
     const std::vector<vec4> glass = kept_glass_tables(ior);
     tables.insert(tables.end(), glass.begin(), glass.end());

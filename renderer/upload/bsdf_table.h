@@ -8,8 +8,9 @@
 
 namespace lucerna::upload {
 
-/// Table 0 (Schlick reflector), then two tables for each index of refraction. The averages are integrals of
-/// the bilinearly interpolated table, so that the complement returns exactly the energy missing in the table.
-std::vector<vec4> build_bsdf_tables(std::span<const float> glass_iors);
+/// Table 0 (Schlick reflector), that of sheen (zeros without `sheen`), then two tables for each index of
+/// refraction. The averages are integrals of the bilinearly interpolated table, so that the complement
+/// returns exactly the energy missing in the table.
+std::vector<vec4> build_bsdf_tables(std::span<const float> glass_iors, bool sheen);
 
 }  // namespace lucerna::upload

@@ -167,15 +167,36 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_TEX_SPECULAR", e.tex_specular);
   set("LUCERNA_TEX_TRANSMISSION", e.tex_transmission);
   set("LUCERNA_TEX_DIFFUSE_TRANSMISSION", e.tex_diffuse_transmission);
+  set("LUCERNA_TANGENTS", e.tangents);
+  set("LUCERNA_CLEARCOAT", e.clearcoat);
+  set("LUCERNA_TEX_CLEARCOAT", e.tex_clearcoat);
+  set("LUCERNA_CLEARCOAT_NORMALS", e.clearcoat_normals);
+  set("LUCERNA_SHEEN", e.sheen);
+  set("LUCERNA_TEX_SHEEN", e.tex_sheen);
+  set("LUCERNA_ANISOTROPY", e.anisotropy);
+  set("LUCERNA_TEX_ANISOTROPY", e.tex_anisotropy);
+  set("LUCERNA_IRIDESCENCE", e.iridescence);
+  set("LUCERNA_TEX_IRIDESCENCE", e.tex_iridescence);
   set("LUCERNA_UV_TRANSFORMS", e.uv_transforms);
   set("LUCERNA_TEX_NEAREST", e.tex_nearest);
   set("LUCERNA_TEX_WRAPS", e.tex_wraps);
-  static constexpr const char* k_masks[] = {
-      "LUCERNA_BASE_BUCKETS",           "LUCERNA_METALLIC_ROUGHNESS_BUCKETS",
-      "LUCERNA_NORMAL_BUCKETS",         "LUCERNA_EMISSION_BUCKETS",
-      "LUCERNA_SPECULAR_BUCKETS",       "LUCERNA_SPECULAR_COLOR_BUCKETS",
-      "LUCERNA_TRANSMISSION_BUCKETS",   "LUCERNA_DIFFUSE_T_BUCKETS",
-      "LUCERNA_DIFFUSE_T_COLOR_BUCKETS"};
+  static constexpr const char* k_masks[] = {"LUCERNA_BASE_BUCKETS",
+                                            "LUCERNA_METALLIC_ROUGHNESS_BUCKETS",
+                                            "LUCERNA_NORMAL_BUCKETS",
+                                            "LUCERNA_EMISSION_BUCKETS",
+                                            "LUCERNA_SPECULAR_BUCKETS",
+                                            "LUCERNA_SPECULAR_COLOR_BUCKETS",
+                                            "LUCERNA_TRANSMISSION_BUCKETS",
+                                            "LUCERNA_DIFFUSE_T_BUCKETS",
+                                            "LUCERNA_DIFFUSE_T_COLOR_BUCKETS",
+                                            "LUCERNA_CLEARCOAT_BUCKETS",
+                                            "LUCERNA_CLEARCOAT_ROUGHNESS_BUCKETS",
+                                            "LUCERNA_CLEARCOAT_NORMAL_BUCKETS",
+                                            "LUCERNA_SHEEN_COLOR_BUCKETS",
+                                            "LUCERNA_SHEEN_ROUGHNESS_BUCKETS",
+                                            "LUCERNA_ANISOTROPY_BUCKETS",
+                                            "LUCERNA_IRIDESCENCE_BUCKETS",
+                                            "LUCERNA_IRIDESCENCE_THICKNESS_BUCKETS"};
   static_assert(std::size(k_masks) == shared::k_texture_uses);
   for (uint32_t use = 0; use < shared::k_texture_uses; ++use)
     d[k_masks[use]] = fmt::format("{}u", e.texture_buckets[use]);

@@ -27,6 +27,7 @@ bool any(const vec3& c) { return c.x > 0 || c.y > 0 || c.z > 0; }
 void flatten_geometry(const scene::Scene& scene, FlatScene& flat) {
   for (const scene::Material& m : scene.materials) {
     flat.effects.normal_maps |= bool(m.normal_texture);
+    flat.effects.tangents |= scene::needs_tangents(m);
   }
   for (const scene::Mesh& mesh : scene.meshes)
     for (const scene::Primitive& p : mesh.primitives)
@@ -50,9 +51,9 @@ void flatten_geometry(const scene::Scene& scene, FlatScene& flat) {
         const vec2 uv = i < p.uv0.size() ? p.uv0[i] : vec2(0);
         flat.vertices.push_back(vec4(position, uv.x));
         flat.vertices.push_back(vec4(n, uv.y));
-        if (flat.effects.normal_maps) {
+        if (flat.effects.tangents) {
           vec4 t(0);
-          if (i < p.tangents.size() && material.normal_texture) {
+          if (i < p.tangents.size() && scene::needs_tangents(material)) {
             vec3 d = linear * vec3(p.tangents[i]);
             d -= n * glm::dot(n, d);
             const float l = glm::length(d);
@@ -90,6 +91,7 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
   Effects& e = flat.effects;
   e.specular = e.solid_glass = e.thin_glass = e.diffuse_transmission = false;
   e.volumes = e.unlit = e.alpha = e.glass_specular = false;
+  e.clearcoat = e.sheen = e.anisotropy = e.iridescence = false;
   e.plain_emitters = true;
   const MaterialKinds kinds = material_kinds(scene.materials);
   flat.materials.resize(scene.materials.size() * k_material_texels);
@@ -124,12 +126,23 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
     out[k_material_volume] = vec4(absorption, row);
     out[k_material_diffuse_t] = vec4(m.diffuse_transmission_color, m.diffuse_transmission);
     out[k_material_detail] = vec4(m.normal_scale, m.alpha_cutoff, 0, as_float(kinds.of_material[i]));
+    out[k_material_coat] = vec4(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale, 0);
+    out[k_material_sheen] = vec4(m.sheen_color, m.sheen_roughness);
+    out[k_material_grain] =
+        vec4(m.anisotropy, std::cos(m.anisotropy_rotation), std::sin(m.anisotropy_rotation), 0);
+    out[k_material_film] =
+        vec4(m.iridescence, m.iridescence_ior, m.iridescence_minimum, m.iridescence_maximum);
+    e.clearcoat |= m.clearcoat > 0;
+    e.sheen |= any(m.sheen_color);
+    e.anisotropy |= m.anisotropy > 0;
+    e.iridescence |= m.iridescence > 0;
     const bool lets_all_through = m.transmission >= 1 && !m.transmission_texture;
-    e.specular |= !m.unlit && (m.metallic > 0 || (m.specular > 0 && !lets_all_through));
+    e.specular |= !m.unlit && (m.metallic > 0 || (m.specular > 0 && !lets_all_through) || is_layered(m));
     e.solid_glass |= solid;
     e.thin_glass |= thin;
-    e.glass_specular |= (solid || thin) && (m.specular != 1 || m.specular_color != vec3(1) ||
-                                            m.specular_texture || m.specular_color_texture);
+    e.glass_specular |=
+        (solid || thin) && (m.specular != 1 || m.specular_color != vec3(1) || m.specular_texture ||
+                            m.specular_color_texture || m.iridescence > 0);
     e.diffuse_transmission |= m.diffuse_transmission > 0;
     if (flags & k_flag_emissive)
       e.plain_emitters &= !m.emission_texture && m.alpha_mode == scene::AlphaMode::opaque;
@@ -138,8 +151,9 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
     e.alpha |= m.alpha_mode != scene::AlphaMode::opaque;
   }
   e.kinds = kinds.features;
-  if (flat.bsdf_tables.empty() || flat.glass_iors != glass_iors)
-    flat.bsdf_tables = build_bsdf_tables(glass_iors);
+  if (flat.bsdf_tables.empty() || flat.glass_iors != glass_iors || flat.has_sheen != e.sheen)
+    flat.bsdf_tables = build_bsdf_tables(glass_iors, e.sheen);
+  flat.has_sheen = e.sheen;
   flat.glass_iors = std::move(glass_iors);
   flatten_media(flat);
 }
@@ -152,25 +166,18 @@ void flatten_textures(const scene::Scene& scene, FlatScene& flat) {
   for (size_t i = 0; i < scene.materials.size(); ++i) {
     const scene::Material& m = scene.materials[i];
     vec4* out = flat.materials.data() + i * k_material_texels;
-    const scene::TextureUse* uses[k_texture_uses] = {&m.base_color_texture,
-                                                     &m.metallic_roughness_texture,
-                                                     &m.normal_texture,
-                                                     &m.emission_texture,
-                                                     &m.specular_texture,
-                                                     &m.specular_color_texture,
-                                                     &m.transmission_texture,
-                                                     &m.diffuse_transmission_texture,
-                                                     &m.diffuse_transmission_color_texture};
+    static_assert(std::size(scene::k_texture_slots) == k_texture_uses);
     for (uint32_t u = 0; u < k_texture_uses; ++u) {
-      const auto& x = uses[u]->m;
+      const scene::TextureUse& use = m.*scene::k_texture_slots[u].use;
+      const auto& x = use.m;
       vec4* texel = out + k_material_textures + k_texture_texels * u;
-      texel[1] = vec4(as_float(textures.bits(*uses[u])), x[2], x[5], 0);
+      texel[1] = vec4(as_float(textures.bits(use)), x[2], x[5], 0);
       texel[2] = vec4(x[0], x[1], x[3], x[4]);
-      if (!*uses[u]) continue;
-      const TexturePlace& place = textures.place[uses[u]->texture];
-      const scene::Texture& texture = scene.textures[uses[u]->texture];
+      if (!use) continue;
+      const TexturePlace& place = textures.place[use.texture];
+      const scene::Texture& texture = scene.textures[use.texture];
       texel[0] = place.rect;
-      e.uv_transforms |= uses[u]->m != scene::TextureUse().m;
+      e.uv_transforms |= use.m != scene::TextureUse().m;
       e.texture_buckets[u] |= 1u << place.bucket;
       e.tex_nearest |= texture.nearest;
       e.tex_wraps |= texture.wrap_u != scene::Wrap::repeat || texture.wrap_v != scene::Wrap::repeat;
@@ -181,6 +188,11 @@ void flatten_textures(const scene::Scene& scene, FlatScene& flat) {
     e.tex_specular |= m.specular_texture || m.specular_color_texture;
     e.tex_transmission |= bool(m.transmission_texture);
     e.tex_diffuse_transmission |= m.diffuse_transmission_texture || m.diffuse_transmission_color_texture;
+    e.tex_clearcoat |= m.clearcoat_texture || m.clearcoat_roughness_texture;
+    e.clearcoat_normals |= bool(m.clearcoat_normal_texture);
+    e.tex_sheen |= m.sheen_color_texture || m.sheen_roughness_texture;
+    e.tex_anisotropy |= bool(m.anisotropy_texture);
+    e.tex_iridescence |= m.iridescence_texture || m.iridescence_thickness_texture;
   }
 }
 

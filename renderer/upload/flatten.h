@@ -20,7 +20,9 @@ struct Effects {
        thin_glass = false, diffuse_transmission = false, volumes = false, unlit = false, alpha = false,
        glass_specular = false, normal_maps = false, vertex_extra = false, tex_base = false,
        tex_metallic_roughness = false, tex_emission = false, tex_specular = false, tex_transmission = false,
-       tex_diffuse_transmission = false;
+       tex_diffuse_transmission = false, tangents = false, clearcoat = false, sheen = false,
+       anisotropy = false, iridescence = false, tex_clearcoat = false, clearcoat_normals = false,
+       tex_sheen = false, tex_anisotropy = false, tex_iridescence = false;
   bool plain_emitters = true;  ///< no emissive surface has an emission texture or alpha transparency
   /// Number of lamps from which a light sample is resampled by their light at the point; 0: few lamps.
   uint32_t lamp_candidates = 0;
@@ -98,6 +100,7 @@ struct FlatMaterials {
   std::vector<vec4> materials;
   std::vector<vec4> bsdf_tables;
   std::vector<float> glass_iors;              ///< indices of refraction of the tables
+  bool has_sheen = false;                     ///< the tables have that of sheen
   std::vector<vec4> media;                    ///< scene_media; empty: no solid absorbs
   std::shared_ptr<const SolidShells> shells;  ///< shells from which `media` is made
 };

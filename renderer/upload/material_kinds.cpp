@@ -6,6 +6,10 @@
 
 namespace lucerna::upload {
 
+bool is_layered(const scene::Material& m) {
+  return m.clearcoat > 0 || m.sheen_color != vec3(0) || m.anisotropy > 0 || m.iridescence > 0;
+}
+
 uint32_t features_of(const scene::Material& m) {
   const bool glass = m.transmission > 0;
   const bool smooth = m.roughness * m.roughness < shared::k_delta_alpha && !m.metallic_roughness_texture;
@@ -13,11 +17,12 @@ uint32_t features_of(const scene::Material& m) {
   const bool all_glass = m.transmission >= 1 && !m.transmission_texture;
   uint32_t features = 0;
   const auto has = [&](uint32_t feature, bool on) { features |= on ? feature : 0u; };
-  has(k_feature_specular, m.metallic > 0 || m.specular > 0);
+  has(k_feature_specular, m.metallic > 0 || m.specular > 0 || is_layered(m));
   has(k_feature_solid_glass, glass && m.thickness > 0);
   has(k_feature_thin_glass, glass && m.thickness <= 0);
-  has(k_feature_glass_specular, glass && (m.specular != 1 || m.specular_color != vec3(1) ||
-                                          m.specular_texture || m.specular_color_texture));
+  has(k_feature_glass_specular,
+      glass && (m.specular != 1 || m.specular_color != vec3(1) || m.specular_texture ||
+                m.specular_color_texture || m.iridescence > 0));
   has(k_feature_diffuse_transmission, m.diffuse_transmission > 0);
   has(k_feature_unlit, m.unlit);
   has(k_feature_alpha, m.alpha_mode != scene::AlphaMode::opaque);
@@ -30,7 +35,19 @@ uint32_t features_of(const scene::Material& m) {
   has(k_feature_transmission_texture, bool(m.transmission_texture));
   has(k_feature_diffuse_transmission_texture,
       m.diffuse_transmission_texture || m.diffuse_transmission_color_texture);
-  has(k_feature_light_samples, !smooth || !(all_metal || all_glass));
+  // A coat, sheen or brushing reflects light samples over a smooth metal or glass, too.
+  has(k_feature_light_samples, !smooth || !(all_metal || all_glass) || is_layered(m));
+  const bool coat = m.clearcoat > 0, sheen = m.sheen_color != vec3(0);
+  has(k_feature_clearcoat, coat);
+  has(k_feature_clearcoat_texture, coat && (m.clearcoat_texture || m.clearcoat_roughness_texture));
+  has(k_feature_clearcoat_normal, coat && m.clearcoat_normal_texture);
+  has(k_feature_sheen, sheen);
+  has(k_feature_sheen_texture, sheen && (m.sheen_color_texture || m.sheen_roughness_texture));
+  has(k_feature_anisotropy, m.anisotropy > 0);
+  has(k_feature_anisotropy_texture, m.anisotropy > 0 && m.anisotropy_texture);
+  has(k_feature_iridescence, m.iridescence > 0);
+  has(k_feature_iridescence_texture,
+      m.iridescence > 0 && (m.iridescence_texture || m.iridescence_thickness_texture));
   return features;
 }
 

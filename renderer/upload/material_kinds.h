@@ -29,8 +29,20 @@ enum MaterialFeature : uint32_t {
   k_feature_transmission_texture = 1u << 13,
   k_feature_diffuse_transmission_texture = 1u << 14,  ///< of factor or colour
   k_feature_light_samples = 1u << 15,                 ///< a lobe that is not a delta
-  k_all_features = (1u << 16) - 1u,
+  k_feature_clearcoat = 1u << 16,
+  k_feature_clearcoat_texture = 1u << 17,  ///< of strength or roughness
+  k_feature_clearcoat_normal = 1u << 18,
+  k_feature_sheen = 1u << 19,
+  k_feature_sheen_texture = 1u << 20,  ///< of colour or roughness
+  k_feature_anisotropy = 1u << 21,
+  k_feature_anisotropy_texture = 1u << 22,
+  k_feature_iridescence = 1u << 23,
+  k_feature_iridescence_texture = 1u << 24,  ///< of strength or thickness
+  k_all_features = (1u << 25) - 1u,
 };
+
+/// Whether it has a coat, sheen, brushing or a thin film: their code needs that of the specular lobe.
+bool is_layered(const scene::Material& material);
 
 uint32_t features_of(const scene::Material& material);
 

@@ -136,6 +136,7 @@ class Scene:
         self.used = set()
         self.material_ids, self.mesh_ids, self.geometry, self.triangles = {}, {}, {}, {}
         self.total = 0
+        self.variant_names = []
         self.extras = None
 
     # ---- materials -------------------------------------------------------------------------------------------------
@@ -156,13 +157,14 @@ class Scene:
 
     def material(self, name, color=(0.8, 0.8, 0.8), rough=1.0, metal=0.0, lambert=False, emit=None, strength=1.0,
                  glass=None, thin=False, ior=None, double=False, maps=None, metres=None, through=None,
-                 through_color=None, normal_scale=1.0, attenuation=None, specular=None):
+                 through_color=None, normal_scale=1.0, attenuation=None, specular=None, layers=None):
         """Adds a material once and returns its name.
 
         lambert: a pure Lambertian (KHR_materials_specular with factor 0). emit: emitted radiance per `strength`.
         glass: roughness of a refracting solid (or thin wall with thin=True). through: share of the diffuse light
         that passes (KHR_materials_diffuse_transmission). maps: {"color", "normal", "rough"} -> files;
-        metres: size of one repeat of the maps where uv is in metres.
+        metres: size of one repeat of the maps where uv is in metres. layers: further extensions, such as
+        {"clearcoat": {"clearcoatFactor": 1}}, without the prefix KHR_materials_.
         """
         if name in self.material_ids:
             return name
@@ -201,6 +203,8 @@ class Scene:
                 m["normalTexture"] = self.texture_info(maps["normal"], metres)
                 if normal_scale != 1:
                     m["normalTexture"]["scale"] = normal_scale
+        for key, values in (layers or {}).items():
+            ext["KHR_materials_" + key] = values
         if double:
             m["doubleSided"] = True
         if ext:
@@ -256,7 +260,7 @@ class Scene:
         primitives, count = [], 0
         for mesh, material in parts:
             m = self.materials[self.material_ids[material]]
-            textured = '"index"' in json.dumps(m)
+            textured = any(key in json.dumps(m) for key in ('"index"', 'KHR_materials_anisotropy'))
             attributes, indices, n, _ = self._geometry(mesh, textured)
             primitives.append({"attributes": attributes, "indices": indices, "material": self.material_ids[material]})
             count += n
@@ -264,6 +268,13 @@ class Scene:
         self.triangles[name] = count
         self.meshes.append({"name": name, "primitives": primitives})
         return name
+
+    def variants(self, mesh, materials):
+        """Gives the first part of a mesh another material in each variant: {variant: material name}."""
+        self.variant_names += [v for v in materials if v not in self.variant_names]
+        self.meshes[self.mesh_ids[mesh]]["primitives"][0]["extensions"] = {"KHR_materials_variants": {"mappings": [
+            {"material": self.material_ids[m], "variants": [self.variant_names.index(v)]} for v, m in materials.items()]}}
+        self.used.add("KHR_materials_variants")
 
     def place(self, mesh, at=(0, 0, 0), yaw=0.0, matrix=None, scale=None, name=None):
         """Adds a node showing a mesh: at in metres, yaw in degrees (counter-clockwise seen from above)."""
@@ -343,6 +354,9 @@ class Scene:
             doc["extensionsUsed"] = sorted(self.used)
         if self.lights:
             doc["extensions"] = {"KHR_lights_punctual": {"lights": self.lights}}
+        if self.variant_names:
+            doc.setdefault("extensions", {})["KHR_materials_variants"] = {
+                "variants": [{"name": v} for v in self.variant_names]}
         scene = {"name": self.name, "nodes": list(range(len(self.nodes)))}
         if self.extras:
             scene["extras"] = self.extras

@@ -5,6 +5,15 @@
 //                          Lambert base/pi, coupled by (1-E(wo))(1-E(wi))/(1-E_avg)         D
 //                          diffuse transmission, coupled likewise                           D
 //   glass (1-m)t           GGX reflection and refraction with exact Fresnel (solid), or slab (thin)   G (S)
+//   over these, from below:
+//   sheen                  fibres (lib/sheen.glsl)                                                     G
+//   clear coat             GGX of index 1.5 about a normal of its own                                  G (S)
+//
+// What lies below layers is seen through them. With T(w) = 1 - E(w), E the layers' directional albedo: the diffuse lobes,
+// coupled with the dielectric's reflection, are scaled by c(wo) c(wi) / c_avg as without layers, c = T (1-E_dielectric); all
+// others by min(T(wo), T(wi)), the rule of KHR_materials_sheen. Both are reciprocal, and never reflect more than arrives.
+// Along a brushed surface (anisotropy) GGX has two widths; its tabulated albedo is the mean of those of both. A thin film
+// (iridescence) replaces Fresnel's factor of conductor, dielectric and glass (lib/thin_film.glsl).
 // With KHR_materials_specular each glass face reflects f (f0' + (1-f0') (F-f0)/(1-f0)) in place of F, f0' = min(1, f0 color),
 // like the extension with Schlick's (F-f0)/(1-f0); it transmits the rest, channel by channel. Total reflection stays total
 // (LUCERNA_GLASS_SPECULAR).
@@ -15,12 +24,19 @@
 //
 // Local frame: z is the shading normal on wo's side, so wo.z > 0. Radiance transport: refraction includes (n_o/n_i)^2.
 // Compiled in only if the scene needs it: LUCERNA_SPECULAR, LUCERNA_SOLID_GLASS, LUCERNA_THIN_GLASS,
-// LUCERNA_DIFFUSE_TRANSMISSION.
+// LUCERNA_DIFFUSE_TRANSMISSION, LUCERNA_CLEARCOAT, LUCERNA_SHEEN, LUCERNA_ANISOTROPY, LUCERNA_IRIDESCENCE. The last four need
+// LUCERNA_SPECULAR.
 #ifndef LUCERNA_LIB_BSDF
 #define LUCERNA_LIB_BSDF
 #include "lib/variants.glsl"
 #include "shaders/shared/bsdf_table.h"
 #include "lib/microfacet.glsl"
+#if LUCERNA_SHEEN
+#include "lib/sheen.glsl"
+#endif
+#if LUCERNA_IRIDESCENCE
+#include "lib/thin_film.glsl"
+#endif
 
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
 uniform samplerBuffer bsdf_table;
@@ -49,7 +65,26 @@ struct SurfaceParameters {
   bool solid;
   bool inside;           // wo is on the inner side of a solid
   int glass_row;
+#if LUCERNA_CLEARCOAT
+  float clearcoat;       // strength; 0 on the inner side of a solid
+  float clearcoat_roughness;
+  vec3 clearcoat_normal; // in the local frame, on wo's side: the cosine of wo is above 0
+#endif
+#if LUCERNA_SHEEN
+  vec3 sheen;
+  float sheen_roughness;
+#endif
+#if LUCERNA_ANISOTROPY
+  float anisotropy;
+  vec2 grain;            // direction of the greater width in the local frame, unit
+#endif
+#if LUCERNA_IRIDESCENCE
+  float film;            // strength
+  float film_ior, film_thickness;
+#endif
 };
+
+const float k_coat_f0 = 0.04;  // of index 1.5
 
 // Reflectance of glass: one value for all channels, or one for each. Choices use glass_choice().
 #if LUCERNA_GLASS_SPECULAR
@@ -76,6 +111,29 @@ struct Bsdf {
   vec3 f0, f90;          // of conductor and dielectric together, weighted
   vec3 f_ms;             // their complement, weighted, times (1-E1(wo)) / (pi (1-E1_avg))
   vec3 d_f0, d_f90, d_f_ms;  // of the dielectric alone, for the coupling
+#endif
+#if LUCERNA_LAYERS
+  float below;           // transmittance of the layers, towards wo
+  float p_coat, p_sheen;
+#endif
+#if LUCERNA_CLEARCOAT
+  float coat, coat_roughness, coat_below;  // coat_below: transmittance of the coat alone, towards wo
+  vec3 coat_normal;
+  bool coat_delta;
+#endif
+#if LUCERNA_SHEEN
+  vec3 sheen;
+  float sheen_roughness;
+#endif
+#if LUCERNA_ANISOTROPY
+  bool brushed;
+  vec2 alphas, grain;    // along the grain and across
+  float roughness_across;
+#endif
+#if LUCERNA_IRIDESCENCE
+  float film, film_ior, film_thickness;
+  vec3 metal, metal_f0;  // weight of the conductor, and its f0
+  float dielectric;      // weight of the dielectric
 #endif
 #if LUCERNA_GLASS
 #if LUCERNA_GLASS_SPECULAR
@@ -106,6 +164,9 @@ struct BsdfSample {
   uint event;            // label
   float eta2;            // (n_o/n_i)^2 contained in weight; 1 unless refracted
   bool transmitted;      // wi is on the other side
+#if LUCERNA_CLEARCOAT
+  bool mirrored_by_coat; // a delta about the coat's normal
+#endif
 };
 
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
@@ -133,7 +194,7 @@ vec2 specular_average(float roughness, bool delta) {
   return delta ? vec2(20.0, 1.0) / 21.0 : mix(a.xy, a.zw, p.at.y);
 }
 #endif
-#if LUCERNA_SOLID_GLASS
+#if LUCERNA_SOLID_GLASS || LUCERNA_SHEEN
 float glass_cell(uint first, TablePlace p) {
   vec4 e = texelFetch(bsdf_table, int(first) + p.cell);
   vec2 row = mix(e.xy, e.zw, p.at.y);
@@ -143,9 +204,11 @@ float glass_row(uint first, TablePlace p) {
   vec4 e = texelFetch(bsdf_table, int(first + k_table_cells) + p.row);
   return mix(e.x, e.y, p.at.y);
 }
+#endif
+#if LUCERNA_SOLID_GLASS
 GLASS_VALUE glass_albedo(Bsdf b, uint table, float mu, float roughness) {
   TablePlace p = table_place(mu, roughness);
-  uint first = k_table_schlick_texels + (table - 1u) * k_table_glass_texels;
+  uint first = k_table_first_glass + (table - 1u) * k_table_glass_texels;
 #if LUCERNA_GLASS_SPECULAR
   return glass_cell(first, p) + b.face_0 * glass_cell(first + k_table_glass_block, p) +
          (b.face_1 - 1.0) * glass_cell(first + 2u * k_table_glass_block, p);
@@ -155,7 +218,7 @@ GLASS_VALUE glass_albedo(Bsdf b, uint table, float mu, float roughness) {
 }
 GLASS_VALUE glass_average(Bsdf b, uint table, float roughness) {
   TablePlace p = table_place(0.0, roughness);
-  uint first = k_table_schlick_texels + (table - 1u) * k_table_glass_texels;
+  uint first = k_table_first_glass + (table - 1u) * k_table_glass_texels;
 #if LUCERNA_GLASS_SPECULAR
   return glass_row(first, p) + b.face_0 * glass_row(first + k_table_glass_block, p) +
          (b.face_1 - 1.0) * glass_row(first + 2u * k_table_glass_block, p);
@@ -173,16 +236,100 @@ vec3 complement_fresnel(vec3 f0, vec3 f90, float e1) {
 }
 #endif
 
-#if LUCERNA_SPECULAR
-// (1 - E(wi)) of the dielectric coat, E with its complement.
-vec3 coat_transmittance(Bsdf b, float mu) {
+#if LUCERNA_SPECULAR || LUCERNA_GLASS
+// Of the base's reflection.
+vec2 base_albedo(Bsdf b, float mu) {
   vec2 t = specular_albedo(mu, b.roughness, b.delta);
-  return max(vec3(0.0), 1.0 - b.d_f0 * t.x - b.d_f90 * t.y - b.d_f_ms * (1.0 - t.x - t.y));
+#if LUCERNA_ANISOTROPY
+  if (b.brushed) t = 0.5 * (t + specular_albedo(mu, b.roughness_across, false));
+#endif
+  return t;
+}
+vec2 base_average(Bsdf b) {
+  vec2 t = specular_average(b.roughness, b.delta);
+#if LUCERNA_ANISOTROPY
+  if (b.brushed) t = 0.5 * (t + specular_average(b.roughness_across, false));
+#endif
+  return t;
 }
 #endif
 
-Bsdf make_bsdf(SurfaceParameters s, float mu) {
+#if LUCERNA_SPECULAR
+// (1 - E(wi)) of the dielectric's reflection, E with its complement.
+vec3 coat_transmittance(Bsdf b, float mu) {
+  vec2 t = base_albedo(b, mu);
+  vec3 reflected = b.d_f0 * t.x + b.d_f90 * t.y;
+#if LUCERNA_IRIDESCENCE
+  if (b.film > 0.0)
+    reflected = mix(reflected, (t.x + t.y) * film_fresnel(mu, b.film_ior, b.film_thickness, b.d_f0), b.film);
+#endif
+  return max(vec3(0.0), 1.0 - reflected - b.d_f_ms * (1.0 - t.x - t.y));
+}
+// Fresnel factor of conductor and dielectric, weighted.
+vec3 specular_fresnel(Bsdf b, float cosine) {
+  vec3 f = b.f0 + (b.f90 - b.f0) * schlick_weight(cosine);
+#if LUCERNA_IRIDESCENCE
+  if (b.film > 0.0)
+    f = mix(f,
+            b.metal * film_fresnel(cosine, b.film_ior, b.film_thickness, b.metal_f0) +
+                b.dielectric * b.d_f90 * film_fresnel(cosine, b.film_ior, b.film_thickness, b.d_f0),
+            b.film);
+#endif
+  return f;
+}
+#endif
+
+#if LUCERNA_CLEARCOAT
+float clearcoat_albedo(Bsdf b, float mu) {
+  vec2 t = specular_albedo(mu, b.coat_roughness, b.coat_delta);
+  return b.coat * (k_coat_f0 * t.x + t.y);
+}
+// Transmittance along w, on either side.
+float clearcoat_below(Bsdf b, vec3 w) {
+  return 1.0 - clearcoat_albedo(b, max(dot(vec3(w.xy, abs(w.z)), b.coat_normal), 0.0));
+}
+#endif
+#if LUCERNA_SHEEN
+float sheen_albedo(float mu, float roughness) {
+  return glass_cell(k_table_schlick_texels, table_place(mu, max(roughness, k_least_sheen_roughness)));
+}
+float sheen_below(Bsdf b, float mu) { return 1.0 - max3(b.sheen) * min(sheen_albedo(mu, b.sheen_roughness), 1.0); }
+#endif
+#if LUCERNA_LAYERS
+float layers_below(Bsdf b, vec3 w) {
+  float t = 1.0;
+#if LUCERNA_CLEARCOAT
+  t *= clearcoat_below(b, w);
+#endif
+#if LUCERNA_SHEEN
+  t *= sheen_below(b, abs(w.z));
+#endif
+  return t;
+}
+#endif
+
+#if LUCERNA_LAYERS || LUCERNA_IRIDESCENCE
+// Cosine-weighted average of c = T (1-E_dielectric): four Gauss points over the cosine.
+vec3 coupled_average(Bsdf b) {
+  vec4 at = vec4(0.06943184, 0.33000948, 0.66999052, 0.93056816), weight = vec4(0.17392742, 0.32607258, 0.32607258, 0.17392742);
+  vec3 sum = vec3(0.0);
+  for (int i = 0; i < 4; ++i) {
+    vec3 c = coat_transmittance(b, at[i]);
+#if LUCERNA_CLEARCOAT
+    c *= 1.0 - clearcoat_albedo(b, at[i]);
+#endif
+#if LUCERNA_SHEEN
+    c *= sheen_below(b, at[i]);
+#endif
+    sum += 2.0 * at[i] * weight[i] * c;
+  }
+  return sum;
+}
+#endif
+
+Bsdf make_bsdf(SurfaceParameters s, vec3 wo) {
   Bsdf b;
+  float mu = wo.z;
   float dielectric = (1.0 - s.metallic) * (1.0 - s.transmission);
   b.alpha = s.roughness * s.roughness;
   b.diffuse = dielectric * s.base;
@@ -198,7 +345,16 @@ Bsdf make_bsdf(SurfaceParameters s, float mu) {
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
   b.delta = b.alpha < k_delta_alpha;
   b.roughness = s.roughness;
-  vec4 t = vec4(specular_albedo(mu, s.roughness, b.delta), specular_average(s.roughness, b.delta));
+#if LUCERNA_ANISOTROPY
+  // KHR_materials_anisotropy; glass is never brushed.
+  b.brushed = s.anisotropy > 0.0 && s.transmission < 1.0;
+  b.grain = s.grain;
+  b.alphas = vec2(max(mix(b.alpha, 1.0, square(s.anisotropy)), k_delta_alpha), max(b.alpha, k_delta_alpha));
+  if (b.brushed) b.delta = false;
+  if (b.brushed) b.roughness = sqrt(b.alphas.x);
+  b.roughness_across = sqrt(b.alphas.y);
+#endif
+  vec4 t = vec4(base_albedo(b, mu), base_average(b));
   float e1 = t.x + t.y, e1_average = t.z + t.w;
   float missing = max(0.0, 1.0 - e1), missing_average = max(1e-6, 1.0 - e1_average);
 #endif
@@ -212,11 +368,58 @@ Bsdf make_bsdf(SurfaceParameters s, float mu) {
   b.f90 = vec3(s.metallic) + dielectric * b.d_f90;
   vec3 ms = s.metallic * m_ms + dielectric * b.d_f_ms;
   b.f_ms = ms * missing / (k_pi * missing_average);
+#if LUCERNA_IRIDESCENCE
+  b.film = s.film;
+  b.film_ior = s.film_ior;
+  b.film_thickness = s.film_thickness;
+  b.metal = vec3(s.metallic);
+  b.metal_f0 = s.base;
+  b.dielectric = dielectric;
+#endif
   vec3 coat = coat_transmittance(b, mu);
   vec3 coat_average = max(vec3(1e-6), 1.0 - b.d_f0 * t.z - b.d_f90 * t.w - b.d_f_ms * (1.0 - e1_average));
+#if LUCERNA_LAYERS
+  b.below = 1.0;
+  b.p_coat = 0.0;
+  b.p_sheen = 0.0;
+#if LUCERNA_CLEARCOAT
+  b.coat = s.clearcoat;
+  b.coat_roughness = s.clearcoat_roughness;
+  b.coat_delta = square(s.clearcoat_roughness) < k_delta_alpha;
+  b.coat_normal = s.clearcoat_normal;
+  b.p_coat = clearcoat_albedo(b, dot(wo, b.coat_normal));
+  b.coat_below = 1.0 - b.p_coat;
+#endif
+#if LUCERNA_SHEEN
+  b.sheen = s.sheen;
+  b.sheen_roughness = s.sheen_roughness;
+  b.p_sheen = luminance(s.sheen) * min(sheen_albedo(mu, s.sheen_roughness), 1.0);
+#if LUCERNA_CLEARCOAT
+  b.p_sheen *= b.coat_below;
+#endif
+#endif
+  b.below = layers_below(b, wo);
+  coat *= b.below;
+#endif
+#if LUCERNA_LAYERS || LUCERNA_IRIDESCENCE
+  bool layered = false;
+#if LUCERNA_CLEARCOAT
+  layered = layered || s.clearcoat > 0.0;
+#endif
+#if LUCERNA_SHEEN
+  layered = layered || max3(s.sheen) > 0.0;
+#endif
+#if LUCERNA_IRIDESCENCE
+  layered = layered || s.film > 0.0;
+#endif
+  if (layered) coat_average = max(vec3(1e-6), coupled_average(b));
+#endif
   b.diffuse *= coat / coat_average;
   b.transmitted *= coat / coat_average;
   b.p_specular = luminance(b.f0 * t.x + b.f90 * t.y);
+#if LUCERNA_IRIDESCENCE
+  if (b.film > 0.0) b.p_specular = luminance(specular_fresnel(b, mu)) * e1;
+#endif
   b.p_specular_ms = b.delta ? 0.0 : luminance(ms) * missing;
   // Total reflectance of the lobe, not only its prefactor: the coupling averages to coat_average.
   b.diffuse_albedo = b.diffuse * coat_average;
@@ -271,7 +474,16 @@ Bsdf make_bsdf(SurfaceParameters s, float mu) {
   b.p_glass = b.glass;
   b.p_glass_ms = b.glass * missing * complement;
 #endif
+#if LUCERNA_LAYERS
+  b.p_specular *= b.below;
+  b.p_specular_ms *= b.below;
+  b.p_glass *= b.below;
+  b.p_glass_ms *= b.below;
+#endif
   float total = b.p_diffuse + b.p_transmitted + b.p_specular + b.p_specular_ms + b.p_glass + b.p_glass_ms;
+#if LUCERNA_LAYERS
+  total += b.p_coat + b.p_sheen;
+#endif
   float scale = total > 0.0 ? 1.0 / total : 0.0;
   b.p_diffuse *= scale;
   b.p_transmitted *= scale;
@@ -279,6 +491,10 @@ Bsdf make_bsdf(SurfaceParameters s, float mu) {
   b.p_specular_ms *= scale;
   b.p_glass *= scale;
   b.p_glass_ms *= scale;
+#if LUCERNA_LAYERS
+  b.p_coat *= scale;
+  b.p_sheen *= scale;
+#endif
   return b;
 }
 
@@ -288,6 +504,14 @@ Bsdf make_bsdf(SurfaceParameters s, float mu) {
 vec3 glass_fresnel(Bsdf b, float cos_h) {
   float f = fresnel_dielectric(cos_h, b.eta);
   vec3 face = f < 1.0 ? b.face_0 + b.face_1 * f : vec3(1.0);
+#if LUCERNA_IRIDESCENCE
+  if (b.film > 0.0 && f < 1.0) {
+    // From either side as much is reflected as on the same way from outside.
+    float outer = b.eta >= 1.0 ? cos_h : sqrt(max(0.0, 1.0 - (1.0 - cos_h * cos_h) / (b.eta * b.eta)));
+    vec3 f0 = vec3(square((b.eta - 1.0) / (b.eta + 1.0)));
+    face = mix(face, film_fresnel(outer, b.film_ior, b.film_thickness, f0), b.film);
+  }
+#endif
   return b.solid ? face : 2.0 * face / (1.0 + face);
 }
 #else
@@ -319,6 +543,38 @@ vec3 complement_sample(Bsdf b, vec2 u) {
 }
 #endif
 
+#if LUCERNA_ANISOTROPY
+// The grain along x.
+vec3 along_grain(Bsdf b, vec3 v) { return vec3(dot(v.xy, b.grain), b.grain.x * v.y - b.grain.y * v.x, v.z); }
+vec3 from_grain(Bsdf b, vec3 v) { return vec3(b.grain.x * v.x - b.grain.y * v.y, b.grain.y * v.x + b.grain.x * v.y, v.z); }
+#endif
+
+#if LUCERNA_CLEARCOAT
+struct CoatValue {
+  float glossy;  // f |cos|, about the coat's normal
+  float pdf;
+};
+// Both directions on wo's side.
+CoatValue clearcoat_eval(Bsdf b, vec3 wo, vec3 wi) {
+  vec3 x, y, n = b.coat_normal;
+  make_basis(n, x, y);
+  float cos_o = dot(wo, n), cos_i = dot(wi, n), alpha = square(b.coat_roughness);
+  vec3 h = normalize(wo + wi);
+  float d = b.coat_delta || cos_i <= 0.0 ? 0.0 : ggx_d(vec3(dot(h, x), dot(h, y), dot(h, n)), alpha) / (4.0 * cos_o);
+  float w = schlick_weight(max(dot(wo, h), 0.0));
+  return CoatValue(b.coat * (k_coat_f0 + (1.0 - k_coat_f0) * w) * d * ggx_g2(cos_o, cos_i, alpha), d * ggx_g1(cos_o, alpha));
+}
+// May be below the surface.
+vec3 clearcoat_sample(Bsdf b, vec3 wo, vec2 u) {
+  vec3 x, y, n = b.coat_normal;
+  make_basis(n, x, y);
+  vec3 h = b.coat_delta ? vec3(0.0, 0.0, 1.0)
+                        : ggx_sample_visible(vec3(dot(wo, x), dot(wo, y), dot(wo, n)), square(b.coat_roughness), u);
+  h = h.x * x + h.y * y + h.z * n;
+  return 2.0 * dot(wo, h) * h - wo;
+}
+#endif
+
 // All lobes but the deltas.
 BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
   BsdfValue v;
@@ -333,7 +589,7 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
 #endif
   v.diffuse = diffuse * lambert;
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
-  vec2 t = specular_albedo(cos_i, b.roughness, b.delta);
+  vec2 t = base_albedo(b, cos_i);
   float missing = b.delta ? 0.0 : max(0.0, 1.0 - t.x - t.y);
   vec3 h = normalize(wo + vec3(wi.xy, same_side ? wi.z : -wi.z));  // of reflection, or of the mirrored thin wall
   float cos_oh = max(dot(wo, h), 0.0);
@@ -344,8 +600,15 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
 #endif
 #if LUCERNA_SPECULAR
   if (same_side) {
-    float w = schlick_weight(cos_oh);
-    v.glossy += (b.f0 + (b.f90 - b.f0) * w) * shape + b.f_ms * missing * cos_i;
+#if LUCERNA_ANISOTROPY
+    if (b.brushed) {
+      vec3 o = along_grain(b, wo), i = along_grain(b, wi);
+      float facets = ggx_d(along_grain(b, h), b.alphas) / (4.0 * wo.z), hidden = ggx_lambda(o, b.alphas);
+      shape = facets / (1.0 + hidden + ggx_lambda(i, b.alphas));
+      pdf_h = facets / (1.0 + hidden);
+    }
+#endif
+    v.glossy += specular_fresnel(b, cos_oh) * shape + b.f_ms * missing * cos_i;
     v.pdf += b.p_specular * pdf_h + b.p_specular_ms * complement_pdf(b, cos_i);
   }
 #endif
@@ -385,6 +648,30 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
   v.pdf += b.p_glass * (same_side ? pdf_reflected : pdf_passed) +
            b.p_glass_ms * (same_side ? ms_pdf_share : 1.0 - ms_pdf_share) * complement_pdf(b, cos_i);
 #endif
+#if LUCERNA_LAYERS
+  float below_i = layers_below(b, wi);
+  v.diffuse *= below_i;
+  v.glossy *= min(b.below, below_i);
+#if LUCERNA_SHEEN
+  if (same_side) {
+    // The fit exceeds the energy that arrives, at grazing angles and low roughness: both directions are scaled to at most 1.
+    float most = max(sheen_albedo(wo.z, b.sheen_roughness), sheen_albedo(cos_i, b.sheen_roughness));
+    vec3 sheen = b.sheen * (sheen_value(wo, wi, b.sheen_roughness) / max(most, 1.0));
+#if LUCERNA_CLEARCOAT
+    sheen *= min(b.coat_below, clearcoat_below(b, wi));
+#endif
+    v.glossy += sheen;
+    v.pdf += b.p_sheen * k_sheen_pdf;
+  }
+#endif
+#if LUCERNA_CLEARCOAT
+  if (same_side) {
+    CoatValue c = clearcoat_eval(b, wo, wi);
+    v.glossy += c.glossy;
+    v.pdf += b.p_coat * c.pdf;
+  }
+#endif
+#endif
   return v;
 }
 
@@ -395,11 +682,20 @@ vec3 bsdf_diffuse(Bsdf b, vec3 wi) {
 #if LUCERNA_SPECULAR
   diffuse *= coat_transmittance(b, cos_i);
 #endif
+#if LUCERNA_LAYERS
+  diffuse *= layers_below(b, wi);
+#endif
   return diffuse * (cos_i * k_inv_pi);
 }
 
 // Whether it has a glossy lobe that light samples can reach.
 bool bsdf_glossy(Bsdf b) {
+#if LUCERNA_LAYERS
+  if (b.p_sheen > 0.0) return true;
+#if LUCERNA_CLEARCOAT
+  if (b.p_coat > 0.0 && !b.coat_delta) return true;
+#endif
+#endif
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
   return !b.delta && b.p_specular + b.p_specular_ms + b.p_glass + b.p_glass_ms > 0.0;
 #else
@@ -410,7 +706,13 @@ bool bsdf_glossy(Bsdf b) {
 // Undeflected transmission of a smooth thin wall, for shadow rays; 0 for everything else.
 vec3 bsdf_undeflected(Bsdf b, float mu) {
 #if LUCERNA_THIN_GLASS
-  if (b.delta && !b.solid) return b.glass * b.tint * (1.0 - glass_fresnel(b, mu));
+  if (b.delta && !b.solid) {
+    vec3 passed = b.glass * b.tint * (1.0 - glass_fresnel(b, mu));
+#if LUCERNA_LAYERS
+    passed *= b.below;
+#endif
+    return passed;
+  }
 #endif
   return vec3(0.0);
 }
@@ -433,11 +735,18 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec3 cosine, vec2 lobe) {
   s.transmitted = false;
   s.weight = vec3(0.0);
   s.pdf = 0.0;
+#if LUCERNA_CLEARCOAT
+  s.mirrored_by_coat = false;
+#endif
   float at = lobe.x;
 #if LUCERNA_THIN_GLASS
   at *= 1.0 - bsdf_undeflected_probability(b, wo.z);  // the last share of the lobes
 #endif
   s.wi = cosine;
+#if LUCERNA_LAYERS
+  bool in_coat = at < b.p_coat, in_sheen = !in_coat && at < b.p_coat + b.p_sheen;
+  at -= b.p_coat + b.p_sheen;
+#endif
   bool through = at >= b.p_diffuse && at < b.p_diffuse + b.p_transmitted;
   if (through) s.wi = vec3(cosine.xy, -cosine.z);
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
@@ -447,15 +756,37 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec3 cosine, vec2 lobe) {
   vec3 mirrored = 2.0 * cos_oh * h - wo;
   bool delta = false, lost = false;
 #endif
+#if LUCERNA_CLEARCOAT
+  if (in_coat) {
+    s.wi = clearcoat_sample(b, wo, u);
+    lost = !b.coat_delta && (s.wi.z <= 0.0 || dot(s.wi, b.coat_normal) <= 0.0);
+    if (b.coat_delta) {
+      delta = true;
+      s.mirrored_by_coat = true;
+      s.event = k_event_specular;
+      float f = b.coat * (k_coat_f0 + (1.0 - k_coat_f0) * schlick_weight(dot(wo, b.coat_normal)));
+      s.weight = s.wi.z > 0.0 ? vec3(f / b.p_coat) : vec3(0.0);
+    }
+  }
+#endif
+#if LUCERNA_SHEEN
+  if (in_sheen) s.wi = sheen_sample(u);
+#endif
 #if LUCERNA_SPECULAR
   bool specular = at >= 0.0 && at < b.p_specular;
   if (specular) {
+#if LUCERNA_ANISOTROPY
+    if (b.brushed) {
+      vec3 facet = from_grain(b, ggx_sample_visible(along_grain(b, wo), b.alphas, u));
+      mirrored = 2.0 * dot(wo, facet) * facet - wo;
+    }
+#endif
     s.wi = mirrored;
     lost = !b.delta && s.wi.z <= 0.0;
     if (b.delta) {
       delta = true;
       s.event = k_event_specular;
-      s.weight = (b.f0 + (b.f90 - b.f0) * schlick_weight(wo.z)) / b.p_specular;
+      s.weight = specular_fresnel(b, wo.z) / b.p_specular;
     }
   }
   if (at >= b.p_specular && at < b.p_specular + b.p_specular_ms) s.wi = complement_sample(b, u);
@@ -503,6 +834,9 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec3 cosine, vec2 lobe) {
   }
 #endif
   s.transmitted = s.wi.z < 0.0;
+#if LUCERNA_LAYERS
+  if (delta && !in_coat) s.weight *= min(b.below, layers_below(b, s.wi));
+#endif
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
   if (!delta) {
 #endif

@@ -37,6 +37,25 @@ vec3 ggx_sample_visible(vec3 wo, float alpha, vec2 u) {
   return normalize(vec3(alpha * h.xy, max(h.z, 1e-20)));
 }
 
+// Brushed surfaces (Heitz 2014, section 5.4): alpha along x and along y.
+float ggx_d(vec3 h, vec2 alpha) {
+  vec2 s = h.xy / alpha;
+  float k = h.z * h.z + dot(s, s);
+  return h.z > 0.0 ? 1.0 / (k_pi * alpha.x * alpha.y * k * k) : 0.0;
+}
+float ggx_lambda(vec3 v, vec2 alpha) {
+  vec2 s = v.xy * alpha;
+  return 0.5 * (sqrt(1.0 + dot(s, s) / max(v.z * v.z, 1e-30)) - 1.0);
+}
+vec3 ggx_sample_visible(vec3 wo, vec2 alpha, vec2 u) {
+  vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
+  float phi = 2.0 * k_pi * u.x;
+  float z = (1.0 - u.y) * (1.0 + v.z) - v.z;
+  float s = sqrt(clamp(1.0 - z * z, 0.0, 1.0));
+  vec3 h = vec3(s * cos(phi), s * sin(phi), z) + v;
+  return normalize(vec3(alpha * h.xy, max(h.z, 1e-20)));
+}
+
 // Unpolarized reflectance of a dielectric boundary; eta = n_transmitted / n_incident; 1 at total internal reflection.
 float fresnel_dielectric(float cos_i, float eta) {
   float sin2_t = (1.0 - cos_i * cos_i) / (eta * eta);

@@ -20,7 +20,7 @@ SightStep sight_step(Surface surface, vec3 direction) {
 #endif
   mat3 to_world = shading_frame(surface, -direction);
   vec3 wo = -direction * to_world;  // transposed
-  Bsdf bsdf = make_bsdf(surface.parameters, wo.z);
+  Bsdf bsdf = surface_bsdf(surface, to_world, -direction);
 #if LUCERNA_THIN_GLASS
   s.undeflected = bsdf_undeflected_probability(bsdf, wo.z) > 0.5;
   if (s.undeflected) return s;

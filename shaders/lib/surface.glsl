@@ -12,7 +12,7 @@
 uniform samplerBuffer scene_triangles;
 uniform samplerBuffer scene_vertices;
 uniform samplerBuffer scene_materials;
-#if LUCERNA_NORMAL_MAPS
+#if LUCERNA_TANGENTS
 uniform samplerBuffer scene_tangents;
 #endif
 #if LUCERNA_VERTEX_EXTRA
@@ -26,6 +26,12 @@ struct Surface {
   vec3 normal_g;     // geometric, unit, front side (counter-clockwise; flipped instances mirrored)
   vec3 normal_s;     // shading, unit, on the front side's hemisphere
   vec3 normal_v;     // likewise, without the normal map
+#if LUCERNA_CLEARCOAT
+  vec3 normal_c;     // of the clear coat, likewise
+#endif
+#if LUCERNA_ANISOTROPY
+  vec3 grain;        // direction in which a brushed surface reflects most widely; need not be in the tangent plane; 0: none
+#endif
   bool front;        // the ray came from the front
   uint material;
   uint flags;
@@ -66,6 +72,16 @@ vec4 read_use(int material, uint use, uint buckets, vec2 uv0, vec2 uv1, vec4 neu
   vec4 texel = texture_read(bits, buckets, rect, t);
   return (bits & k_texture_present) != 0u ? texel : neutral;
 }
+
+#if LUCERNA_TANGENTS
+// The normal that a normal map says: `local` in the frame of tangent, bitangent and n.
+vec3 mapped_normal(vec3 n, vec4 tangent, vec3 local) {
+  vec3 bitangent = cross(n, tangent.xyz) * (tangent.w < 0.0 ? -1.0 : 1.0);
+  vec3 mapped = local.x * tangent.xyz + local.y * bitangent + local.z * n;
+  bool has_map = dot(tangent.xyz, tangent.xyz) > 1e-12 && dot(mapped, mapped) > 1e-12;
+  return has_map ? normalize(mapped) : n;
+}
+#endif
 
 Surface make_surface(Ray ray, Hit hit) {
   Surface s;
@@ -113,16 +129,23 @@ Surface make_surface(Ray ray, Hit hit) {
   vec4 mr = read_use(m, k_use_metallic_roughness, LUCERNA_METALLIC_ROUGHNESS_BUCKETS, s.uv0, uv1, vec4(1.0));
   surface.xy *= mr.zy;
 #endif
-#if LUCERNA_NORMAL_MAPS
+#if LUCERNA_TANGENTS
   vec4 t = w * texelFetch(scene_tangents, int(tri.x)) + uv.x * texelFetch(scene_tangents, int(tri.y)) +
            uv.y * texelFetch(scene_tangents, int(tri.z));
+#endif
+#if LUCERNA_CLEARCOAT
+  s.normal_c = s.normal_v;
+#if LUCERNA_CLEARCOAT_NORMALS && LUCERNA_TANGENTS
+  vec3 coat_map = 2.0 * read_use(m, k_use_clearcoat_normal, LUCERNA_CLEARCOAT_NORMAL_BUCKETS, s.uv0, uv1, vec4(0.5, 0.5, 1.0, 1.0)).xyz - 1.0;
+  coat_map.xy *= texelFetch(scene_materials, m + int(k_material_coat)).z;
+  s.normal_c = mapped_normal(s.normal_v, t, coat_map);
+#endif
+#endif
+#if LUCERNA_NORMAL_MAPS && LUCERNA_TANGENTS
   vec4 detail = texelFetch(scene_materials, m + int(k_material_detail));
   vec3 local = 2.0 * read_use(m, k_use_normal, LUCERNA_NORMAL_BUCKETS, s.uv0, uv1, vec4(0.5, 0.5, 1.0, 1.0)).xyz - 1.0;
   local.xy *= detail.x;
-  vec3 bitangent = cross(s.normal_s, t.xyz) * (t.w < 0.0 ? -1.0 : 1.0);
-  vec3 mapped = local.x * t.xyz + local.y * bitangent + local.z * s.normal_s;
-  bool has_map = dot(t.xyz, t.xyz) > 1e-12 && dot(mapped, mapped) > 1e-12;
-  s.normal_s = has_map ? normalize(mapped) : s.normal_s;
+  s.normal_s = mapped_normal(s.normal_s, t, local);
 #endif
 #if LUCERNA_TEX_EMISSION
   emission.rgb *= read_use(m, k_use_emission, LUCERNA_EMISSION_BUCKETS, s.uv0, uv1, vec4(1.0)).rgb;
@@ -155,6 +178,65 @@ Surface make_surface(Ray ray, Hit hit) {
   p.diffuse_transmission = clamp(dt.w, 0.0, 1.0);
   p.diffuse_transmission_color = clamp(dt.rgb, vec3(0.0), vec3(1.0));
 #endif
+#if LUCERNA_CLEARCOAT
+  vec4 coat = texelFetch(scene_materials, m + int(k_material_coat));
+#if LUCERNA_TEX_CLEARCOAT
+  coat.x *= read_use(m, k_use_clearcoat, LUCERNA_CLEARCOAT_BUCKETS, s.uv0, uv1, vec4(1.0)).r;
+  coat.y *= read_use(m, k_use_clearcoat_roughness, LUCERNA_CLEARCOAT_ROUGHNESS_BUCKETS, s.uv0, uv1, vec4(1.0)).g;
+#endif
+  bool coated = (s.flags & k_flag_solid) == 0u || s.front;
+  p.clearcoat = coated ? clamp(coat.x, 0.0, 1.0) : 0.0;
+  p.clearcoat_roughness = clamp(coat.y, 0.0, 1.0);
+  p.clearcoat_normal = vec3(0.0, 0.0, 1.0);
+#endif
+#if LUCERNA_SHEEN
+  vec4 sheen = texelFetch(scene_materials, m + int(k_material_sheen));
+#if LUCERNA_TEX_SHEEN
+  sheen.rgb *= read_use(m, k_use_sheen_color, LUCERNA_SHEEN_COLOR_BUCKETS, s.uv0, uv1, vec4(1.0)).rgb;
+  sheen.w *= read_use(m, k_use_sheen_roughness, LUCERNA_SHEEN_ROUGHNESS_BUCKETS, s.uv0, uv1, vec4(1.0)).a;
+#endif
+  p.sheen = clamp(sheen.rgb, vec3(0.0), vec3(1.0));
+  p.sheen_roughness = clamp(sheen.w, 0.0, 1.0);
+#endif
+#if LUCERNA_ANISOTROPY
+  vec4 grain = texelFetch(scene_materials, m + int(k_material_grain));
+  vec2 turn = grain.yz;
+#if LUCERNA_TEX_ANISOTROPY
+  vec3 brushing = read_use(m, k_use_anisotropy, LUCERNA_ANISOTROPY_BUCKETS, s.uv0, uv1, vec4(1.0, 0.5, 1.0, 1.0)).rgb;
+  vec2 brushed = 2.0 * brushing.xy - 1.0;
+  turn = vec2(turn.x * brushed.x - turn.y * brushed.y, turn.y * brushed.x + turn.x * brushed.y);
+  grain.x *= brushing.z;
+#endif
+  p.anisotropy = clamp(grain.x, 0.0, 1.0);
+  p.grain = vec2(1.0, 0.0);
+  s.grain = vec3(0.0);
+  vec3 along = vec3(0.0);
+  float handed = 1.0;
+#if LUCERNA_TANGENTS
+  along = t.xyz;
+  handed = t.w < 0.0 ? -1.0 : 1.0;
+#endif
+  if (dot(along, along) < 1e-12) {
+    // A surface that got its brushing by an edit has no tangents: along u on this triangle.
+    vec2 d1 = vec2(a1.w - a0.w, b1.w - b0.w), d2 = vec2(a2.w - a0.w, b2.w - b0.w);
+    along = (a1.xyz - a0.xyz) * d2.y - (a2.xyz - a0.xyz) * d1.y;
+    float area = d1.x * d2.y - d1.y * d2.x;
+    along = area != 0.0 && dot(along, along) > 0.0 ? normalize(along) * sign(area) : vec3(0.0);
+  }
+  s.grain = turn.x * along + turn.y * handed * cross(s.normal_v, along);
+#endif
+#if LUCERNA_IRIDESCENCE
+  vec4 film = texelFetch(scene_materials, m + int(k_material_film));
+  float thick = 1.0;
+#if LUCERNA_TEX_IRIDESCENCE
+  film.x *= read_use(m, k_use_iridescence, LUCERNA_IRIDESCENCE_BUCKETS, s.uv0, uv1, vec4(1.0)).r;
+  thick = read_use(m, k_use_iridescence_thickness, LUCERNA_IRIDESCENCE_THICKNESS_BUCKETS, s.uv0, uv1, vec4(1.0)).g;
+#endif
+  p.film_thickness = mix(film.z, film.w, thick);
+  // No thickness, no film.
+  p.film = p.film_thickness > 0.0 ? clamp(film.x, 0.0, 1.0) : 0.0;
+  p.film_ior = film.y;
+#endif
   p.solid = (s.flags & k_flag_solid) != 0u;
   p.inside = p.solid && !s.front;
   p.glass_row = int(texelFetch(scene_materials, m + int(k_material_volume)).w);
@@ -173,10 +255,10 @@ float surface_coverage(Surface s) {
   return 1.0;
 }
 
-// A shading frame on wo's side: z agrees with the geometric side, and wo keeps a positive cosine.
-mat3 shading_frame(Surface s, vec3 wo) {
+// A normal on wo's side: it agrees with the geometric side, and wo keeps a positive cosine.
+vec3 facing_normal(Surface s, vec3 wo, vec3 normal) {
   vec3 ng = s.front ? s.normal_g : -s.normal_g;
-  vec3 n = dot(s.normal_s, ng) < 0.0 ? -s.normal_s : s.normal_s;
+  vec3 n = dot(normal, ng) < 0.0 ? -normal : normal;
   // A normal turned away from the viewer is bent back to a grazing angle (cosine 0.01), the smallest change that
   // keeps the lobes defined.
   const float least = 0.01;
@@ -187,9 +269,29 @@ mat3 shading_frame(Surface s, vec3 wo) {
     n = l2 > 1e-12 ? normalize(least * wo + sqrt(1.0 - least * least) * side * inversesqrt(l2)) : ng;
     if (dot(n, wo) < 1e-4) n = wo;
   }
+  return n;
+}
+
+// A shading frame with that normal as z.
+mat3 shading_frame(Surface s, vec3 wo) {
+  vec3 n = facing_normal(s, wo, s.normal_s);
   vec3 t, b;
   make_basis(n, t, b);
   return mat3(t, b, n);
+}
+
+// The surface's BSDF for light that leaves along wo_world; `to_world`: its shading frame there.
+Bsdf surface_bsdf(Surface s, mat3 to_world, vec3 wo_world) {
+  SurfaceParameters p = s.parameters;
+#if LUCERNA_CLEARCOAT
+  p.clearcoat_normal = facing_normal(s, wo_world, s.normal_c) * to_world;  // transposed
+#endif
+#if LUCERNA_ANISOTROPY
+  vec2 grain = (s.grain * to_world).xy;
+  float l2 = dot(grain, grain);
+  if (l2 > 1e-12) p.grain = grain * inversesqrt(l2);
+#endif
+  return make_bsdf(p, wo_world * to_world);
 }
 
 // Radiance of a diffuse lobe from flux F that arrived from wi on an area dA of a facet with normal n_g, while eye paths

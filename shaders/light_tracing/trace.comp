@@ -65,7 +65,7 @@ vec3 reflected_to_eye(Surface surface, vec3 towards, vec3 wi_world) {
   surface.parameters.inside = surface.parameters.solid && !surface.front;
   mat3 to_world = shading_frame(surface, towards);
   vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
-  Bsdf bsdf = make_bsdf(surface.parameters, dot(to_world[2], towards));
+  Bsdf bsdf = surface_bsdf(surface, to_world, towards);
   return diffuse_of_flux(bsdf, to_world, surface.normal_g, wi_world, dot(wi_world, side) > 0.0);
 }
 

@@ -10,11 +10,11 @@ LUCERNA_CONST uint k_triangle_material_mask = 0x00ffffffu;
 LUCERNA_CONST uint k_triangle_flipped = 0x80000000u;   ///< instance with a negative determinant: the front is clockwise
 
 // scene_vertices: 2 texels a vertex: (position, u0) (normal, v0), world space, normals unit.
-// scene_tangents: 1 texel a vertex, only in scenes with normal maps: (tangent, handedness).
+// scene_tangents: 1 texel a vertex, only in scenes with normal maps or brushed surfaces: (tangent, handedness).
 // scene_extra:    2 texels a vertex, only in scenes with vertex colours or a second UV set: (rgba) (u1, v1, 0, 0).
 
 // scene_materials: k_material_texels a material.
-LUCERNA_CONST uint k_material_texels = 34u;
+LUCERNA_CONST uint k_material_texels = 62u;
 LUCERNA_CONST uint k_material_base = 0u;          ///< base colour rgba
 LUCERNA_CONST uint k_material_emission = 1u;      ///< radiance rgb, bits: flags
 LUCERNA_CONST uint k_material_surface = 2u;       ///< metallic, roughness, ior, specular
@@ -23,7 +23,11 @@ LUCERNA_CONST uint k_material_volume = 4u;        ///< absorption rgb [1/m], gla
 LUCERNA_CONST uint k_material_diffuse_t = 5u;     ///< diffuse transmission colour rgb, factor
 LUCERNA_CONST uint k_material_detail = 6u;        ///< normal scale, alpha cutoff, medium of a solid (scene_media), bits of the
                                                   ///< kind of hits on it
-LUCERNA_CONST uint k_material_textures = 7u;      ///< then k_texture_texels for each use:
+LUCERNA_CONST uint k_material_coat = 7u;          ///< clear coat: strength, roughness, normal scale, 0
+LUCERNA_CONST uint k_material_sheen = 8u;         ///< sheen colour rgb, roughness
+LUCERNA_CONST uint k_material_grain = 9u;         ///< anisotropy, cosine and sine of its rotation, 0
+LUCERNA_CONST uint k_material_film = 10u;         ///< iridescence, index, minimum and maximum thickness [nm]
+LUCERNA_CONST uint k_material_textures = 11u;     ///< then k_texture_texels for each use:
 // (rectangle on the page: x, y, width, height over the page's size) (bits:texture, m2, m5, 0) (m0 m1 m3 m4)
 LUCERNA_CONST uint k_texture_texels = 3u;
 
@@ -37,7 +41,15 @@ LUCERNA_CONST uint k_use_specular_color = 5u;
 LUCERNA_CONST uint k_use_transmission = 6u;
 LUCERNA_CONST uint k_use_diffuse_t = 7u;
 LUCERNA_CONST uint k_use_diffuse_t_color = 8u;
-LUCERNA_CONST uint k_texture_uses = 9u;
+LUCERNA_CONST uint k_use_clearcoat = 9u;
+LUCERNA_CONST uint k_use_clearcoat_roughness = 10u;
+LUCERNA_CONST uint k_use_clearcoat_normal = 11u;
+LUCERNA_CONST uint k_use_sheen_color = 12u;
+LUCERNA_CONST uint k_use_sheen_roughness = 13u;
+LUCERNA_CONST uint k_use_anisotropy = 14u;
+LUCERNA_CONST uint k_use_iridescence = 15u;
+LUCERNA_CONST uint k_use_iridescence_thickness = 16u;
+LUCERNA_CONST uint k_texture_uses = 17u;
 
 // Texture bits: 0-10 page (layer), 11-15 bucket, 16-17 wrap u, 18-19 wrap v (0 repeat, 1 clamp, 2 mirror), 20 nearest,
 // 21 second UV set, 31 present.

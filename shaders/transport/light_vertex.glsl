@@ -32,7 +32,7 @@ float adjoint_correction(vec3 n_g, vec3 n_s, vec3 wo, vec3 wi) {
 void reflect_as_seen(LightVertex v, vec3 from, vec3 towards, float density, float pick, out vec3 weight, out uint event) {
   mat3 to_world = shading_frame(v.surface, towards);
   vec3 wo = towards * to_world, wi = from * to_world;
-  BsdfValue f = bsdf_eval(make_bsdf(v.surface.parameters, wo.z), wo, wi);
+  BsdfValue f = bsdf_eval(surface_bsdf(v.surface, to_world, towards), wo, wi);
   float diffuse = luminance(f.diffuse), glossy = luminance(f.glossy);
   float p_diffuse = diffuse + glossy > 0.0 ? diffuse / (diffuse + glossy) : 1.0;
   bool is_diffuse = pick < p_diffuse;
@@ -62,7 +62,7 @@ LightVertex light_vertex(inout PathState path, Ray ray, Hit hit, Sampler random)
   vec3 wo_world = -ray.direction;
   v.to_world = shading_frame(v.surface, wo_world);
   v.wo = wo_world * v.to_world;   // transposed
-  v.bsdf = make_bsdf(v.surface.parameters, v.wo.z);
+  v.bsdf = surface_bsdf(v.surface, v.to_world, wo_world);
   v.lit = v.coverage > 0.0;
 #if LUCERNA_UNLIT
   v.lit = v.lit && (v.surface.flags & k_flag_unlit) == 0u;
@@ -117,8 +117,14 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     }
     bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
     // Refraction scales radiance, but not flux.
-    vec3 weight = b.weight * (adjoint_correction(v.surface.normal_g, v.to_world[2], ray.direction, direction) / b.eta2);
-    if (leans && sides_agree && !b.transmitted && b.event != k_event_specular)
+    vec3 normal = v.to_world[2];
+    bool tilted = false;  // a lobe about another normal than the shading frame's
+#if LUCERNA_CLEARCOAT
+    if (b.mirrored_by_coat) normal = v.to_world * v.bsdf.coat_normal;
+    tilted = v.bsdf.p_coat > 0.0 && v.bsdf.coat_normal.z < 0.999999;
+#endif
+    vec3 weight = b.weight * (adjoint_correction(v.surface.normal_g, normal, ray.direction, direction) / b.eta2);
+    if ((leans || tilted) && sides_agree && !b.transmitted && b.event != k_event_specular)
       reflect_as_seen(v, -ray.direction, direction, b.pdf, lobe.y, weight, b.event);
     uint next = automaton_after(path_automaton(path), b.event);
     vec3 throughput = path.throughput * weight;

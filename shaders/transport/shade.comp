@@ -188,7 +188,7 @@ void main() {
       vec3 wo_world = -ray.direction;
       mat3 to_world = shading_frame(surface, wo_world);
       vec3 wo = wo_world * to_world;   // transposed
-      Bsdf bsdf = make_bsdf(surface.parameters, wo.z);
+      Bsdf bsdf = surface_bsdf(surface, to_world, wo_world);
 #if LUCERNA_THIN_GLASS
       float p_undeflected = bsdf_undeflected_probability(bsdf, wo.z);
       passed = !again && u_null.y < p_undeflected;

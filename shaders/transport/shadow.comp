@@ -36,7 +36,7 @@ void main() {
 #if LUCERNA_THIN_GLASS
     mat3 to_world = shading_frame(surface, -ray.direction);
     float mu = dot(to_world[2], -ray.direction);
-    undeflected = bsdf_undeflected(make_bsdf(surface.parameters, mu), mu);
+    undeflected = bsdf_undeflected(surface_bsdf(surface, to_world, -ray.direction), mu);
 #endif
     vec3 transmittance = vec3(1.0 - coverage) + coverage * undeflected;
     s.diffuse *= transmittance;

@@ -121,6 +121,25 @@ inline std::vector<Kind> kinds() {
     k.material.diffuse_transmission = 1, k.material.diffuse_transmission_texture.texture = k_data;
     k.material.diffuse_transmission_color_texture.texture = k_colors;
   });
+  add("clear coat", plain, [](Kind& k) { k.material.clearcoat = 1; });
+  add("clear coat by texture", metal(0.4f), [](Kind& k) {
+    k.material.clearcoat = 1, k.material.clearcoat_texture.texture = k_data;
+    k.material.clearcoat_roughness = 0.5f, k.material.clearcoat_roughness_texture.texture = k_colors;
+    k.material.clearcoat_normal_texture.texture = k_tilts;
+  });
+  add("sheen", plain,
+      [](Kind& k) { k.material.sheen_color = vec3(0.8f), k.material.sheen_roughness = 0.4f; });
+  add("sheen by texture", plain, [](Kind& k) {
+    k.material.sheen_color = vec3(1), k.material.sheen_color_texture.texture = k_colors;
+    k.material.sheen_roughness = 0.8f, k.material.sheen_roughness_texture.texture = k_colors;
+  });
+  add("brushed", metal(0.3f), [](Kind& k) { k.material.anisotropy = 0.7f; });
+  add("brushed by texture", metal(0.3f),
+      [](Kind& k) { k.material.anisotropy = 1, k.material.anisotropy_texture.texture = k_colors; });
+  add("film by texture", metal(0.3f), [](Kind& k) {
+    k.material.iridescence = 1, k.material.iridescence_texture.texture = k_colors;
+    k.material.iridescence_thickness_texture.texture = k_colors;
+  });
   // White, so light samples are the same with and without it.
   add("light by texture", plain,
       [](Kind& k) { k.material.emission = vec3(1), k.material.emission_texture.texture = k_white; });

@@ -42,6 +42,20 @@ std::vector<Named> materials() {
   for (const float r : {0.f, 0.35f})
     add("thin mixture", r,
         [](Material& m) { m.metallic = 0.3f, m.transmission = 0.5f, m.diffuse_transmission = 0.5f; });
+  const vec3 tilted = glm::normalize(vec3(0.2f, -0.1f, 1));
+  add("clear coat over paint", 0.5f, [](Material& m) { m.clearcoat = 1; });
+  add("clear coat over metal", 0.1f,
+      [](Material& m) { m.metallic = 1, m.clearcoat = 0.7f, m.clearcoat_roughness = 0.15f; });
+  add("clear coat over thin glass", 0.2f, [](Material& m) { m.transmission = 1, m.clearcoat = 1; });
+  add("sheen", 1, [](Material& m) { m.specular = 0, m.sheen = vec3(0.9f, 0.5f, 0.2f); });
+  add("sheen of short fibres under a clear coat", 0.6f,
+      [](Material& m) { m.sheen = vec3(1), m.sheen_roughness = 0.15f, m.clearcoat = 0.5f; });
+  for (const float r : {0.15f, 0.3f, 0.6f})
+    add("brushed metal", r, [](Material& m) { m.metallic = 1, m.anisotropy = 0.7f; });
+  add("thin film on metal", 0.3f, [](Material& m) { m.metallic = 1, m.film = 1; });
+  add("thin film on paint", 0.2f, [](Material& m) { m.film = 0.8f, m.film_thickness = 250; });
+  add("clear coat with a normal of its own", 0.5f, [](Material& m) { m.clearcoat = 1; });
+  list.back().material.clearcoat_normal = tilted;
   const size_t solids = list.size();
   for (const float r : {0.f, 0.05f, 0.15f, 0.5f, 1.f})
     add("glass", r, [](Material& m) { m.transmission = 1, m.solid = 1, m.glass_row = 0; });
@@ -57,6 +71,8 @@ std::vector<Named> materials() {
   }
   return list;
 }
+
+bool is_smooth(const Material& m) { return m.alpha() < shared::k_delta_alpha && m.anisotropy == 0; }
 
 /// The outcome of a draw: label, side.
 enum Way : size_t { k_ways = 8 };
@@ -178,7 +194,7 @@ TEST_CASE("the density integrates to 1 minus lost draws and deltas") {
 TEST_CASE("the mean weight of each label, side and channel is the integral of that label's lobes") {
   Jury jury;
   for (const Outcome& o : outcomes()) {
-    const bool smooth = o.material.alpha() < shared::k_delta_alpha;
+    const bool smooth = is_smooth(o.material);
     std::array<std::array<double, 3>, k_ways> expected{};
     if (smooth) expected = smooth_weights(o.material, o.wo.z);
     for (const bool below : {false, true}) {
@@ -199,7 +215,7 @@ TEST_CASE("a draw's label, side and density are correct") {
   for (const Outcome& o : outcomes()) {
     INFO(o.name);
     const Material& m = o.material;
-    const bool smooth = m.alpha() < shared::k_delta_alpha;
+    const bool smooth = is_smooth(m);
     const float eta = m.eta();
     const vec3 mirrored(-o.wo.x, -o.wo.y, o.wo.z);
     const float bent = std::sqrt(std::max(0.f, 1 - (1 - o.wo.z * o.wo.z) / (eta * eta)));

@@ -22,6 +22,13 @@ struct Material {
   vec3 diffuse_transmission_color{0.3f, 0.7f, 0.5f};
   uint32_t solid = 0, inside = 0;
   int32_t glass_row = -1;
+  float clearcoat = 0, clearcoat_roughness = 0.3f;
+  vec3 clearcoat_normal{0, 0, 1};
+  vec3 sheen{0};
+  float sheen_roughness = 0.4f;
+  float anisotropy = 0;
+  vec2 grain{0.6f, 0.8f};
+  float film = 0, film_ior = 1.3f, film_thickness = 400;
 
   float alpha() const { return roughness * roughness; }
   /// Index of refraction on the other side over that on wo's side.
@@ -53,7 +60,8 @@ enum class Subject { bsdf, visible_normals, cosine };
 inline gpu::Defines surface_effects(bool all, std::initializer_list<const char*> on = {}) {
   gpu::Defines defines;
   for (const char* name : {"LUCERNA_SPECULAR", "LUCERNA_SOLID_GLASS", "LUCERNA_THIN_GLASS",
-                           "LUCERNA_GLASS_SPECULAR", "LUCERNA_DIFFUSE_TRANSMISSION"})
+                           "LUCERNA_GLASS_SPECULAR", "LUCERNA_DIFFUSE_TRANSMISSION", "LUCERNA_CLEARCOAT",
+                           "LUCERNA_SHEEN", "LUCERNA_ANISOTROPY", "LUCERNA_IRIDESCENCE"})
     defines[name] = all ? "1" : "0";
   for (const char* name : on) defines[name] = "1";
   return defines;
@@ -111,7 +119,7 @@ class Probe {
 
   static const gpu::Buffer& tables() {
     static const gpu::Buffer buffer = [] {
-      const std::vector<vec4> values = upload::build_bsdf_tables(k_glasses);
+      const std::vector<vec4> values = upload::build_bsdf_tables(k_glasses, true);
       gpu::Buffer b(device(), {"albedo tables", values.size() * sizeof(vec4), gpu::Memory::device, true});
       b.write(std::span<const vec4>(values));
       return b;

@@ -114,6 +114,25 @@ TEST_CASE("extensions of materials") {
                 {{"diffuseTransmissionFactor", 0.5}, {"diffuseTransmissionColorFactor", {0.25, 0.5, 1}}}));
   CHECK(m.diffuse_transmission == 0.5f);
   CHECK(m.diffuse_transmission_color == vec3(0.25f, 0.5f, 1));
+  m = load_material(
+      extension("KHR_materials_clearcoat", {{"clearcoatFactor", 0.5}, {"clearcoatRoughnessFactor", 0.25}}));
+  CHECK(m.clearcoat == 0.5f);
+  CHECK(m.clearcoat_roughness == 0.25f);
+  m = load_material(extension("KHR_materials_sheen",
+                              {{"sheenColorFactor", {0.25, 0.5, 1}}, {"sheenRoughnessFactor", 0.75}}));
+  CHECK(m.sheen_color == vec3(0.25f, 0.5f, 1));
+  CHECK(m.sheen_roughness == 0.75f);
+  m = load_material(
+      extension("KHR_materials_anisotropy", {{"anisotropyStrength", 0.5}, {"anisotropyRotation", 1.5}}));
+  CHECK(m.anisotropy == 0.5f);
+  CHECK(m.anisotropy_rotation == 1.5f);
+  m = load_material(
+      extension("KHR_materials_iridescence",
+                {{"iridescenceFactor", 0.5}, {"iridescenceIor", 1.5}, {"iridescenceThicknessMaximum", 550}}));
+  CHECK(m.iridescence == 0.5f);
+  CHECK(m.iridescence_ior == 1.5f);
+  CHECK(m.iridescence_minimum == 100);
+  CHECK(m.iridescence_maximum == 550);
   CHECK(load_material(extension("KHR_materials_unlit", json::object())).unlit);
 }
 

@@ -24,6 +24,11 @@ const std::set<std::string_view> k_known_extensions{"KHR_materials_emissive_stre
                                                     "KHR_lights_punctual",
                                                     "KHR_texture_transform",
                                                     "KHR_materials_diffuse_transmission",
+                                                    "KHR_materials_clearcoat",
+                                                    "KHR_materials_sheen",
+                                                    "KHR_materials_anisotropy",
+                                                    "KHR_materials_iridescence",
+                                                    "KHR_materials_variants",
                                                     "KHR_mesh_quantization",
                                                     "EXT_mesh_gpu_instancing"};
 

@@ -27,6 +27,10 @@ std::string kind_of(const Material& m) {
     kind = "matt";
   else
     kind = "dielectric";
+  if (m.clearcoat > 0) kind += ", clear coat";
+  if (m.sheen_color != vec3(0)) kind += ", sheen";
+  if (m.anisotropy > 0) kind += ", anisotropic";
+  if (m.iridescence > 0) kind += ", iridescent";
   if (m.emission != vec3(0)) kind += ", emitter";
   if (m.alpha_mode == AlphaMode::mask) kind += ", alpha mask";
   if (m.alpha_mode == AlphaMode::blend) kind += ", alpha blend";
@@ -48,18 +52,8 @@ Json describe_materials(const Scene& scene) {
   for (const Material& m : scene.materials) {
     Json item{{"name", m.name}, {"kind", kind_of(m)}};
     Json textures = Json::object();
-    const std::pair<const char*, const TextureUse*> uses[] = {
-        {"base_color", &m.base_color_texture},
-        {"metallic_roughness", &m.metallic_roughness_texture},
-        {"normal", &m.normal_texture},
-        {"emission", &m.emission_texture},
-        {"specular", &m.specular_texture},
-        {"specular_color", &m.specular_color_texture},
-        {"transmission", &m.transmission_texture},
-        {"diffuse_transmission", &m.diffuse_transmission_texture},
-        {"diffuse_transmission_color", &m.diffuse_transmission_color_texture}};
-    for (const auto& [name, use] : uses)
-      if (*use) textures[name] = use->texture;
+    for (const TextureSlot& slot : k_texture_slots)
+      if (m.*slot.use) textures[slot.name] = (m.*slot.use).texture;
     if (!textures.empty()) item["textures"] = textures;
     if (m.emission != vec3(0)) item["emission"] = rgb(m.emission);
     list.push_back(item);
@@ -204,6 +198,7 @@ nlohmann::ordered_json describe(const Scene& scene) {
   else
     out["environment"] = nullptr;
   out["extensions"] = scene.extensions;
+  if (!scene.variants.empty()) out["variants"] = scene.variants;
   out["unknown_extensions"] = scene.unknown_extensions;
   const Box box = bounds(scene);
   if (box.empty())
@@ -266,6 +261,7 @@ std::string describe_text(const Scene& scene) {
          d["environment"].is_null() ? "none" : "radiance " + triple(d["environment"]["radiance"]));
   line("extensions   {}",
        scene.extensions.empty() ? "none" : fmt::format("{}", fmt::join(scene.extensions, ", ")));
+  if (!scene.variants.empty()) line("variants     {}", fmt::join(scene.variants, ", "));
   if (!scene.unknown_extensions.empty()) line("unknown      {}", fmt::join(scene.unknown_extensions, ", "));
   for (const auto& [key, value] : scene.settings) line("setting      {} = {}", key, value);
   for (const Json& warning : d["warnings"]) line("warning      {}", warning.get<std::string>());

@@ -54,6 +54,7 @@ class PrimitiveLoader {
   std::vector<vec2> read_uvs(const char* name);
   void read_colors(Primitive& primitive);
   void read_tangents(Primitive& primitive);
+  void read_variants(MaterialLoader& materials, Primitive& primitive, MaterialNeeds& needs);
 
   Document& document_;
   const tinygltf::Primitive& source_;
@@ -306,6 +307,35 @@ void PrimitiveLoader::read_tangents(Primitive& primitive) {
   if (bad != 0) warn("{} tangents without a direction in the surface: replaced", bad);
 }
 
+// Materials of variants share the vertices, so they must read the same sets of texture coordinates.
+void PrimitiveLoader::read_variants(MaterialLoader& materials, Primitive& primitive, MaterialNeeds& needs) {
+  const auto extensions = item_.find("extensions");
+  const auto e = extensions ? extensions->find("KHR_materials_variants") : std::nullopt;
+  if (!e) return;
+  const Item mappings = e->at("mappings");
+  const size_t count = document_.root().at("materials").size();
+  for (size_t i = 0; i < mappings.size(); ++i) {
+    const Item mapping = mappings.at(i);
+    const Id id = materials.material(static_cast<int>(mapping.at("material").index(count, "materials")));
+    const MaterialNeeds& others = materials.needs(id);
+    bool fits = true;
+    for (size_t s = 0; s < needs.sets.size(); ++s)
+      fits = fits && (others.sets[s] < 0 || needs.sets[s] < 0 || others.sets[s] == needs.sets[s]);
+    if (!fits) {
+      warn("{} materials of variants read other texture coordinates than the default one: left out");
+      continue;
+    }
+    for (size_t s = 0; s < needs.sets.size(); ++s) needs.sets[s] = std::max(needs.sets[s], others.sets[s]);
+    if (!needs.tangents) needs.tangents = others.tangents;
+    const Item variants = mapping.at("variants");
+    for (size_t k = 0; k < variants.size(); ++k) {
+      const uint32_t variant = variants.at(k).index(materials.variants(), "variants");
+      if (primitive.variants.size() <= variant) primitive.variants.resize(variant + 1, k_none);
+      primitive.variants[variant] = id;
+    }
+  }
+}
+
 bool PrimitiveLoader::load(MaterialLoader& materials, Primitive& primitive) {
   if (source_.mode < TINYGLTF_MODE_TRIANGLES) {
     warn("{} primitives of points or lines are left out");
@@ -333,17 +363,18 @@ bool PrimitiveLoader::load(MaterialLoader& materials, Primitive& primitive) {
   }
   turn_mirrored_triangles();
   primitive.material = materials.material(source_.material);
-  const MaterialNeeds& needs = materials.needs(primitive.material);
+  MaterialNeeds needs = materials.needs(primitive.material);
+  read_variants(materials, primitive, needs);
   if (needs.sets[0] >= 0) primitive.uv0 = read_uvs(fmt::format("TEXCOORD_{}", needs.sets[0]).c_str());
   if (needs.sets[1] >= 0) primitive.uv1 = read_uvs(fmt::format("TEXCOORD_{}", needs.sets[1]).c_str());
   read_colors(primitive);
   primitive.triangles = std::move(triangles_);
   read_normals(primitive);
-  if (needs.normal_map) {
+  if (needs.tangents) {
     if (attribute("TANGENT") >= 0 && attribute("NORMAL") >= 0)
       read_tangents(primitive);
     else
-      make_tangents(primitive, needs.normal_map);
+      make_tangents(primitive, *needs.tangents);
   }
   return true;
 }

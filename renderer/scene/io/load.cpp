@@ -38,6 +38,14 @@ void list_extensions(Document& document, Scene& scene) {
   }
 }
 
+void list_variants(const Document& document, Scene& scene) {
+  const auto extensions = document.root().find("extensions");
+  const auto e = extensions ? extensions->find("KHR_materials_variants") : std::nullopt;
+  if (!e) return;
+  const Item names = e->at("variants");
+  for (size_t i = 0; i < names.size(); ++i) scene.variants.push_back(names.at(i).at("name").text());
+}
+
 void warn_of_motion(Document& document) {
   const auto animations = document.root().find("animations");
   if (animations && animations->json().is_array() && !animations->json().empty())
@@ -202,6 +210,7 @@ Scene load(const std::filesystem::path& path, const LoadOptions& options, const 
     document.progress(0, "file");
     open_document(document, path);
     list_extensions(document, scene);
+    list_variants(document, scene);
     warn_of_motion(document);
     Placement placement = load_nodes(document, scene);
     MaterialLoader materials(document, scene);

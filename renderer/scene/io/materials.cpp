@@ -145,7 +145,6 @@ TextureUse MaterialLoader::texture_use(const Item& parent, const char* key, Use 
   const auto [place, fresh] = wanted_ids_.try_emplace(wanted, static_cast<Id>(wanted_.size()));
   if (fresh) wanted_.push_back(wanted);
   result.texture = place->second;
-  if (use == Use::normal) needs.normal_map = result;
   return result;
 }
 
@@ -184,6 +183,7 @@ void MaterialLoader::read(const Item& item, Material& m, MaterialNeeds& needs) {
     m.metallic_roughness_texture = texture_use(*pbr, "metallicRoughnessTexture", Use::data, needs);
   }
   m.normal_texture = texture_use(item, "normalTexture", Use::normal, needs);
+  if (m.normal_texture) needs.tangents = m.normal_texture;
   if (const auto normal = item.find("normalTexture"))
     m.normal_scale = factor(*normal, "scale", 1, -k_huge, k_huge);
   m.emission = color(item, "emissiveFactor", vec3(0), k_huge);
@@ -243,6 +243,43 @@ void MaterialLoader::read_extensions(const Item& extensions, Material& m, Materi
         texture_use(*e, "diffuseTransmissionColorTexture", Use::colour, needs);
   }
   m.unlit = extensions.find("KHR_materials_unlit").has_value();
+  read_layers(extensions, m, needs);
+}
+
+void MaterialLoader::read_layers(const Item& extensions, Material& m, MaterialNeeds& needs) {
+  if (const auto e = extensions.find("KHR_materials_clearcoat")) {
+    m.clearcoat = factor(*e, "clearcoatFactor", 0, 0, 1);
+    m.clearcoat_texture = texture_use(*e, "clearcoatTexture", Use::data, needs);
+    m.clearcoat_roughness = factor(*e, "clearcoatRoughnessFactor", 0, 0, 1);
+    m.clearcoat_roughness_texture = texture_use(*e, "clearcoatRoughnessTexture", Use::data, needs);
+    m.clearcoat_normal_texture = texture_use(*e, "clearcoatNormalTexture", Use::normal, needs);
+    if (const auto normal = e->find("clearcoatNormalTexture"))
+      m.clearcoat_normal_scale = factor(*normal, "scale", 1, -k_huge, k_huge);
+    if (m.clearcoat_normal_texture && !needs.tangents) needs.tangents = m.clearcoat_normal_texture;
+  }
+  if (const auto e = extensions.find("KHR_materials_sheen")) {
+    m.sheen_color = color(*e, "sheenColorFactor", vec3(0), 1);
+    m.sheen_color_texture = texture_use(*e, "sheenColorTexture", Use::colour, needs);
+    m.sheen_roughness = factor(*e, "sheenRoughnessFactor", 0, 0, 1);
+    m.sheen_roughness_texture = texture_use(*e, "sheenRoughnessTexture", Use::data, needs);
+  }
+  if (const auto e = extensions.find("KHR_materials_anisotropy")) {
+    m.anisotropy = factor(*e, "anisotropyStrength", 0, 0, 1);
+    m.anisotropy_rotation = factor(*e, "anisotropyRotation", 0, -k_huge, k_huge);
+    m.anisotropy_texture = texture_use(*e, "anisotropyTexture", Use::data, needs);
+    if (!needs.tangents) needs.tangents = m.anisotropy_texture;
+    // Without any texture the tangents follow the first set of coordinates.
+    if (!m.anisotropy_texture && !m.normal_texture)
+      needs.tangents->uv_set = take_slot(needs.sets, 0).value_or(0);
+  }
+  if (const auto e = extensions.find("KHR_materials_iridescence")) {
+    m.iridescence = factor(*e, "iridescenceFactor", 0, 0, 1);
+    m.iridescence_texture = texture_use(*e, "iridescenceTexture", Use::data, needs);
+    m.iridescence_ior = factor(*e, "iridescenceIor", 1.3f, 1, k_huge);
+    m.iridescence_minimum = factor(*e, "iridescenceThicknessMinimum", 100, 0, k_huge);
+    m.iridescence_maximum = factor(*e, "iridescenceThicknessMaximum", 400, 0, k_huge);
+    m.iridescence_thickness_texture = texture_use(*e, "iridescenceThicknessTexture", Use::data, needs);
+  }
 }
 
 void MaterialLoader::load_images(bool decode_them) {
@@ -333,11 +370,8 @@ void MaterialLoader::load_images(bool decode_them) {
     final_ids.push_back(place->second);
   }
   for (Material& m : scene_.materials)
-    for (TextureUse* use :
-         {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture, &m.emission_texture,
-          &m.specular_texture, &m.specular_color_texture, &m.transmission_texture,
-          &m.diffuse_transmission_texture, &m.diffuse_transmission_color_texture})
-      if (*use) use->texture = final_ids[use->texture];
+    for (const TextureSlot& slot : k_texture_slots)
+      if (TextureUse& use = m.*slot.use) use.texture = final_ids[use.texture];
 }
 
 }  // namespace lucerna::scene

@@ -21,6 +21,13 @@ struct Material {
   vec3 diffuse_transmission_color;
   uint solid, inside;
   int glass_row;
+  float clearcoat, clearcoat_roughness;
+  vec3 clearcoat_normal;
+  vec3 sheen;
+  float sheen_roughness;
+  float anisotropy;
+  vec2 grain;
+  float film, film_ior, film_thickness;
 };
 struct Question {
   uint material;
@@ -57,6 +64,24 @@ SurfaceParameters parameters(Material m) {
   s.solid = m.solid != 0u;
   s.inside = m.inside != 0u;
   s.glass_row = m.glass_row;
+#if LUCERNA_CLEARCOAT
+  s.clearcoat = m.clearcoat;
+  s.clearcoat_roughness = m.clearcoat_roughness;
+  s.clearcoat_normal = m.clearcoat_normal;
+#endif
+#if LUCERNA_SHEEN
+  s.sheen = m.sheen;
+  s.sheen_roughness = m.sheen_roughness;
+#endif
+#if LUCERNA_ANISOTROPY
+  s.anisotropy = m.anisotropy;
+  s.grain = m.grain;
+#endif
+#if LUCERNA_IRIDESCENCE
+  s.film = m.film;
+  s.film_ior = m.film_ior;
+  s.film_thickness = m.film_thickness;
+#endif
   return s;
 }
 
@@ -84,11 +109,17 @@ void main() {
   d.eta2 = 1.0;
   d.event = k_event_diffuse;
 #if TEST_SUBJECT == 0
-  Bsdf bsdf = make_bsdf(parameters(m), push.wo.z);
+  Bsdf bsdf = make_bsdf(parameters(m), push.wo);
   BsdfSample s = bsdf_sample(bsdf, push.wo, u.xy, u.zw);
   float p_undeflected = bsdf_undeflected_probability(bsdf, push.wo.z);
-  if (uniform_number(i, 4u) < p_undeflected)
-    s = BsdfSample(-push.wo, bsdf_undeflected(bsdf, push.wo.z) / p_undeflected, 0.0, k_event_null, 1.0, true);
+  if (uniform_number(i, 4u) < p_undeflected) {
+    s.wi = -push.wo;
+    s.weight = bsdf_undeflected(bsdf, push.wo.z) / p_undeflected;
+    s.pdf = 0.0;
+    s.event = k_event_null;
+    s.eta2 = 1.0;
+    s.transmitted = true;
+  }
   d.wi = s.wi;
   d.pdf = s.pdf;
   d.weight = s.weight;
@@ -112,7 +143,7 @@ void main() {
   v.diffuse = vec3(0.0);
   v.glossy = vec3(0.0);
 #if TEST_SUBJECT == 0
-  BsdfValue f = bsdf_eval(make_bsdf(parameters(m), q.wo.z), q.wo, q.wi);
+  BsdfValue f = bsdf_eval(make_bsdf(parameters(m), q.wo), q.wo, q.wi);
   v.diffuse = f.diffuse;
   v.glossy = f.glossy;
   v.pdf = f.pdf;
