@@ -23,11 +23,11 @@ def materials(s):
                layers={"clearcoat": {"clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.06}})
     s.material("car paint", (0.42, 0.025, 0.02), rough=0.42, metal=0.75,
                layers={"clearcoat": {"clearcoatFactor": 1, "clearcoatRoughnessFactor": 0.0}})
-    for name, base, sheen in (("teal velvet", (0.008, 0.055, 0.060), (0.16, 0.42, 0.42)),
-                              ("plum velvet", (0.055, 0.010, 0.040), (0.48, 0.20, 0.38)),
-                              ("ochre velvet", (0.16, 0.075, 0.012), (0.62, 0.42, 0.16))):
+    for name, base, sheen in (("teal velvet", (0.008, 0.055, 0.060), (0.30, 0.72, 0.70)),
+                              ("plum velvet", (0.055, 0.010, 0.040), (0.75, 0.34, 0.60)),
+                              ("ochre velvet", (0.16, 0.075, 0.012), (0.90, 0.66, 0.28))):
         s.material(name, base, rough=1.0, specular=0,
-                   layers={"sheen": {"sheenColorFactor": list(sheen), "sheenRoughnessFactor": 0.38}})
+                   layers={"sheen": {"sheenColorFactor": list(sheen), "sheenRoughnessFactor": 0.45}})
     s.material("piping", (0.30, 0.19, 0.06), rough=0.5)
     s.material("brushed steel", (0.66, 0.65, 0.63), rough=0.26, metal=1.0,
                layers={"anisotropy": {"anisotropyStrength": 0.85}})
@@ -131,10 +131,10 @@ def main():
     s.mesh("bubble", [(sphere(0.064, 128, 64), "soap")])
     s.place("bubble", (0.245, 0.272, -0.030))
     s.mesh("small bubble", [(sphere(0.030, 96, 48), "soap")])
-    s.place("small bubble", (0.375, 0.175, 0.055))
-    s.camera("main", (0.06, 0.33, 1.12), (0.0, 0.115, -0.03), yfov=25.0)
+    s.place("small bubble", (0.335, 0.165, 0.060))
+    s.camera("main", (0.05, 0.36, 1.30), (-0.012, 0.140, -0.03), yfov=25.5)
     s.write("Varnished wood and metal, velvet, brushed steel, a soap bubble and a tempered ball by a window: the finishes "
-            "that need a lobe of their own. The cushion has three variants.", {"film.ev": 0.0})
+            "that need a lobe of their own. The cushion has three variants.", {"film.ev": 0.4})
 
 
 if __name__ == "__main__":

@@ -102,6 +102,7 @@ TEST_CASE("every kind of change invalidates what its row says, and nothing else"
   const std::map<std::string_view, Settings> settings{
       {"components.", {{"components.primary", "off"}}},
       {"effects.", {{"effects.off", "point"}}},
+      {"scene.", {{"scene.clay", "true"}}},
       {"samples", {{"samples", "3"}}},
       {"sampling.", {{"sampling.mode", "adaptive"}, {"sampling.max_samples", "64"}}},
       {"film.", {{"film.ev", "1"}, {"film.layer", "depth"}}},
