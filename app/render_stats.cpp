@@ -4,6 +4,8 @@
 
 #include "base/error_sum.h"
 #include "base/log.h"
+#include "plan/facts_text.h"
+#include "plan/plan.h"
 #include "stats/forecast.h"
 
 namespace lucerna::app {
@@ -219,6 +221,7 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   j["width"] = r.film().width();
   j["height"] = r.film().height();
   j["settings"] = nlohmann::ordered_json::parse(r.settings().changed_json());
+  j["effects"] = plan::effects_json(r.facts(), plan::effects_off(r.settings()));
   j["wall_s"] = wall;
   j["load_s"] = r.load_seconds();
   j["compile_s"] = r.compile_seconds();

@@ -80,6 +80,8 @@ TEST_CASE("file names that are not UTF-8 are written with replacement characters
   CHECK(r.status == 0);
   const auto stats = nlohmann::json::parse(read_text(f / "\xFF.json"));
   CHECK_THAT(stats["scene"].get<std::string>(), Contains("f\xEF\xBF\xBDr.gltf"));
+  CHECK(stats["effects"]["emission"]["called_for"] == true);
+  CHECK(stats["effects"]["sheen"]["called_for"] == false);
   CHECK_THAT(film::read_exr(f / "\xFF.exr").metadata.at("settings"), Contains("A\xEF\xBF\xBD=light"));
   const Run info = run("info --json '" + scene + "'");
   CHECK(info.status == 0);
