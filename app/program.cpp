@@ -83,11 +83,12 @@ class Program {
   scene::LoadOptions scenes_;
   double scene_memory_ = double(scene::k_scene_bytes) / k_gib;
 
-  CLI::App *render_ = nullptr, *info_ = nullptr, *devices_ = nullptr, *compare_ = nullptr, *bench_ = nullptr,
-           *rays_ = nullptr, *latency_ = nullptr, *photons_ = nullptr, *interiors_ = nullptr,
-           *auto_ = nullptr;
+  CLI::App *render_ = nullptr, *info_ = nullptr, *convert_ = nullptr, *devices_ = nullptr,
+           *compare_ = nullptr, *bench_ = nullptr, *rays_ = nullptr, *latency_ = nullptr, *photons_ = nullptr,
+           *interiors_ = nullptr, *auto_ = nullptr;
   RenderArguments r;
   InfoArguments i;
+  ConvertArguments v;
   bool devices_json_ = false;
   CompareArguments c;
   BenchArguments bm;
@@ -225,6 +226,12 @@ void Program::add_small_verbs() {
   info_->add_option("--set", i.set, "--pilot: KEY=VALUE")->allow_extra_args(false);
   info_->add_option("--device", i.device, k_device_help);
   add_scene_options(info_);
+  convert_ = app_.add_subcommand(
+      "convert", "write a scene as another .gltf or .glb file; what Lucerna does not know is kept");
+  convert_->add_option("SCENE", v.scene, "glTF scene")->required();
+  convert_->add_option("OUTPUT", v.output, "file to write: .gltf or .glb")->required()->check(named());
+  convert_->add_flag("--replace", v.replace, "writes over the scene itself");
+  add_scene_options(convert_);
   devices_ = app_.add_subcommand("devices", "list the Vulkan devices");
   devices_->add_flag("--json", devices_json_, "as JSON");
   compare_ = app_.add_subcommand("compare", "compare two images");
@@ -466,6 +473,10 @@ int Program::run(int argc, char** argv) {
   if (*info_) {
     i.scenes = scenes_;
     return info(i);
+  }
+  if (*convert_) {
+    v.scenes = scenes_;
+    return convert(v);
   }
   if (*devices_) return devices(devices_json_);
   if (*compare_) return compare(c);

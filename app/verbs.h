@@ -44,6 +44,13 @@ struct InfoArguments {
 int info(const InfoArguments& arguments);
 int devices(bool json);
 
+struct ConvertArguments {
+  std::string scene, output;
+  bool replace = false;  ///< writes over the scene itself
+  scene::LoadOptions scenes;
+};
+int convert(const ConvertArguments& arguments);
+
 struct BenchRaysArguments {
   std::string scene, camera, device;
   std::string flat;  ///< file to write the flattened scene to; empty: none

@@ -69,7 +69,8 @@ std::vector<std::pair<std::string, std::string>> key_rows() {
            {"Tab", "panels"},
            {"F5", "reload shaders"},
            {"F12", "screenshot of the window"},
-           {"Ctrl + O, Ctrl + S", "open, save"},
+           {"Ctrl + O, Ctrl + S", "open, save the picture"},
+           {"Ctrl + Shift + S", "save the scene with its edits"},
            {"Ctrl + L", "type a command"},
            {"Ctrl + Z, Ctrl + Shift + Z", "undo, redo"},
            {"Esc", "close a message, clear the selection, or cancel a load"},
@@ -144,6 +145,7 @@ void begin_panel(const char* name, const Area& area, ImU32 background, bool scro
 
 void draw_dialogs(Ui& ui) {
   draw_file_dialog(ui);
+  draw_closing_dialog(ui);
   key_page(ui);
 }
 
@@ -187,9 +189,11 @@ void handle_keys(Ui& ui) {
   if (ui.pressed(GLFW_KEY_F5)) ui.act("shaders.reload");
   if (ui.dialog.purpose != Dialog::Purpose::none) return;
   if (ui.pressed(GLFW_KEY_O, GLFW_MOD_CONTROL)) ui.act("dialog.open");
-  if (ui.pressed(GLFW_KEY_S, GLFW_MOD_CONTROL) && ui.has_picture()) ui.act("dialog.save");
+  for (const auto& [key, mods] : ui.keys)
+    if (key == GLFW_KEY_S && mods & GLFW_MOD_CONTROL && ui.has_picture())
+      ui.act(mods & GLFW_MOD_SHIFT ? "scene.save" : "dialog.save");
   if (ui.pressed(GLFW_KEY_L, GLFW_MOD_CONTROL)) ui.act("log.type");
-  if (ui.pressed(GLFW_KEY_Q, GLFW_MOD_CONTROL)) ui.act("quit");
+  if (ui.pressed(GLFW_KEY_Q, GLFW_MOD_CONTROL)) ui.act("window.close");
   if (popup && ui.pressed(GLFW_KEY_ESCAPE)) ImGui::ClosePopupToLevel(0, true);
   if (ImGui::GetIO().WantTextInput || popup) return;
   for (const auto& [key, mods] : ui.keys)

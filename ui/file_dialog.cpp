@@ -51,6 +51,12 @@ Question question(const Dialog& dialog) {
           .command = "image.save",
           .answer = "Save",
           .endings = {".exr", ".png"}};
+    case Purpose::scene:
+      return {.title = "Save the scene",
+              .note = "A .gltf or .glb file with the edits; all else in the scene's file is kept.",
+              .command = "scene.save",
+              .answer = "Save",
+              .endings = {".gltf", ".glb"}};
     case Purpose::script:
       return {.title = "Save the session as a script",
               .note = "The commands of this session, one per line; lucerna --script FILE repeats them.",
@@ -352,6 +358,8 @@ void draw_file_dialog(Ui& ui) {
         if (dialog.purpose == Dialog::Purpose::save && dialog.as_shown &&
             fs::path(file).extension() == ".png")
           ui.act(asked.command, file, named("as", "shown"));
+        else if (dialog.purpose == Dialog::Purpose::scene)
+          ui.act(asked.command, named("file", file), named("replace", fs::is_regular_file(file, ignored)));
         else
           ui.act(asked.command, file);
         done = true;
@@ -386,6 +394,8 @@ void Ui::start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver
     dialog.path = fs::current_path(error).string() + "/";
   } else if (purpose == Dialog::Purpose::script) {
     dialog.path = (open.scene ? open.scene->name : "session") + ".lucerna";
+  } else if (purpose == Dialog::Purpose::scene) {
+    dialog.path = work.scene_file.file();
   } else if (open.scene) {
     dialog.path = open.scene->name + question(dialog).endings[0];
   }

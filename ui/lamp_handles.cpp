@@ -81,7 +81,7 @@ std::vector<LampHandle> lamp_handles(const MarkedScene& marked, const Area& show
   const auto add = [&](LampHandle handle) {
     if (project(marked.open.snapshot->camera, shown, handle.point, handle.at)) list.push_back(handle);
   };
-  for (uint32_t i = 0; i < marked.open.scene->lights.size(); ++i) {
+  for (uint32_t i = 0; i < marked.open.lights().size(); ++i) {
     const bool selected = marked.camera.selection == Selection{Kind::light, i};
     const scene::Light light = marked.open.light(i);
     if ((!marked.all && !selected) || light.kind == scene::LightKind::directional) continue;
@@ -167,7 +167,7 @@ void draw_lamp_handles(const MarkedScene& marked, const Area& shown, const std::
 }
 
 void drag_lamp(Actions& actions, const MarkedScene& marked, const LampHandle& handle, const Area& shown) {
-  if (!marked.open.scene || !marked.camera.view || handle.light >= marked.open.scene->lights.size()) return;
+  if (!marked.open.scene || !marked.camera.view || handle.light >= marked.open.lights().size()) return;
   const ImGuiIO& io = ImGui::GetIO();
   if (handle.part == LampHandle::Part::aim) {
     const vec2 at((io.MousePos.x - shown.lo.x) / std::max(1.0f, shown.width()),

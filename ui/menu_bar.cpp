@@ -136,6 +136,15 @@ void file_menu(Ui& ui) {
   }
   divide();
   const bool picture = ui.has_picture();
+  if (entry("Save scene", "Ctrl+Shift+S",
+            ui.work.scene_file.unsaved() ? ("Saves the edits in " + ui.work.scene_file.file() + ".").c_str()
+                                         : "There is nothing to save.",
+            false, picture))
+    ui.act("scene.save");
+  if (entry("Save scene as\xE2\x80\xA6", nullptr,
+            "Saves the scene with its edits as another .gltf or .glb file.", false, picture))
+    ui.act("dialog.scene");
+  divide();
   if (entry("Save picture\xE2\x80\xA6", "Ctrl+S",
             "Saves the present picture: all layers as EXR, or the displayed one as PNG.", false, picture))
     ui.act("dialog.save");
@@ -159,7 +168,7 @@ void file_menu(Ui& ui) {
             "Saves the commands of this session, one per line; lucerna --script repeats them."))
     ui.act("dialog.script");
   divide();
-  if (entry("Quit", "Ctrl+Q", "Closes the window and ends the render.")) ui.act("quit");
+  if (entry("Quit", "Ctrl+Q", "Closes the window and ends the render.")) ui.act("window.close");
   end_menu();
 }
 
@@ -496,7 +505,8 @@ void draw_menu_bar(Ui& ui, const Area& area) {
     }
   }
   if (ui.open.scene) {
-    const std::string name = elided(ui.open.scene->name, std::max(0.0f, right - left), theme().fonts.strong);
+    const std::string name = elided((ui.work.scene_file.unsaved() ? "*" : "") + ui.open.scene->name,
+                                    std::max(0.0f, right - left), theme().fonts.strong);
     draw_text(list, {left, area.lo.y}, {right, area.hi.y}, name, colour::text, Align::left,
               theme().fonts.strong);
   }

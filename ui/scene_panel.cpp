@@ -9,71 +9,19 @@
 #include "base/color.h"
 #include "commands/light_edit.h"
 #include "emitters.h"
+#include "light_rows.h"
 #include "panel_block.h"
 #include "scene/display_name.h"
 #include "scene/lamp.h"
 #include "scene/range.h"
 #include "state.h"
+#include "sun_rows.h"
 #include "widgets.h"
 
 namespace lucerna::ui {
 namespace {
 
 using scene::display_name;
-
-/// A selectable row: mark, name (elided), a dim note at the right end. Returns true if it was pressed.
-bool list_row(const char* id, bool chosen, const std::string& name, const std::string& note, ImU32 mark,
-              float inset_right, float height = 24) {
-  const float width = ImGui::CalcItemWidth();
-  const ImVec2 lo = ImGui::GetCursorScreenPos(), hi(lo.x + width, lo.y + px(height));
-  const bool pressed = ImGui::InvisibleButton(id, {std::max(1.0f, width - px(inset_right)), px(height)});
-  const bool hovered = ImGui::IsItemHovered();
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  if (chosen || hovered)
-    list->AddRectFilled({lo.x - px(4), lo.y}, {hi.x + px(4), hi.y},
-                        chosen ? colour::field_active : colour::field, px(3));
-  float x = lo.x;
-  if (mark) {
-    const float y = 0.5f * (lo.y + hi.y);
-    list->AddRectFilled({x, y - px(5)}, {x + px(10), y + px(5)}, mark, px(2));
-    list->AddRect({x, y - px(5)}, {x + px(10), y + px(5)}, colour::grey(80), px(2));
-    x += px(18);
-  }
-  const float note_width = note.empty() ? 0 : text_width(note) + px(8);
-  const float right = hi.x - px(inset_right);
-  draw_text(list, {x, lo.y}, {right, hi.y}, elided(name, std::max(0.0f, right - note_width - x)),
-            chosen || hovered ? colour::text : colour::text);
-  if (!note.empty()) draw_text(list, {x, lo.y}, {right, hi.y}, note, colour::text_faint, Align::right);
-  return pressed;
-}
-
-/// A press on a row selects, or clears the selection.
-void choose(Actions& actions, SceneView& view, bool chosen, const char* kind, size_t index) {
-  view.chosen_in_list = true;
-  if (chosen)
-    actions.act("select.none");
-  else
-    actions.act("select", kind, index + 1);
-}
-void quiet_line(const std::string& text) { label(text, colour::text_faint); }
-
-/// A sign at the right end of the row that begins at `row` and was just drawn. Returns true if it was
-/// pressed.
-bool row_sign(const ImVec2& row, const char* id, Sign sign, bool on, const char* help) {
-  const float below = ImGui::GetCursorScreenPos().y;
-  ImGui::SetCursorScreenPos({row.x + ImGui::CalcItemWidth() - px(22), row.y + px(1)});
-  const bool pressed = sign_button(id, sign, on);
-  tooltip(help);
-  ImGui::SetCursorScreenPos({row.x, below});
-  return pressed;
-}
-
-/// Scrolls so that the row at `y` (window pixels) is visible.
-void show_row(float y) {
-  const ImVec2 window = ImGui::GetWindowPos();
-  if (y < window.y || y + px(24) > window.y + ImGui::GetWindowHeight())
-    ImGui::SetScrollFromPosY(y - window.y, 0.5f);
-}
 
 void lens_shift(Controls& controls, const scene::Camera& camera) {
   if (button("##upright", "Make upright", false, ImGui::CalcItemWidth())) controls.act("camera.upright");
@@ -252,163 +200,16 @@ void cameras(Controls& controls, const commands::Navigation& camera, const std::
   tooltip("Saves the view for this scene, also for later runs. Ctrl+B.");
 }
 
-/// Colour by a picker and by temperature: runs `command` with color_name or kelvin.
-void colour_rows(Actions& actions, const char* command, size_t item, const char* color_name, const vec3& tint,
-                 const std::string& note = "") {
-  vec3 picked = tint;
-  if (colour_field("##colour", "Colour", picked, note) && strength_of(picked) > 0)
-    actions.act(command, item, named(color_name, tint_of(picked)));
-  tooltip("Colour of the light, its strongest channel 1. Press to choose another.");
-  const NearestKelvin nearest = nearest_kelvin(tint);
-  float kelvin = nearest.kelvin;
-  const bool near = nearest.off < 0.02f;
-  if (slider("##kelvin", near ? "Temperature" : "Temperature, about", kelvin,
-             {.lo = k_coolest_kelvin,
-              .hi = k_hottest_kelvin,
-              .log = true,
-              .decimals = 0,
-              .unit = "K",
-              .bar = near,
-              .step = 10,
-              .travel = 0.5f}))
-    actions.act(command, item, named("kelvin", kelvin));
-  tooltip(
-      near ? "Temperature of the black body of this colour. Candles 1900 K, bulbs 2700 K, daylight 6500 K."
-           : "No black body has this colour; the nearest by blue over red. A drag takes the colour of that "
-             "temperature.");
-}
-
-/// Properties of a selected lamp besides its strength.
-void light_details(Actions& actions, const Box& core, size_t i, const scene::Light& light) {
-  colour_rows(actions, "light.set", i + 1, "color", tint_of(light.intensity));
-  if (light.kind != scene::LightKind::directional) {
-    const auto solid = float(scene::solid_angle(light));
-    float power = std::max(strength_of(light.intensity) * solid, 1e-3f);
-    if (slider(
-            "##power", "Power", power,
-            {.lo = 1e-3f, .hi = 1e6f, .log = true, .decimals = 2, .unit = "W", .bar = false, .travel = 0.2f}))
-      actions.act("light.set", i + 1, named("power", power));
-    tooltip("Total power of the lamp, in its strongest channel.");
-    const vec3 middle = core.empty() ? vec3(0) : core.centre();
-    const float radius = std::max(core.empty() ? 1.0f : core.radius(), 1e-2f);
-    const float reach = 4 * radius + glm::length(middle);
-    vec3 position = light.position;
-    if (slider_row("##position", "Position", position,
-                   {.lo = -reach,
-                    .hi = reach,
-                    .decimals = radius < 1 ? 3 : 2,
-                    .bar = false,
-                    .travel = 0.25f * radius / reach,
-                    .typed_lo = -1e6f,
-                    .typed_hi = 1e6f}) >= 0)
-      actions.act("light.set", i + 1, named("position", position));
-    tooltip("Position of the lamp: x, y (up), z in metres.");
-  }
-  if (light.kind != scene::LightKind::point) {
-    const commands::Bearing bearing = commands::bearing_of(light.direction);
-    float azimuth = bearing.azimuth, elevation = bearing.elevation;
-    if (slider("##azimuth", "Azimuth", azimuth,
-               {.lo = 0, .hi = 360, .decimals = 1, .unit = "\xC2\xB0", .typed_lo = -360, .typed_hi = 360}))
-      actions.act("light.set", i + 1, named("azimuth", azimuth));
-    tooltip("Compass direction from which the light comes: 0 from \xE2\x88\x92Z, 90 from +X.");
-    if (slider("##elevation", "Elevation", elevation,
-               {.lo = -90, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
-      actions.act("light.set", i + 1, named("elevation", elevation));
-    tooltip("Angle above the horizon from which the light comes; 90 is vertical.");
-  }
-  if (light.kind == scene::LightKind::spot) {
-    float cone = light.outer_cone * 180 / k_pi, inner = light.inner_cone * 180 / k_pi;
-    if (slider("##cone", "Cone", cone, {.lo = 0.5f, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
-      actions.act("light.set", i + 1, named("cone", cone));
-    tooltip("Angle from the axis at which the light ends.");
-    if (slider("##inner", "Inner cone", inner, {.lo = 0, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
-      actions.act("light.set", i + 1, named("inner_cone", inner));
-    tooltip("Angle from the axis at which the light begins to fade.");
-  }
-}
-
-/// A row of the list of lights with its switch, and its properties if selected. Returns true if its switch
-/// was pressed.
-bool light_row(Actions& actions, SceneView& view, bool chosen, bool reveal, const std::string& name,
-               const char* note, const vec3& tint, bool on, const char* kind, size_t index) {
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  if (chosen && reveal) show_row(at.y);
-  if (list_row("##light", chosen, name, note, colour::with_alpha(display_colour(tint), on ? 1.0f : 0.3f), 28))
-    choose(actions, view, chosen, kind, index);
-  tooltip(fmt::format("{}. Press to select and edit it; F frames it.", name));
-  return row_sign(at, "##on", Sign::power, on, on ? "Switches the light off." : "Switches the light on.");
-}
-
-/// Drags scale the value; a light of strength 0 starts from a thousandth.
-Slider strength_slider(const char* unit) {
-  return {.lo = 1e-3f, .hi = 1e5f, .log = true, .decimals = 2, .unit = unit, .bar = false, .travel = 0.25f};
-}
-constexpr const char* k_radiance_unit = "W/m\xC2\xB2sr";
-
-void emission_slider(Controls& controls, uint32_t index) {
-  const Slider how = strength_slider(k_radiance_unit);
-  float shown = std::max(strength_of(controls.open.emission(index)), how.lo);
-  ImGui::BeginDisabled(!controls.open.emits(index));
-  if (slider("##strength", "Radiance", shown, how))
-    controls.act("material.set", index + 1, named("strength", shown));
-  ImGui::EndDisabled();
-  tooltip("Emitted radiance of the surface's strongest channel; its texture multiplies it.");
-}
-
-void light_rows(Controls& controls, const commands::Navigation& camera, SceneView& view, bool reveal) {
-  const auto& lights = controls.open.scene->lights;
-  const std::vector<uint32_t> glowing = emitters(controls.open, camera);
-  if (lights.empty() && glowing.empty()) quiet_line("No lights");
-  static const char* kinds[] = {"point", "spot", "sun"};
-  for (size_t i = 0; i < lights.size(); ++i) {
-    const auto index = static_cast<uint32_t>(i);
-    const scene::Light light = controls.open.light(index);
-    ImGui::PushID(static_cast<int>(i));
-    const bool chosen = camera.selection == Selection{Kind::light, index};
-    if (light_row(controls.actions, view, chosen, reveal, display_name(light.name, "Light", i),
-                  kinds[static_cast<size_t>(light.kind)], tint_of(light.intensity), light.enabled, "light",
-                  i))
-      controls.act("light.set", i + 1, named("on", !light.enabled));
-    const bool sun = light.kind == scene::LightKind::directional;
-    const Slider how = strength_slider(sun ? "W/m\xC2\xB2" : "W/sr");
-    ImGui::BeginDisabled(!light.enabled);
-    float shown = std::max(strength_of(light.intensity), how.lo);
-    if (slider("##strength", sun ? "Irradiance" : "Intensity", shown, how))
-      controls.act("light.set", i + 1, named("intensity", shown));
-    ImGui::EndDisabled();
-    tooltip(sun ? "Irradiance on a surface that faces the light, in its strongest channel."
-                : "Radiant intensity in the strongest channel.");
-    if (chosen) light_details(controls.actions, camera.core, i, light);
-    ImGui::PopID();
-    gap(4);
-  }
-  // Emissive surfaces are lights too; in many interiors the only ones.
-  for (const uint32_t index : glowing) {
-    const scene::Material m = controls.open.material(index);
-    ImGui::PushID(static_cast<int>(lights.size() + index));
-    const bool chosen = camera.selection == Selection{Kind::material, index}, on = controls.open.emits(index);
-    const vec3 tint = tint_of(controls.open.emission(index));
-    if (light_row(controls.actions, view, chosen, false, display_name(m.name, "Material", index), "surface",
-                  tint, on, "material", index))
-      controls.act("material.set", index + 1, named("on", !on));
-    emission_slider(controls, index);
-    if (chosen)
-      colour_rows(controls.actions, "material.set", index + 1, "emission_color", tint,
-                  m.emission_texture ? "\xC3\x97 texture" : "");
-    ImGui::PopID();
-    gap(4);
-  }
-}
-
 void environment(Controls& controls) {
   const scene::Environment& e = controls.open.scene->environment;
   const bool image = e.image != scene::k_none;
   const bool dark = !image && strength_of(e.radiance) <= 0;
   value_row(
       "Light",
-      image  ? (e.file.empty() ? "image" : e.file)
-      : dark ? "none"
-             : "even radiance",
+      controls.open.sky() ? "sky by formula"
+      : image             ? (e.file.empty() ? "image" : e.file)
+      : dark              ? "none"
+                          : "even radiance",
       std::string(image ? "A latitude-longitude image around the scene." : "Radiance from every direction.") +
           " Drop an .exr or .hdr file on the window to replace it.");
   gap(4);
@@ -431,8 +232,9 @@ void environment(Controls& controls) {
   tooltip("Rotates the image counter-clockwise, seen from above. Ctrl + drag in the picture rotates it too.");
   ImGui::EndDisabled();
   ImGui::EndDisabled();
+  sky_rows(controls);
   option_control(controls, "film.background", "Background");
-  if (!controls.open.environment_file().empty()) {
+  if (!controls.open.environment_file().empty() || controls.open.sky_replaces()) {
     if (button("##own", "Restore scene environment", false, ImGui::CalcItemWidth()))
       controls.act("environment.own");
     tooltip("Uses the environment from the scene file.");
@@ -634,8 +436,8 @@ void draw_scene_panel(Controls& controls, const commands::Navigation& camera, Sc
   if (reveal && camera.selection.kind == Kind::light) controls.sections["Lights"] = true;
   block("Camera", controls.open.scene->cameras.size(), true, [&] { cameras(controls, camera, keep_view); });
   block("Lens and section", 0, false, [&] { lens_and_section(controls, camera, view.focusing); });
-  block("Lights", controls.open.scene->lights.size() + emitters(controls.open, camera).size(), true,
-        [&] { light_rows(controls, camera, view, reveal); });
+  block("Lights", controls.open.lights().size() + emitters(controls.open, camera).size(), true,
+        [&] { draw_light_rows(controls, camera, view, reveal); });
   block("Environment", 0, true, [&] { environment(controls); });
   block("Materials", controls.open.scene->materials.size(), true,
         [&] { materials(controls, camera.selection, view, reveal); });

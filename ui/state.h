@@ -33,7 +33,7 @@ inline constexpr const char* k_scene_side = "scene";
 inline constexpr size_t k_recent_files = 8;  ///< number of recent files kept
 
 struct Dialog {
-  enum class Purpose { none, open, save, script, reference, solver_load, solver_save };
+  enum class Purpose { none, open, save, scene, script, reference, solver_load, solver_save };
   Purpose purpose = Purpose::none;
   const solvers::SolverInfo* solver = nullptr;  ///< for solver_load and solver_save
   std::string path;
@@ -105,6 +105,8 @@ struct Ui {
   LogView log;
   Dialog dialog;
   bool help = false;
+  /// The window is asked to close with edits that are not saved.
+  enum class Closing { no, asks, saves } closing = Closing::no;
   std::vector<std::string> recent;  ///< files, newest first, from the root
   unsigned texture = 0;             ///< OpenGL name of the picture
   uint32_t texture_width = 0, texture_height = 0;
@@ -197,7 +199,8 @@ void draw_inspection(const session::Snapshot& picture, const Area& area, const A
 void keep_view(Ui& ui);
 void draw_splitters(Ui& ui, const Areas& areas);
 void draw_dialogs(Ui& ui);
-void draw_file_dialog(Ui& ui);  ///< part of draw_dialogs
+void draw_file_dialog(Ui& ui);     ///< part of draw_dialogs
+void draw_closing_dialog(Ui& ui);  ///< likewise
 void handle_keys(Ui& ui);
 
 /// GLFW's key and modifiers of a name such as "ctrl+z". Throws Error if there is none.

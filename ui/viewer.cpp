@@ -46,8 +46,9 @@ class Viewer {
 
   int run() {
     const auto interrupted = [&] { return options_.interrupted && options_.interrupted(); };
-    while (!window_.closing() && !ui_.requests.status && !interrupted()) {
+    while (!ui_.requests.status && !interrupted()) {
       pause_until_needed();
+      if (window_.take_closing()) ui_.act("window.close");
       collect();
       if (memory_) memory_->follow(ui_.work.now);
       runner_.advance();
@@ -110,9 +111,9 @@ class Viewer {
     }
     if (scene != ui_.open.scene) {
       ui_.wake(1);
-      window_.set_title(ui_.open.scene ? ui_.open.scene->name + " \xE2\x80\x93 Lucerna" : "Lucerna");
       hold_selection();
     }
+    follow_title();
     for (const std::string& file : window_.dropped()) ui_.drop(file);
     ui_.follow_busy();
     if (ui_.cards.busy_seconds(ui_.work.now) > 0) ui_.wake(1);
@@ -121,6 +122,14 @@ class Viewer {
     // Tooltips and the text cursor need a frame after the pointer has stopped.
     if (ui_.work.now - hovering_since_ < 0.7 || ImGui::GetIO().WantTextInput) ui_.wake(1);
     if (runner_.measuring() || ui_.moving) ui_.wake(1);
+  }
+
+  /// The scene's name, with an asterisk if there is something to save.
+  void follow_title() {
+    std::string title = "Lucerna";
+    if (ui_.open.scene)
+      title = (ui_.work.scene_file.unsaved() ? "*" : "") + ui_.open.scene->name + " \xE2\x80\x93 " + title;
+    if (title != title_) window_.set_title(title_ = title), ui_.wake(1);
   }
 
   /// A script's mouse, keyboard and window input takes the same path as a user's.
@@ -146,7 +155,7 @@ class Viewer {
     const size_t count = !ui_.open.scene            ? 0
                          : s.kind == Kind::material ? ui_.open.scene->materials.size()
                          : s.kind == Kind::instance ? ui_.open.scene->instances.size()
-                         : s.kind == Kind::light    ? ui_.open.scene->lights.size()
+                         : s.kind == Kind::light    ? ui_.open.lights().size()
                                                     : 0;
     if (s.index >= count) ui_.camera.selection = {};
   }
@@ -244,6 +253,7 @@ class Viewer {
   Runner runner_;
   std::vector<std::string> settings_;
   Window window_;
+  std::string title_;
   bool fresh_picture_ = false;
   double last_draw_ = -1, last_present_ = 0, hovering_since_ = -10;
   std::pair<uint32_t, uint32_t> wanted_size_{0, 0};

@@ -140,13 +140,13 @@ std::optional<vec3> under_pointer(Ui& ui, const Area& shown) {
 
 /// The sun that a drag rotates if there is no environment image: the first one that is on.
 std::optional<uint32_t> first_sun(const Ui& ui) {
-  for (uint32_t i = 0; ui.open.scene && i < ui.open.scene->lights.size(); ++i)
-    if (ui.open.scene->lights[i].kind == scene::LightKind::directional && ui.open.light(i).enabled) return i;
+  for (uint32_t i = 0; i < ui.open.lights().size(); ++i)
+    if (ui.open.light(i).kind == scene::LightKind::directional && ui.open.light(i).enabled) return i;
   return std::nullopt;
 }
 bool has_environment_image(const Ui& ui) {
-  return ui.open.scene &&
-         (ui.open.scene->environment.image != scene::k_none || !ui.open.environment_file().empty());
+  return ui.open.scene && (ui.open.scene->environment.image != scene::k_none ||
+                           !ui.open.environment_file().empty() || ui.open.sky());
 }
 
 /// Rotates the sky with the pointer: points at infinity stay under it.
@@ -324,7 +324,7 @@ std::string help_of(Ui& ui, const LampHandle& handle) {
       break;
   }
   return fmt::format("{}. Drag to move it parallel to the picture, with Shift vertically.",
-                     ui.open.scene->lights[handle.light].name);
+                     ui.open.light(handle.light).name);
 }
 
 constexpr double k_rest = 0.15;  // seconds

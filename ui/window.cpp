@@ -158,7 +158,11 @@ void Window::follow_scale() {
   if (again) ImGui_ImplOpenGL3_CreateFontsTexture();
 }
 
-bool Window::closing() const { return glfwWindowShouldClose(window_); }
+bool Window::take_closing() {
+  const bool closing = glfwWindowShouldClose(window_);
+  if (closing) glfwSetWindowShouldClose(window_, GLFW_FALSE);
+  return closing;
+}
 
 bool Window::wait(double seconds) {
   // A script's input since the last call counts like a user's.

@@ -17,7 +17,8 @@ class Window {
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;
 
-  bool closing() const;
+  /// True once if the user has asked to close the window; it stays open.
+  bool take_closing();
   /// Sleeps until something happens, or for at most `seconds` (0: only collects events). Returns whether
   /// there was input.
   bool wait(double seconds);

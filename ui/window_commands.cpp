@@ -187,6 +187,22 @@ void add_dialog_commands(Ui& ui, const Add& add) {
       "dialog.save", "Opens the dialog to save the picture.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::save); }, false);
   add(
+      "dialog.scene", "Opens the dialog to save the scene.", {},
+      [&ui](const Arguments&) {
+        ui.open.needs_scene();
+        ui.start_dialog(Dialog::Purpose::scene);
+      },
+      false);
+  add(
+      "window.close", "Closes the window; asks what to do with edits that are not saved.", {},
+      [&ui](const Arguments&) {
+        if (ui.work.scene_file.unsaved())
+          ui.closing = Ui::Closing::asks;
+        else
+          ui.requests.status = 0;
+      },
+      false);
+  add(
       "dialog.reference", "Opens the dialog to load a reference.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::reference); }, false);
   for (const solvers::SolverInfo* solver : solvers::registered()) {

@@ -48,7 +48,7 @@ Selection selection_of(const OpenScene& open, const std::string& kind, const std
   open.needs_scene();
   if (kind == "material")
     return {Kind::material, index_of("material", which, names_of(open.scene->materials))};
-  if (kind == "light") return {Kind::light, index_of("light", which, names_of(open.scene->lights))};
+  if (kind == "light") return {Kind::light, index_of("light", which, names_of(open.lights()))};
   return {Kind::instance, index_of("object", which, names_of(open.scene->instances))};
 }
 
@@ -123,25 +123,13 @@ void Motions::add_motions() {
       "Puts the camera at a place, looking at a point that it then orbits about. With fov it is a "
       "perspective camera, with height an orthographic one. Otherwise the lens stays as it is.",
       std::move(placed), [&camera = camera_, &open = open_](Viewpoint& v, const Arguments& a) {
-        if (!place(v, a.vector("eye"), a.vector("target"), a.vector("up")))
-          throw Error("", "eye and target must differ, and up must not point from one to the other");
-        if (a.has("fov") && a.has("height")) throw Error("", "fov and height exclude each other: give one");
-        if (a.has("fov")) {
-          v.camera.orthographic = false;
-          set_fov(v.camera, a.real("fov"));
-        }
-        if (a.has("height")) {
-          if (!std::exchange(v.camera.orthographic, true)) v.camera.ymag = 1, v.camera.xmag = camera.aspect;
-          set_height(v.camera, a.number("height"));
-        }
-        set_lens(v.camera, a);
-        focus_somewhere(open, v, camera.aspect);
+        place_by_words(v, a, open, camera.aspect);
       });
   add("camera.frame",
       "Moves so that the selection, or else the whole scene, fills the picture; not into or behind a wall.",
       {}, [&camera = camera_, &open = open_](Viewpoint& v, const Arguments&) {
         camera.probe(true);
-        const Box bounds = selection_bounds(open.scene.get(), camera.selection, camera.core);
+        const Box bounds = selection_bounds(open.scene.get(), open.lights(), camera.selection, camera.core);
         if (camera.selection.kind != Kind::none)
           frame_clear(v, bounds, camera.aspect, camera.look_past_selection());
         else if (!v.camera.orthographic && enclosed(camera.look(), eye_of(v.camera), v.extent))
@@ -163,6 +151,22 @@ void Motions::add_lenses() {
 }
 
 }  // namespace
+
+void place_by_words(Viewpoint& v, const Arguments& a, const OpenScene& open, float aspect) {
+  if (!place(v, a.vector("eye"), a.vector("target"), a.vector("up")))
+    throw Error("", "eye and target must differ, and up must not point from one to the other");
+  if (a.has("fov") && a.has("height")) throw Error("", "fov and height exclude each other: give one");
+  if (a.has("fov")) {
+    v.camera.orthographic = false;
+    set_fov(v.camera, a.real("fov"));
+  }
+  if (a.has("height")) {
+    if (!std::exchange(v.camera.orthographic, true)) v.camera.ymag = 1, v.camera.xmag = aspect;
+    set_height(v.camera, a.number("height"));
+  }
+  set_lens(v.camera, a);
+  focus_somewhere(open, v, aspect);
+}
 
 void add_camera_commands(Registry& registry, const OpenScene& open, Navigation& camera) {
   Motions motions(registry, open, camera);
@@ -203,7 +207,7 @@ void add_selection_commands(Workspace& work) {
                              std::vector<std::string> none;
                              if (!open.scene || before.empty()) return none;
                              if (before[0] == "material") return given_names(open.scene->materials);
-                             return before[0] == "light" ? given_names(open.scene->lights)
+                             return before[0] == "light" ? given_names(open.lights())
                                                          : given_names(open.scene->instances);
                            }}},
        .run = [&work](const Arguments& a) {

@@ -12,7 +12,8 @@ class SavedFiles;
 class Workspace;
 
 void add_setting_commands(Workspace& work);
-void add_light_commands(Registry& registry, OpenScene& open);
+void add_light_commands(Workspace& work);
+void add_sun_commands(Registry& registry, OpenScene& open);
 void add_material_commands(Registry& registry, OpenScene& open);
 void add_environment_commands(Registry& registry, OpenScene& open);
 void add_environment_file_commands(Registry& registry, OpenScene& open);
@@ -27,6 +28,7 @@ void add_exposure_commands(Registry& registry, const OpenScene& open, const Navi
                            Exposure& exposure);
 void add_mix_commands(Registry& registry, OpenScene& open);
 void add_scene_commands(Workspace& work);
+void add_save_commands(Workspace& work);
 void add_render_commands(Workspace& work);
 void add_script_commands(Workspace& work);
 void add_wait_commands(Workspace& work);

@@ -2,16 +2,6 @@
 
 namespace lucerna::commands {
 
-Document::Light Document::of(const scene::Light& l) {
-  return {l.intensity, l.enabled, l.position, l.direction, l.inner_cone, l.outer_cone};
-}
-
-void Document::Light::put(scene::Light& light) const {
-  light.intensity = intensity, light.enabled = enabled;
-  light.position = position, light.direction = direction;
-  light.inner_cone = inner_cone, light.outer_cone = outer_cone;
-}
-
 Document::Material Document::of(const scene::Material& m) {
   return {.color = vec3(m.base_color),
           .roughness = m.roughness,

@@ -3,6 +3,7 @@
 // session (open_scene.h).
 #include <array>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,14 +13,6 @@
 namespace lucerna::commands {
 
 struct Document {
-  struct Light {
-    vec3 intensity{0};  ///< all members as in scene::Light
-    bool enabled = true;
-    vec3 position{0}, direction{0, 0, -1};
-    float inner_cone = 0, outer_cone = 0;
-    void put(scene::Light& light) const;
-    bool operator==(const Light&) const = default;
-  };
   struct Material {
     vec3 color{1};  ///< all members as in scene::Material
     float roughness = 1, metallic = 0;
@@ -35,15 +28,15 @@ struct Document {
     void put(scene::Material& material) const;
     bool operator==(const Material&) const = default;
   };
-  static Light of(const scene::Light& light);
   static Material of(const scene::Material& material);  ///< emits
   std::map<std::string, std::string> settings;          ///< by key
-  std::vector<Light> lights;                            ///< in the scene's order
+  std::vector<scene::Light> lights;                     ///< as commands number them
   std::vector<Material> materials;                      ///< likewise
   float environment_scale = 1;
-  float environment_rotation = 0;  ///< degrees
-  std::string environment_file;    ///< image that replaces the scene's own environment; "": none
-  int solo = -1;                   ///< component shown alone, or -1
+  float environment_rotation = 0;      ///< degrees
+  std::string environment_file;        ///< image that replaces the scene's own environment; "": none
+  std::optional<scene::SkyModel> sky;  ///< replaces the scene's own environment
+  int solo = -1;                       ///< component shown alone, or -1
   std::array<bool, session::k_components> shown_before{};  ///< restored after solo
   bool operator==(const Document&) const = default;
 };

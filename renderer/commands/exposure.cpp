@@ -26,9 +26,11 @@ bool Exposure::done() const {
 
 void Exposure::begin_scene() {
   measuring_.reset();
-  const auto& settings = open_.scene->settings;
-  const bool sets_exposure = std::any_of(settings.begin(), settings.end(),
-                                         [](const auto& setting) { return setting.first == "film.ev"; });
+  const auto sets = [](const auto& settings) {
+    return std::any_of(settings.begin(), settings.end(),
+                       [](const auto& setting) { return setting.first == "film.ev"; });
+  };
+  const bool sets_exposure = sets(open_.scene->settings) || sets(open_.scene->own_settings);
   due_ = sets_exposure || std::exchange(given_, false) ? 0 : camera_.view_scene;
 }
 

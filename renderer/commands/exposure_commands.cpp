@@ -54,6 +54,7 @@ void add_environment_file_commands(Registry& registry, OpenScene& open) {
              open.needs_scene();
              Document& d = open.edit();
              d.environment_file = absolute_path(a.text("file")).string();
+             d.sky.reset();
              d.environment_scale = 1, d.environment_rotation = 0;
            },
        .undoable = true});
@@ -64,7 +65,7 @@ void add_environment_file_commands(Registry& registry, OpenScene& open) {
                     [&open](const Arguments&) {
                       open.needs_scene();
                       Document& d = open.edit();
-                      d.environment_file.clear();
+                      d.environment_file.clear(), d.sky.reset();
                       std::tie(d.environment_scale, d.environment_rotation) = open.own_environment();
                     },
                 .undoable = true});

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "commands/refusal.h"
+#include "commands/scene_file.h"
 #include "commands/session_saves.h"
 
 namespace lucerna::commands {
@@ -54,7 +55,20 @@ void History::add_edit(const Executed& executed, const Document& before, const D
   } else {
     undo_.push_back({executed.line, executed.target, executed.gesture, executed.sent, before, after});
   }
-  if (undo_.size() > k_steps) undo_.erase(undo_.begin());
+  undo_.back().position = same_scene(undo_.back().before, after) ? 0 : ++positions_;
+  forget_oldest();
+}
+
+void History::forget_oldest() {
+  if (undo_.size() <= k_steps) return;
+  if (undo_.front().position != 0) base_ = undo_.front().position;
+  undo_.erase(undo_.begin());
+}
+
+uint64_t History::position() const {
+  for (auto step = undo_.rbegin(); step != undo_.rend(); ++step)
+    if (step->position != 0) return step->position;
+  return base_;
 }
 
 void History::add_move(const Executed& executed, const Viewpoint& before, int camera_before) {
@@ -76,9 +90,14 @@ void History::add_move(const Executed& executed, const Viewpoint& before, int ca
                      {},
                      {},
                      Step::Move{before, now_seen, camera_before, camera_.scene_camera}});
-    if (undo_.size() > k_steps) undo_.erase(undo_.begin());
+    forget_oldest();
   }
   redo_.clear();
+}
+
+void History::restore(const Document& to) {
+  camera_.follow_lights(open_.lights(), to.lights);
+  open_.restore(to);
 }
 
 void History::undo() {
@@ -88,7 +107,7 @@ void History::undo() {
   if (step.move)
     camera_.take_view(step.move->before, step.move->camera_before);
   else
-    open_.restore(step.before);
+    restore(step.before);
   step.gesture = 0, step.sent = {};
   redo_.push_back(std::move(step));
 }
@@ -101,7 +120,7 @@ void History::redo() {
   if (step.move)
     camera_.take_view(step.move->after, step.move->camera_after);
   else
-    open_.restore(step.after);
+    restore(step.after);
   step.sent = sent_since(before);
   undo_.push_back(std::move(step));
 }

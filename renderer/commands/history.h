@@ -23,6 +23,8 @@ class History {
   /// The lines that undo would revert and redo would repeat; "": none.
   std::string undo_text() const { return undo_.empty() ? "" : undo_.back().line; }
   std::string redo_text() const { return redo_.empty() ? "" : redo_.back().line; }
+  /// Identifies the state of what a saved scene keeps: equal after undo and redo.
+  uint64_t position() const;
   void undo();  ///< throws Error if there is nothing to undo
   void redo();
 
@@ -70,7 +72,7 @@ class History {
   void add_move(const Executed& executed, const Viewpoint& before, int camera_before);
   void forget_redo() { redo_.clear(); }
   /// Another scene: nothing can be undone.
-  void forget_steps() { undo_.clear(), redo_.clear(); }
+  void forget_steps() { undo_.clear(), redo_.clear(), base_ = ++positions_; }
 
   /// Adds a line to the script, in place of the latest of the same gesture (not 0) and target. `saved`: state
   /// of writing its file.
@@ -94,7 +96,9 @@ class History {
       int camera_before, camera_after;
     };
     std::optional<Move> move = {};
+    uint64_t position = 0;  ///< after it, if it changes what a saved scene keeps; else 0
   };
+  void forget_oldest();
   struct Recorded {
     std::string line, target;
     uint64_t gesture = 0;
@@ -107,8 +111,11 @@ class History {
     std::string line;
   };
 
+  void restore(const Document& to);
+
   OpenScene& open_;
   Navigation& camera_;
+  uint64_t base_ = 0, positions_ = 0;  ///< position before the oldest step; the newest position
   std::deque<GivenBy> given_by_;
   std::vector<Step> undo_, redo_;
   std::vector<Recorded> recorded_;

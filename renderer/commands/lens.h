@@ -20,4 +20,7 @@ void focus_somewhere(const OpenScene& open, Viewpoint& view, float aspect);
 /// The lens as these words of a line, with a blank before each.
 std::string lens_words(const scene::Camera& camera);
 
+/// Places the view by the words of camera.place. Throws Error if they contradict each other.
+void place_by_words(Viewpoint& view, const Arguments& a, const OpenScene& open, float aspect);
+
 }  // namespace lucerna::commands

@@ -98,6 +98,8 @@ void apply_mix(OpenScene& open) {
   const scene::LightMix mix = open.light_mix();
   const std::vector<vec3> weights = scene::mix_weights(mix, groups);
   Document& d = open.edit();
+  if (groups.lamps.size() != d.lights.size())
+    throw Error("", "lights are being added or removed; repeat this when that is done");
   scene::LightMix left;
   std::vector<bool> written(groups.groups.size());
   for (size_t g = 0; g < groups.groups.size(); ++g) {

@@ -105,6 +105,19 @@ Look Navigation::look_at(std::function<bool(const session::Picked&)> wanted) {
 
 Look Navigation::look() { return look_at({}); }
 
+void Navigation::follow_lights(const std::vector<scene::Light>& before,
+                               const std::vector<scene::Light>& after) {
+  if (selection.kind != Kind::light || before.size() == after.size()) return;
+  if (selection.index >= before.size()) return;  // a new light, which the command has selected
+  const scene::Id id = before[selection.index].id;
+  for (uint32_t i = 0; i < after.size(); ++i)
+    if (after[i].id == id) {
+      selection.index = i;
+      return;
+    }
+  selection = {};
+}
+
 Look Navigation::look_past_selection() {
   return look_at([chosen = selection](const session::Picked& p) {
     return !(chosen.kind == Kind::instance && p.instance == chosen.index) &&
@@ -132,7 +145,8 @@ Navigation::Bookmarks& Navigation::bookmarks_of(const scene::Scene& scene) {
   return bookmarks[bookmarks_key(scene)];
 }
 
-Box selection_bounds(const scene::Scene* scene, const Selection& selection, const Box& core) {
+Box selection_bounds(const scene::Scene* scene, const std::vector<scene::Light>& lights,
+                     const Selection& selection, const Box& core) {
   Box box;
   if (!scene) return box;
   const auto add = [&](const scene::Instance& instance, auto&& wanted) {
@@ -153,18 +167,18 @@ Box selection_bounds(const scene::Scene* scene, const Selection& selection, cons
         add(scene->instances[selection.index], [](const scene::Primitive&) { return true; });
       break;
     case Kind::light:
-      if (selection.index < scene->lights.size() &&
-          scene->lights[selection.index].kind != scene::LightKind::directional) {
+      if (selection.index < lights.size() && lights[selection.index].kind != scene::LightKind::directional) {
         const float reach = 0.05f * std::max(core.radius(), 1e-3f);
-        box.grow(scene->lights[selection.index].position - vec3(reach));
-        box.grow(scene->lights[selection.index].position + vec3(reach));
+        box.grow(lights[selection.index].position - vec3(reach));
+        box.grow(lights[selection.index].position + vec3(reach));
       }
       break;
   }
   return box.empty() ? core : box;
 }
 
-std::string selection_name(const scene::Scene* scene, const Selection& selection) {
+std::string selection_name(const scene::Scene* scene, const std::vector<scene::Light>& lights,
+                           const Selection& selection) {
   if (!scene) return "";
   switch (selection.kind) {
     case Kind::material:
@@ -172,7 +186,7 @@ std::string selection_name(const scene::Scene* scene, const Selection& selection
     case Kind::instance:
       return scene->instances[selection.index].name;
     case Kind::light:
-      return scene->lights[selection.index].name;
+      return selection.index < lights.size() ? lights[selection.index].name : "";
     case Kind::none:
       break;
   }

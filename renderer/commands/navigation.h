@@ -23,9 +23,11 @@ struct Selection {
 };
 const char* kind_name(Kind kind);  ///< "object" for an instance
 
-/// Bounds of what is selected; `core` if nothing is.
-Box selection_bounds(const scene::Scene* scene, const Selection& selection, const Box& core);
-std::string selection_name(const scene::Scene* scene, const Selection& selection);
+/// Bounds of what is selected; `core` if nothing is. `lights`: of the scene, with edits on their way.
+Box selection_bounds(const scene::Scene* scene, const std::vector<scene::Light>& lights,
+                     const Selection& selection, const Box& core);
+std::string selection_name(const scene::Scene* scene, const std::vector<scene::Light>& lights,
+                           const Selection& selection);
 
 class Navigation {
  public:
@@ -41,6 +43,8 @@ class Navigation {
   bool walking = false;             ///< keys move along the floor
   float eye_height = k_eye_height;  ///< above it, metres
   Selection selection;
+  /// Another list of lights: a selected light stays selected, or nothing is if it is gone.
+  void follow_lights(const std::vector<scene::Light>& before, const std::vector<scene::Light>& after);
 
   float aspect = 1.5f;  ///< width / height of the picture
   /// Sets the size of the picture [pixels]; aspect follows.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <tuple>
 
 #include "base/error.h"
@@ -19,7 +20,8 @@ std::vector<uint64_t> OpenScene::refresh() {
   // The state after the snapshot: a picture's scene is then never newer than the one held here.
   snapshot = session.snapshot();
   session::State state = session.state();
-  scene = std::move(state.scene), known_ = std::move(state.settings), id_ = state.scene_id;
+  scene = std::move(state.scene), loaded = std::move(state.loaded), known_ = std::move(state.settings),
+  id_ = state.scene_id;
   std::vector<uint64_t> refused = take_refused();
   drop_executed();
   return refused;
@@ -33,9 +35,8 @@ std::vector<uint64_t> OpenScene::take_refused() {
     numbers.push_back(number);
     if (number == loaded_by_) load_failed_ = true;
     // A file that cannot be read lights nothing.
-    if (std::erase_if(environments_sent_, [&](const auto& sent) { return sent.first == number; }) > 0)
-      environment_file_ =
-          environments_sent_.empty() ? environment_in_force_ : environments_sent_.back().second;
+    if (std::erase_if(sources_sent_, [&](const auto& sent) { return sent.first == number; }) > 0)
+      source_ = sources_sent_.empty() ? source_in_force_ : sources_sent_.back().second;
   }
   return numbers;
 }
@@ -44,23 +45,23 @@ void OpenScene::drop_executed() {
   // Scene and settings were read after the snapshot: they include what it counts.
   const auto over = [&](uint64_t sent) { return snapshot && snapshot->commands >= sent; };
   std::erase_if(pending_, [&](const auto& entry) { return over(entry.second.sent); });
-  std::erase_if(pending_lights_, [&](const auto& entry) {
-    return !scene || entry.first >= scene->lights.size() || over(entry.second.sent);
-  });
+  if (pending_lights_ && (!scene || over(pending_lights_->sent))) pending_lights_.reset();
   std::erase_if(pending_materials_, [&](const auto& entry) {
     return !scene || entry.first >= scene->materials.size() || over(entry.second.sent);
   });
-  std::erase_if(environments_sent_, [&](const auto& sent) {
-    if (over(sent.first)) environment_in_force_ = sent.second;
+  std::erase_if(sources_sent_, [&](const auto& sent) {
+    if (over(sent.first)) source_in_force_ = sent.second;
     return over(sent.first);
   });
   if (pending_environment_ && (!scene || over(pending_environment_->sent))) pending_environment_.reset();
 }
 
 void OpenScene::begin_scene() {
-  pending_lights_.clear(), pending_materials_.clear(), pending_environment_.reset();
+  pending_lights_.reset(), pending_materials_.clear(), pending_environment_.reset();
   own_environment_ = {scene->environment.scale, scene->environment.rotation};
-  dark_.clear(), environment_file_.clear(), environment_in_force_.clear(), environments_sent_.clear();
+  dark_.clear(), sources_sent_.clear();
+  source_ = source_in_force_ = {};
+  next_light_id_ = scene::k_first_added;
   solo_ = -1;
 }
 
@@ -80,15 +81,15 @@ Document OpenScene::document() const {
   Document d;
   d.settings = known_.all();
   for (const auto& [key, edit] : pending_) d.settings[key] = edit.value;
-  if (scene)
-    for (uint32_t i = 0; i < scene->lights.size(); ++i) d.lights.push_back(Document::of(light(i)));
+  d.lights = lights();
   if (scene)
     for (uint32_t i = 0; i < scene->materials.size(); ++i) {
       d.materials.push_back(Document::of(material(i)));
       d.materials.back().emission = emission(i), d.materials.back().emits = emits(i);
     }
   std::tie(d.environment_scale, d.environment_rotation) = environment();
-  d.environment_file = environment_file_;
+  d.environment_file = source_.file;
+  d.sky = source_.sky;
   d.solo = solo_;
   d.shown_before = shown_before_;
   return d;
@@ -105,11 +106,9 @@ double OpenScene::setting_real(const std::string& key) const {
   return value;
 }
 
-scene::Light OpenScene::light(uint32_t index) const {
-  scene::Light light = scene->lights.at(index);
-  if (const auto found = pending_lights_.find(index); found != pending_lights_.end())
-    found->second.value.put(light);
-  return light;
+const std::vector<scene::Light>& OpenScene::lights() const {
+  static const std::vector<scene::Light> none;
+  return pending_lights_ ? pending_lights_->value : scene ? scene->lights : none;
 }
 
 scene::Material OpenScene::material(uint32_t index) const {
@@ -225,7 +224,7 @@ void OpenScene::needs_lookup() const {
 
 uint32_t OpenScene::light_index(const std::string& which) const {
   needs_scene();
-  return index_of("light", which, names_of(scene->lights));
+  return index_of("light", which, names_of(lights()));
 }
 
 uint32_t OpenScene::material_index(const std::string& which) const {
@@ -257,7 +256,7 @@ void OpenScene::note_dark(uint32_t material, const Document::Material& value) {
     dark_[material] = value.emission;
 }
 
-bool OpenScene::send_lights(const Document& before, const Document& after) {
+bool OpenScene::send_strengths(const Document& before, const Document& after) {
   static const std::string key = "relight.mix";
   // All the rest, with the lights as they were.
   Document rest = after;
@@ -269,8 +268,7 @@ bool OpenScene::send_lights(const Document& before, const Document& after) {
     return false;
   for (uint32_t i = 0; i < rest.lights.size(); ++i) {
     if (rest.lights[i] == before.lights[i]) continue;
-    edit.lights.emplace_back(i, light(i));
-    after.lights[i].put(edit.lights.back().second);
+    edit.lights.emplace_back(i, after.lights[i]);
     rest.lights[i].intensity = before.lights[i].intensity, rest.lights[i].enabled = before.lights[i].enabled;
   }
   for (uint32_t i = 0; i < rest.materials.size(); ++i) {
@@ -286,7 +284,7 @@ bool OpenScene::send_lights(const Document& before, const Document& after) {
   session.set_lights(edit, id_);
   const uint64_t sent = session.commands();
   pending_[key] = {edit.mix, sent};
-  for (const auto& [i, l] : edit.lights) pending_lights_[i] = {after.lights[i], sent};
+  if (!edit.lights.empty()) pending_lights_ = {after.lights, sent};
   for (const auto& [i, m] : edit.materials) {
     pending_materials_[i] = {after.materials[i].in_scene(), sent};
     note_dark(i, after.materials[i]);
@@ -295,13 +293,26 @@ bool OpenScene::send_lights(const Document& before, const Document& after) {
   return true;
 }
 
+void OpenScene::send_lights(const std::vector<scene::Light>& before, const std::vector<scene::Light>& after) {
+  if (!scene || before == after) return;
+  const auto differs = [](const scene::Light& a, const scene::Light& b) {
+    return a.id != b.id || a.name != b.name || a.group != b.group;
+  };
+  const bool other = before.size() != after.size() ||
+                     !std::equal(before.begin(), before.end(), after.begin(), std::not_fn(differs));
+  if (other) session.set_light_list(after, id_);
+  for (uint32_t i = 0; i < after.size() && !other; ++i)
+    if (before[i] != after[i]) session.set_light(i, after[i], id_);
+  pending_lights_ = {after, session.commands()};
+}
+
 void OpenScene::restore(const Document& to) {
   named_.clear();
   send(document(), to);
 }
 
 void OpenScene::send(const Document& before, const Document& after) {
-  if (before.settings.at("relight.mix") != after.settings.at("relight.mix") && send_lights(before, after))
+  if (before.settings.at("relight.mix") != after.settings.at("relight.mix") && send_strengths(before, after))
     return;
   for (const auto& [key, value] : after.settings) {
     const auto old = before.settings.find(key);
@@ -311,13 +322,7 @@ void OpenScene::send(const Document& before, const Document& after) {
     session.set(key, value, named ? session::k_any_scene : id_);
     pending_[key] = {value, session.commands()};
   }
-  if (scene)
-    for (uint32_t i = 0; i < std::min(after.lights.size(), scene->lights.size()); ++i) {
-      if (i < before.lights.size() && before.lights[i] == after.lights[i]) continue;
-      pending_lights_[i] = {after.lights[i], 0};
-      session.set_light(i, light(i), id_);
-      pending_lights_[i].sent = session.commands();
-    }
+  send_lights(before.lights, after.lights);
   if (scene)
     for (uint32_t i = 0; i < std::min(after.materials.size(), scene->materials.size()); ++i) {
       if (i < before.materials.size() && before.materials[i] == after.materials[i]) continue;
@@ -328,22 +333,49 @@ void OpenScene::send(const Document& before, const Document& after) {
       session.set_material(i, material(i), id_);
       pending_materials_[i].sent = session.commands();
     }
-  const bool other_file = before.environment_file != after.environment_file;
-  if (other_file || before.environment_scale != after.environment_scale ||
-      before.environment_rotation != after.environment_rotation) {
-    const float scale = after.environment_scale, rotation = after.environment_rotation;
-    if (other_file)
-      session.set_environment_file(after.environment_file, scale, rotation, id_);
-    else
-      session.set_environment(scale, rotation, id_);
-    pending_environment_ = {{scale, rotation}, session.commands()};
-    if (other_file) {
-      environment_file_ = after.environment_file;
-      environments_sent_.emplace_back(session.commands(), environment_file_);
-    }
-  }
+  send_environment(before, after);
   solo_ = after.solo;
   shown_before_ = after.shown_before;
+}
+
+void OpenScene::send_environment(const Document& before, const Document& after) {
+  const bool other_file = before.environment_file != after.environment_file;
+  const bool other_sky = before.sky != after.sky;
+  if (!other_file && !other_sky && before.environment_scale == after.environment_scale &&
+      before.environment_rotation == after.environment_rotation)
+    return;
+  const float scale = after.environment_scale, rotation = after.environment_rotation;
+  if (other_sky && after.sky) {
+    session.set_environment_sky(*after.sky, scale, id_);
+    if (rotation != 0) session.set_environment(scale, rotation, id_);
+  } else if (other_file || other_sky) {
+    session.set_environment_file(after.environment_file, scale, rotation, id_);
+  } else {
+    session.set_environment(scale, rotation, id_);
+  }
+  pending_environment_ = {{scale, rotation}, session.commands()};
+  if (!other_file && !other_sky) return;
+  source_ = {after.environment_file, after.sky};
+  sources_sent_.emplace_back(session.commands(), source_);
+}
+
+std::optional<scene::SkyModel> OpenScene::sky() const {
+  if (source_.sky || !source_.file.empty() || !loaded) return source_.sky;
+  return loaded->environment.sky;
+}
+
+scene::Scene OpenScene::edited_scene() const {
+  scene::Scene edited = *scene;
+  edited.lights = lights();
+  for (uint32_t i = 0; i < edited.materials.size(); ++i) edited.materials[i] = material(i);
+  scene::Environment& e = edited.environment;
+  e = loaded->environment;
+  if (source_.sky || !source_.file.empty()) {
+    e = {.file = source_.file, .given = true, .sky = source_.sky};
+    e.image = scene::k_none - 1;  // none of the loaded ones
+  }
+  std::tie(e.scale, e.rotation) = environment();
+  return edited;
 }
 
 }  // namespace lucerna::commands

@@ -31,7 +31,8 @@ class OpenScene {
   session::Session& session;
   // As published.
   std::shared_ptr<const session::Snapshot> snapshot;
-  std::shared_ptr<const scene::Scene> scene;  ///< with the edits that the session has executed
+  std::shared_ptr<const scene::Scene> scene;   ///< with the edits that the session has executed
+  std::shared_ptr<const scene::Scene> loaded;  ///< as it was read from its file
   session::SceneId id() const { return id_; }
   /// True if the newest picture includes all commands so far.
   bool up_to_date() const { return snapshot && snapshot->commands >= session.commands(); }
@@ -55,7 +56,9 @@ class OpenScene {
   const std::string& setting(const std::string& key) const;
   double setting_real(const std::string& key) const;
   bool setting_on(const std::string& key) const { return setting(key) == "true"; }
-  scene::Light light(uint32_t index) const;
+  /// All lights of the scene; none without one.
+  const std::vector<scene::Light>& lights() const;
+  const scene::Light& light(uint32_t index) const { return lights().at(index); }
   scene::Material material(uint32_t index) const;
   /// Emission of a material, also if switched off.
   vec3 emission(uint32_t index) const;
@@ -63,7 +66,13 @@ class OpenScene {
   float environment_scale() const { return environment().first; }
   float environment_rotation() const { return environment().second; }
   /// The image that replaces the scene's own environment; "": none.
-  const std::string& environment_file() const { return environment_file_; }
+  const std::string& environment_file() const { return source_.file; }
+  /// The sky that replaces the scene's own environment, or that the scene has.
+  std::optional<scene::SkyModel> sky() const;
+  /// True if a sky has replaced the scene's own environment.
+  bool sky_replaces() const { return source_.sky.has_value(); }
+  /// The scene as displayed, with edits on their way; without their images.
+  scene::Scene edited_scene() const;
   /// Scale and rotation (degrees) in the scene's file.
   std::pair<float, float> own_environment() const { return own_environment_; }
   int solo() const { return solo_; }
@@ -91,6 +100,8 @@ class OpenScene {
   /// Index of the light with that name, or with that number from 1.
   uint32_t light_index(const std::string& which) const;
   uint32_t material_index(const std::string& which) const;
+  /// An id that no light of the scene has had.
+  scene::Id new_light_id() { return next_light_id_++; }
 
   // Edits of the running command.
   /// Starts an edit with this document.
@@ -124,7 +135,10 @@ class OpenScene {
   void drop_executed();
   /// Sends strengths of lights and their mix as one command if nothing else differs. False: something else
   /// does.
-  bool send_lights(const Document& before, const Document& after);
+  bool send_strengths(const Document& before, const Document& after);
+  /// Sends lights that differ: one by one if the list has the same lights, else as a whole.
+  void send_lights(const std::vector<scene::Light>& before, const std::vector<scene::Light>& after);
+  void send_environment(const Document& before, const Document& after);
   std::pair<float, float> environment() const;
   /// Keeps the emission of a material that is switched off.
   void note_dark(uint32_t material, const Document::Material& value);
@@ -135,14 +149,20 @@ class OpenScene {
   uint64_t loaded_by_ = 0;   ///< number of the last load, until its scene is shown or has failed
   bool load_failed_ = false;
   std::map<std::string, Pending<std::string>> pending_;
-  std::map<uint32_t, Pending<Document::Light>> pending_lights_;
+  std::optional<Pending<std::vector<scene::Light>>> pending_lights_;  ///< all of them
   std::map<uint32_t, Pending<Document::Material>> pending_materials_;
   std::optional<Pending<Environment>> pending_environment_;
+  scene::Id next_light_id_ = scene::k_first_added;
   std::map<uint32_t, vec3> dark_;  ///< emission of the materials that are switched off
-  std::string environment_file_, environment_in_force_;
+  /// What replaces the scene's own environment; neither: nothing does.
+  struct EnvironmentSource {
+    std::string file;
+    std::optional<scene::SkyModel> sky;
+  };
+  EnvironmentSource source_, source_in_force_;
   std::pair<float, float> own_environment_{1, 0};
-  /// Numbers and files sent to the session.
-  std::vector<std::pair<uint64_t, std::string>> environments_sent_;
+  /// Numbers and sources sent to the session.
+  std::vector<std::pair<uint64_t, EnvironmentSource>> sources_sent_;
   std::shared_ptr<const scene::Scene> groups_of_;  ///< scene of groups_, with these rules
   std::string groups_by_;
   scene::LightGroups groups_;

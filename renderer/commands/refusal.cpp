@@ -26,6 +26,7 @@ void take_back(Document& d, const Document& before, const Document& after) {
   take_back_list(d.materials, before.materials, after.materials);
   take_back_value(d.environment_scale, before.environment_scale, after.environment_scale);
   take_back_value(d.environment_rotation, before.environment_rotation, after.environment_rotation);
+  take_back_value(d.sky, before.sky, after.sky);
   take_back_value(d.environment_file, before.environment_file, after.environment_file);
 }
 

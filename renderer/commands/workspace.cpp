@@ -9,9 +9,16 @@
 namespace lucerna::commands {
 
 Workspace::Workspace(session::Session& s, WorkspaceEvents e)
-    : session(s), open(s), camera(s), history(open, camera), exposure(open, camera), events(std::move(e)) {
+    : session(s),
+      open(s),
+      camera(s),
+      history(open, camera),
+      exposure(open, camera),
+      scene_file(open, history),
+      events(std::move(e)) {
   add_setting_commands(*this);
-  add_light_commands(registry, open);
+  add_light_commands(*this);
+  add_sun_commands(registry, open);
   add_environment_commands(registry, open);
   add_environment_file_commands(registry, open);
   add_material_commands(registry, open);
@@ -25,6 +32,7 @@ Workspace::Workspace(session::Session& s, WorkspaceEvents e)
   add_exposure_commands(registry, open, camera, exposure);
   add_mix_commands(registry, open);
   add_scene_commands(*this);
+  add_save_commands(*this);
   add_render_commands(*this);
   add_script_commands(*this);
   add_wait_commands(*this);
@@ -41,11 +49,14 @@ void Workspace::refresh(double time) {
     events.size_refused(open.snapshot->width, open.snapshot->height);
   open.follow_load(camera.view_scene == open.id());
   exposure.follow(events.exposes_at_load && events.exposes_at_load(), [&](float ev, bool of_load) {
+    const bool clean = !scene_file.unsaved();
     run(line("set", "film.ev", ev));
+    if (of_load && clean) scene_file.note_clean();
     if (events.measured)
       events.measured(of_load ? fmt::format("The scene names no exposure; {:+.1f} EV was found for it", ev)
                               : fmt::format("Exposure {:+.2f} EV", ev));
   });
+  scene_file.follow();
   for (const std::string& name : files.take_written())
     if (events.written) events.written(name);
 }
@@ -57,6 +68,7 @@ void Workspace::follow_scene() {
   camera.begin_scene(open.scene, *picture);
   open.begin_scene();
   history.forget_steps();
+  scene_file.begin_scene();
   exposure.begin_scene();
   if (open.loading()) history.record({"wait_scene", "wait_scene"});
   if (events.scene_changed) events.scene_changed();
@@ -113,6 +125,7 @@ void Workspace::execute_edit(const Line& line, uint64_t gesture, const std::stri
     throw;
   }
   const Document after = open.end_edit();
+  camera.follow_lights(now_seen.lights, after.lights);
   open.send(now_seen, after);
   const bool requested = open.loading() && open.named_settings();
   const History::Executed executed{registry.print(line), target, gesture, history.sent_since(before)};

@@ -15,6 +15,7 @@
 #include "commands/open_scene.h"
 #include "commands/registry.h"
 #include "commands/saved_files.h"
+#include "commands/scene_file.h"
 
 namespace lucerna::commands {
 
@@ -47,6 +48,7 @@ class Workspace {
   Navigation camera;
   History history;
   Exposure exposure;
+  SceneFile scene_file;
   SavedFiles files;
   Registry registry;  ///< contains the commands of this module; others may be added
   WorkspaceEvents events;
@@ -66,9 +68,11 @@ class Workspace {
   std::string manual(const std::string& topic) const;
 
   Box selection_bounds() const {
-    return commands::selection_bounds(open.scene.get(), camera.selection, camera.core);
+    return commands::selection_bounds(open.scene.get(), open.lights(), camera.selection, camera.core);
   }
-  std::string selection_name() const { return commands::selection_name(open.scene.get(), camera.selection); }
+  std::string selection_name() const {
+    return commands::selection_name(open.scene.get(), open.lights(), camera.selection);
+  }
 
  private:
   void follow_scene();

@@ -95,7 +95,8 @@ uint64_t materials(const Scene& scene, Images& images) {
 uint64_t lights(const Scene& scene) {
   Hash hash;
   for (const Light& light : scene.lights) {
-    const auto& [name, kind, intensity, position, direction, inner_cone, outer_cone, enabled, group] = light;
+    const auto& [name, kind, intensity, position, direction, inner_cone, outer_cone, enabled, group, id,
+                 sun] = light;
     hash.add_value(enabled);
     if (enabled) add_all(hash, kind, intensity, position, direction, inner_cone, outer_cone);
   }
@@ -103,7 +104,7 @@ uint64_t lights(const Scene& scene) {
 }
 
 uint64_t environment(const Scene& scene, Images& images) {
-  const auto& [radiance, image, scale, rotation, file, given] = scene.environment;
+  const auto& [radiance, image, scale, rotation, file, given, sky] = scene.environment;
   Hash hash;
   if (image != k_none)
     add_all(hash, images.of(image), rotation);

@@ -4,12 +4,15 @@
 // photometric factors: emission and environment are radiance L, point and spot intensity is radiant intensity
 // I (irradiance I/d^2 at distance d), directional intensity is irradiance E on a facing plane.
 #include <array>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "base/math.h"
 #include "base/shared_vector.h"
+#include "scene/sky_model.h"
+#include "scene/sun_time.h"
 
 namespace lucerna::scene {
 
@@ -205,17 +208,24 @@ struct Light {
   float inner_cone = 0, outer_cone = 0.785398163f;  ///< radians from the axis; spot only
   bool enabled = true;
   std::string group{};  ///< extras.light_group of its node, or its own; "": none given
+  /// Identifies the light among all that the scene had and will have: its node in the file, or
+  /// k_first_added and more for lights added by hand. k_none: not known.
+  Id id = k_none;
+  std::optional<SunTime> sun{};  ///< of a directional light: its direction follows from this
+  bool operator==(const Light&) const = default;
 };
+inline constexpr Id k_first_added = 0x80000000u;
 
 /// Light from infinitely far: constant radiance, or a latitude-longitude image:
 /// u = 0.5 + atan2(z, x) / 2pi, v = acos(y) / pi from the top; rotation counter-clockwise seen from above.
 struct Environment {
-  vec3 radiance{0};    ///< used when image is k_none
-  Id image = k_none;   ///< float texels
-  float scale = 1;     ///< multiplies image or radiance
-  float rotation = 0;  ///< degrees
-  std::string file;    ///< as written; for messages and saving
-  bool given = false;  ///< the scene or its settings name an environment, be it black
+  vec3 radiance{0};               ///< used when image is k_none
+  Id image = k_none;              ///< float texels
+  float scale = 1;                ///< multiplies image or radiance
+  float rotation = 0;             ///< degrees
+  std::string file;               ///< as written; for messages and saving
+  bool given = false;             ///< the scene or its settings name an environment, be it black
+  std::optional<SkyModel> sky{};  ///< the image is made from this model (sky_image.h)
 };
 
 /// A rectangle through which the sky lights a room: a mesh marked by extras.portal. It is no surface, and a
@@ -253,9 +263,15 @@ struct Scene {
   /// Render settings from settings.json beside the scene, key -> value as text, in file order; checked by
   /// plan/.
   std::vector<std::pair<std::string, std::string>> settings;
+  /// Likewise from extras.lucerna.settings of the file; they override those of settings.json.
+  std::vector<std::pair<std::string, std::string>> own_settings;
   std::vector<std::string> warnings;            ///< repairs and omissions during loading, one line each
   std::vector<std::string> extensions;          ///< supported glTF extensions that the file uses, sorted
   std::vector<std::string> unknown_extensions;  ///< ignored extensions (a warning each), sorted
+  /// The file's JSON as read, for saving (io/save.h); null for a scene made in memory.
+  std::shared_ptr<const std::string> document;
+  /// By material: its index in the file, k_none for the default material. Empty for a scene made in memory.
+  std::vector<Id> material_indices;
 };
 
 /// World-space bounds of all instances; empty for a scene without triangles.

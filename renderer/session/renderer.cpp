@@ -56,6 +56,8 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
   for (const char* key : {"tracer", "path.batch", "path.classes"})
     settings.set(key, setup_.settings.text(key));
   for (const auto& [key, value] : scene->settings) settings.set(key, value, "settings.json");
+  for (const auto& [key, value] : scene->own_settings)
+    settings.set(key, value, scene->file + ": extras.lucerna.settings");
   for (const SettingChange& change : changes) settings.set(change.key, change.value, change.where);
   const auto loaded = scene;
   Transaction::Target target(setup_);

@@ -72,6 +72,8 @@ class Renderer {
                  const std::vector<SettingChange>& changes = {});
   /// Null before the first scene.
   std::shared_ptr<const scene::Scene> scene() const { return setup_.world.scene; }
+  /// As passed to set_scene(), without edits; null before the first scene.
+  std::shared_ptr<const scene::Scene> loaded() const { return loaded_; }
 
   plan::Settings& settings() { return setup_.settings; }
   const plan::Settings& settings() const { return setup_.settings; }
@@ -87,11 +89,16 @@ class Renderer {
   /// Selects a camera of the scene by name; Error listing the names if there is none.
   void choose_camera(const std::string& name);
   void set_light(uint32_t index, const scene::Light& light);
+  /// Replaces the scene's lights by these. If only names and ids differ, or groups that are not separate, the
+  /// picture continues. Throws Error; then nothing changes.
+  void set_light_list(const std::vector<scene::Light>& lights);
   void set_environment(float scale, float rotation_degrees);
   /// Replaces the scene's environment by this latitude-longitude image; "": restores it. With this factor and
   /// rotation, or the current ones. Throws Error like scene::load_environment; the former environment stays.
   void set_environment_file(const std::filesystem::path& file, std::optional<float> scale = {},
                             std::optional<float> rotation_degrees = {});
+  /// Replaces the scene's environment by a sky, not rotated, and this factor. Throws Error if it is invalid.
+  void set_environment_sky(const scene::SkyModel& sky, float scale);
   /// Throws Error if there is no such material, or if textures or transparency (alpha mode, transmission,
   /// thickness) would change: rays depend on these.
   void set_material(uint32_t index, const scene::Material& material);
@@ -294,6 +301,8 @@ class Renderer {
   /// Changes lights, environment or material factors (`factors`) of the scene. Makes kernels for its new
   /// features.
   void edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& changes, bool factors);
+  /// Gives the edited scene this environment, with its portals.
+  void light_by(std::shared_ptr<scene::Scene> edited, const scene::Environment& environment);
   void edit(Transaction::Target target, const scene::Changes& changes, bool factors);
   /// `factors`: known factor on the light of each group, if the edit is no more than that
   /// (scene::light_factors).

@@ -1,13 +1,44 @@
 // Edits of a renderer's scene: lights, environment, materials.
+#include <algorithm>
 #include <utility>
 
 #include "scene/io/environment_file.h"
 #include "scene/light_factor.h"
 #include "scene/range.h"
+#include "scene/sky_image.h"
 #include "session/found_portals.h"
 #include "session/renderer.h"
 
 namespace lucerna::session {
+namespace {
+
+/// True if the lists give the same light; names, groups and ids may differ.
+bool same_light(const std::vector<scene::Light>& a, const std::vector<scene::Light>& b) {
+  const auto equal = [](const scene::Light& x, scene::Light y) {
+    y.name = x.name, y.group = x.group, y.id = x.id, y.sun = x.sun;
+    return x == y;
+  };
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), equal);
+}
+
+}  // namespace
+
+void Renderer::set_light_list(const std::vector<scene::Light>& lights) {
+  if (!setup_.world.scene) throw Error("light", "there is no scene");
+  for (const scene::Light& light : lights) scene::check_range(light);
+  auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
+  edited->lights = lights;
+  Relight& relight = setup_.relight;
+  if (same_light(setup_.world.scene->lights, lights) &&
+      (!relight.groups ||
+       scene::group_lights(*edited, scene::parse_group_rules(setup_.settings.text("relight.groups")),
+                           *relight.scene, *relight.groups) == *relight.groups)) {
+    if (relight.scene) relight.scene = edited;
+    setup_.world.scene = edited;
+    return;
+  }
+  edit(edited, scene::Change::lamp, false);
+}
 
 void Renderer::set_light(uint32_t index, const scene::Light& light) {
   if (!setup_.world.scene || index >= setup_.world.scene->lights.size())
@@ -39,13 +70,32 @@ void Renderer::set_environment_file(const std::filesystem::path& file, std::opti
     environment.image = scene::Id(edited->images.size());
     environment.file = file.string();
     environment.given = true;
+    environment.sky.reset();
     edited->images.push_back(std::move(image));
   }
   environment.scale = scale.value_or(setup_.world.scene->environment.scale);
   environment.rotation = rotation_degrees.value_or(setup_.world.scene->environment.rotation);
+  light_by(std::move(edited), environment);
+}
+
+void Renderer::set_environment_sky(const scene::SkyModel& sky, float scale) {
+  if (!setup_.world.scene || !loaded_) throw_error("sky", "there is no scene to be lit");
+  scene::check_range(sky);
+  auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
+  edited->images = loaded_->images;
+  scene::Environment environment;
+  environment.image = scene::Id(edited->images.size());
+  environment.scale = scale;
+  environment.given = true;
+  environment.sky = sky;
+  edited->images.push_back(scene::sky_image(sky));
+  light_by(std::move(edited), environment);
+}
+
+void Renderer::light_by(std::shared_ptr<scene::Scene> edited, const scene::Environment& environment) {
   scene::check_range(environment);
   edited->environment = environment;
-  std::shared_ptr<const scene::Scene> lit = edited;
+  std::shared_ptr<const scene::Scene> lit = std::move(edited);
   // The first sky of this scene.
   if (lit->portals.empty() && loaded_->portals.empty())
     lit = with_portals(lit, {}, setup_.settings.text("lights.portals"));

@@ -94,6 +94,15 @@ void Session::set_light(uint32_t index, const scene::Light& light, SceneId scene
   impl_->post({.run = run, .subject = "a light", .scene = scene});
 }
 
+void Session::set_light_list(const std::vector<scene::Light>& lights, SceneId scene) {
+  const auto run = [s = impl_.get(), lights](Renderer& r) {
+    const uint64_t before = r.restarts();
+    r.set_light_list(lights);
+    if (r.restarts() != before) s->restarted();
+  };
+  impl_->post({.run = run, .subject = "the lights", .scene = scene});
+}
+
 void Session::set_environment(float scale, float rotation_degrees, SceneId scene) {
   const auto run = [s = impl_.get(), scale, rotation_degrees](Renderer& r) {
     r.set_environment(scale, rotation_degrees);
@@ -111,6 +120,14 @@ void Session::set_environment_file(const std::filesystem::path& file, std::optio
     if (!file.empty()) log::info("{} lights the scene", file.string());
   };
   impl_->post({.run = run, .subject = "the environment", .scene = scene});
+}
+
+void Session::set_environment_sky(const scene::SkyModel& sky, float scale, SceneId scene) {
+  const auto run = [s = impl_.get(), sky, scale](Renderer& r) {
+    r.set_environment_sky(sky, scale);
+    s->restarted();
+  };
+  impl_->post({.run = run, .subject = "the sky", .scene = scene});
 }
 
 void Session::set_material(uint32_t index, const scene::Material& material, SceneId scene) {

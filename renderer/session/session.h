@@ -116,8 +116,9 @@ struct Options {
 
 /// State of the session at one moment.
 struct State {
-  SceneId scene_id = 0;                       ///< 0 before the first scene
-  std::shared_ptr<const scene::Scene> scene;  ///< with edits applied; null before the first
+  SceneId scene_id = 0;                        ///< 0 before the first scene
+  std::shared_ptr<const scene::Scene> scene;   ///< with edits applied; null before the first
+  std::shared_ptr<const scene::Scene> loaded;  ///< as it was read from its file
   plan::Settings settings;
 };
 
@@ -146,10 +147,14 @@ class Session {
   /// Renderer::set_window_scale.
   void set_window_scale(uint32_t scale);
   void set_light(uint32_t index, const scene::Light& light, SceneId scene = k_any_scene);
+  /// Replaces the scene's lights: adds, removes, renames (Renderer::set_light_list).
+  void set_light_list(const std::vector<scene::Light>& lights, SceneId scene = k_any_scene);
   void set_environment(float scale, float rotation_degrees, SceneId scene = k_any_scene);
   /// Renderer::set_environment_file
   void set_environment_file(const std::filesystem::path& file, std::optional<float> scale = {},
                             std::optional<float> rotation_degrees = {}, SceneId scene = k_any_scene);
+  /// Renderer::set_environment_sky
+  void set_environment_sky(const scene::SkyModel& sky, float scale, SceneId scene = k_any_scene);
   /// Renderer::set_material
   void set_material(uint32_t index, const scene::Material& material, SceneId scene = k_any_scene);
   void set_lights(const LightsEdit& edit, SceneId scene = k_any_scene);  ///< Renderer::set_lights

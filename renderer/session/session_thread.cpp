@@ -55,7 +55,7 @@ void Session::Impl::carry_out_next(Renderer* renderer, std::unique_lock<std::mut
       log::error("{}", e.what());
     }
     lock.lock();
-    state = {scene_id, renderer->scene(), renderer->settings()};
+    state = {scene_id, renderer->scene(), renderer->loaded(), renderer->settings()};
     pending = !queue.empty();
     lock.unlock();
   }

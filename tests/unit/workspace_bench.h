@@ -51,8 +51,7 @@ struct WorkspaceBench {
       if (work.open.loading() || session.settings().all() != d.settings) return false;
       const auto scene = session.scene();
       if (!scene) return true;
-      for (size_t i = 0; i < scene->lights.size(); ++i)
-        if (!(commands::Document::of(scene->lights[i]) == d.lights[i])) return false;
+      if (scene->lights != d.lights || scene->environment.sky != d.sky) return false;
       for (size_t i = 0; i < scene->materials.size(); ++i) {
         commands::Document::Material m = d.materials[i];
         if (!std::exchange(m.emits, true)) m.emission = vec3(0);

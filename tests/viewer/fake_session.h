@@ -62,6 +62,7 @@ inline scene::Scene make_scene(const std::filesystem::path& file) {
   const auto light = [&](const char* name, scene::LightKind kind, vec3 intensity) {
     scene::Light l;
     l.name = name, l.kind = kind, l.intensity = intensity, l.position = {0, 2, 0};
+    l.id = static_cast<scene::Id>(scene.lights.size());
     scene.lights.push_back(l);
   };
   light("Sun", scene::LightKind::directional, {3.1f, 2.9f, 2.6f});
@@ -100,7 +101,7 @@ struct Session::Impl {
   std::map<uint64_t, std::function<void()>> runs;  ///< by number
   std::vector<uint64_t> refused;
   std::shared_ptr<const Snapshot> snapshot;
-  std::shared_ptr<const scene::Scene> scene;
+  std::shared_ptr<const scene::Scene> scene, loaded;
   plan::Settings settings;
   std::function<void()> call;
   std::atomic<bool> stop{false};
@@ -346,7 +347,7 @@ struct Session::Impl {
       auto fresh = std::make_shared<scene::Scene>(fake::make_scene(file));
       camera = scene::starting_camera(*fresh, "");
       std::lock_guard lock(mutex);
-      scene = fresh;
+      scene = loaded = fresh;
       ++scene_id;
       log::info("{}: 14 materials, 253 112 triangles", file.string());
       log::warning("{}: the extension KHR_materials_sheen is not known and was passed over", file.string());
@@ -428,6 +429,17 @@ void Session::set_window_scale(uint32_t scale) {
 void Session::set_light(uint32_t index, const scene::Light& light, SceneId scene) {
   impl_->post_edit([index, light](scene::Scene& s) { s.lights[index] = light; }, scene);
 }
+void Session::set_light_list(const std::vector<scene::Light>& lights, SceneId scene) {
+  impl_->post_edit([lights](scene::Scene& s) { s.lights = lights; }, scene);
+}
+void Session::set_environment_sky(const scene::SkyModel& sky, float scale, SceneId scene) {
+  impl_->post_edit(
+      [sky, scale](scene::Scene& s) {
+        s.environment.sky = sky, s.environment.scale = scale, s.environment.rotation = 0;
+        s.environment.file.clear();
+      },
+      scene);
+}
 void Session::set_environment(float scale, float rotation, SceneId scene) {
   impl_->post_edit(
       [scale, rotation](scene::Scene& s) { s.environment.scale = scale, s.environment.rotation = rotation; },
@@ -440,6 +452,7 @@ void Session::set_environment_file(const std::filesystem::path& file, std::optio
       [file, scale, rotation](scene::Scene& s) {
         if (file.string().find("broken") != std::string::npos)
           throw Error(file.string(), "the image cannot be decoded");
+        s.environment.sky.reset();
         if (scale) s.environment.scale = *scale;
         if (rotation) s.environment.rotation = *rotation;
         s.environment.file = file.empty() ? fake::make_scene("hall.gltf").environment.file : file.string();
@@ -552,7 +565,7 @@ std::shared_ptr<const Snapshot> Session::snapshot() const {
 }
 State Session::state() const {
   std::lock_guard lock(impl_->mutex);
-  return {impl_->scene_id, impl_->scene, impl_->settings};
+  return {impl_->scene_id, impl_->scene, impl_->loaded, impl_->settings};
 }
 void Session::on_publish(std::function<void()> call) {
   std::lock_guard lock(impl_->mutex);

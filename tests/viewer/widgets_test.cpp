@@ -245,6 +245,20 @@ class Walk {
     return c && c->pressed;
   }
 
+  /// Scrolls the control's window if necessary; false: it cannot be visible (folded away).
+  bool bring_into_view(ImGuiID id, int nth) {
+    frame();
+    const Control* c = find(id, nth);
+    if (!c) return false;
+    ImGuiWindow* window = c->window;
+    if (c->seen.GetHeight() < c->box.GetHeight() && window->ScrollMax.y > 0) {
+      ImGui::SetScrollY(window, window->Scroll.y + c->box.GetCenter().y - window->InnerRect.GetCenter().y);
+      frames(3);
+      c = find(id, nth);
+    }
+    return c && c->seen.GetWidth() >= 1 && c->seen.GetHeight() >= 1;
+  }
+
  private:
   void frame() {
     ui_.work.now = ui_.time();
@@ -276,20 +290,6 @@ class Walk {
     frame();
   }
 
-  /// Scrolls the control's window if necessary; false: it cannot be visible (folded away).
-  bool bring_into_view(ImGuiID id, int nth) {
-    frame();
-    const Control* c = find(id, nth);
-    if (!c) return false;
-    ImGuiWindow* window = c->window;
-    if (c->seen.GetHeight() < c->box.GetHeight() && window->ScrollMax.y > 0) {
-      ImGui::SetScrollY(window, window->Scroll.y + c->box.GetCenter().y - window->InnerRect.GetCenter().y);
-      frames(3);
-      c = find(id, nth);
-    }
-    return c && c->seen.GetWidth() >= 1 && c->seen.GetHeight() >= 1;
-  }
-
   session::Session session_;
   ui::Ui ui_;
 };
@@ -318,7 +318,7 @@ TEST_CASE("no id is used twice in a frame, and every control of every panel rece
   int clicked = 0;
   SECTION("the scene's panel, with no selection, then a lamp, a surface and a material") {
     clicked += walk.click_all("scene", Walk::anywhere);
-    for (const char* selected : {"light 3", "material 5", "material 1"}) {
+    for (const char* selected : {"light 1", "light 3", "material 5", "material 1"}) {
       walk.act(std::string("select ") + selected);
       clicked +=
           walk.click_all(selected, [](const Control& c) { return std::string(c.window->Name) == "##scene"; });
@@ -360,7 +360,8 @@ TEST_CASE("no id is used twice in a frame, and every control of every panel rece
     CHECK(clicked > 45);
   }
   SECTION("the dialogs, the keys and the cards") {
-    for (const char* dialog : {"dialog.open", "dialog.save", "dialog.reference", "dialog.script"}) {
+    for (const char* dialog :
+         {"dialog.open", "dialog.save", "dialog.scene", "dialog.reference", "dialog.script"}) {
       walk.act(dialog);
       if (std::string(dialog) == "dialog.save") ui.dialog.path = "a.png";
       clicked += walk.click_all(dialog, Walk::in_popup);
@@ -386,6 +387,85 @@ TEST_CASE("no id is used twice in a frame, and every control of every panel rece
     walk.frames(3);
     CHECK(walk.click_all("small", Walk::anywhere) > 100);
   }
+}
+
+namespace {
+
+/// Presses the first control of that name, for what it does.
+void use(Walk& walk, const std::string& name) {
+  INFO(name);
+  walk.frames(2);
+  const std::vector<Control> found = walk.named(name);
+  REQUIRE_FALSE(found.empty());
+  REQUIRE(walk.bring_into_view(found[0].id, 0));
+  g_answered = found[0].id;
+  CHECK(walk.click(found[0].id, 0));
+  g_answered.reset();
+  walk.settle();
+}
+
+}  // namespace
+
+TEST_CASE("the panel's buttons add, copy, move and delete lights, each in one step") {
+  Walk walk;
+  open_hall(walk);
+  const auto& open = walk.ui().open;
+  const auto count = [&] { return open.lights().size(); };
+  REQUIRE(count() == 3);
+  use(walk, "##add_spot");
+  REQUIRE(count() == 4);
+  CHECK(walk.ui().camera.selection == commands::Selection{commands::Kind::light, 3});
+  const vec3 place = open.light(3).position;
+  walk.act("camera.orbit 0.5 0.1");
+  use(walk, "##here");  // aims it
+  CHECK(open.light(3).position == place);
+  use(walk, "##duplicate");
+  REQUIRE(count() == 5);
+  CHECK(open.light(4).name == "Spot 2");
+  CHECK(open.light(4).position != place);
+  use(walk, "##delete");
+  CHECK(count() == 4);
+  CHECK(walk.ui().camera.selection.kind == commands::Kind::none);
+  for (int i = 0; i < 2; ++i) walk.act("undo");
+  CHECK(count() == 4);
+  use(walk, "##add_sun");
+  use(walk, "##by_date");
+  REQUIRE(open.light(4).sun);
+  CHECK(open.light(4).sun->latitude == 48);
+  use(walk, "##daylight");
+  CHECK(luminance(open.light(4).intensity) > 50);
+  walk.act("environment.sky preetham");
+  REQUIRE(open.sky());
+  use(walk, "##own");
+  CHECK_FALSE(open.sky());
+}
+
+TEST_CASE("closing asks if there is something to save") {
+  Walk walk;
+  open_hall(walk);
+  walk.act("window.close");
+  CHECK(walk.ui().requests.status == 0);
+  walk.ui().requests.status.reset();
+  walk.act("light.set 1 intensity=2");
+  walk.keys = {{'Q', 2}};
+  walk.frames(3);
+  CHECK_FALSE(walk.ui().requests.status);
+  REQUIRE(walk.ui().closing == ui::Ui::Closing::asks);
+  use(walk, "##stay");
+  CHECK(walk.ui().closing == ui::Ui::Closing::no);
+  CHECK_FALSE(walk.ui().requests.status);
+  // It cannot be saved: the window stays, with the reason.
+  walk.act("window.close");
+  use(walk, "##save");
+  const auto begin = std::chrono::steady_clock::now();
+  while (walk.ui().closing != ui::Ui::Closing::no) {
+    REQUIRE(std::chrono::steady_clock::now() - begin < std::chrono::seconds(20));
+    walk.frames(1);
+  }
+  CHECK_FALSE(walk.ui().requests.status);
+  walk.act("window.close");
+  use(walk, "##discard");
+  CHECK(walk.ui().requests.status == 0);
 }
 
 TEST_CASE("solo of the first light group mutes the others") {

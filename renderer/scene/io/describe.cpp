@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 
 #include "scene/io/load.h"
+#include "scene/io/own_extras.h"
 #include "scene/light_groups.h"
 
 namespace lucerna::scene {
@@ -86,13 +87,15 @@ Json describe_portals(const Scene& scene) {
 
 /// Groups by the scene's own rules; invalid rules are not reported here.
 LightGroups groups_of(const Scene& scene) {
-  for (const auto& [key, value] : scene.settings)
-    if (key == "relight.groups") try {
-        return group_lights(scene, parse_group_rules(value));
-      } catch (const Error&) {
-        break;
-      }
-  return group_lights(scene);
+  std::string rules;
+  for (const auto* settings : {&scene.settings, &scene.own_settings})
+    for (const auto& [key, value] : *settings)
+      if (key == "relight.groups") rules = value;
+  try {
+    return group_lights(scene, parse_group_rules(rules));
+  } catch (const Error&) {
+    return group_lights(scene);
+  }
 }
 
 Json describe_groups(const LightGroups& groups) {
@@ -207,7 +210,8 @@ nlohmann::ordered_json describe(const Scene& scene) {
     out["bounds"] = {{"lo", rgb(box.lo)}, {"hi", rgb(box.hi)}};
   out["origin"] = {scene.origin.x, scene.origin.y, scene.origin.z};
   out["settings"] = Json::object();
-  for (const auto& [key, value] : scene.settings) out["settings"][key] = value;
+  for (const auto* settings : {&scene.settings, &scene.own_settings})
+    for (const auto& [key, value] : *settings) out["settings"][key] = value;
   out["warnings"] = scene.warnings;
   for (const std::string& message : groups.messages) out["warnings"].push_back(message);
   return out;
@@ -254,8 +258,8 @@ std::string describe_text(const Scene& scene) {
   for (const Json& camera : d["cameras"]) line("  {}: {}", name(camera), kind(camera));
   const Environment& e = scene.environment;
   if (e.image != k_none)
-    line("environment  {} ({} x {}), scale {}, rotation {}", e.file, scene.images[e.image].width,
-         scene.images[e.image].height, e.scale, e.rotation);
+    line("environment  {} ({} x {}), scale {}, rotation {}", e.sky ? name_of(e.sky->kind) : e.file,
+         scene.images[e.image].width, scene.images[e.image].height, e.scale, e.rotation);
   else
     line("environment  {}",
          d["environment"].is_null() ? "none" : "radiance " + triple(d["environment"]["radiance"]));
@@ -263,7 +267,8 @@ std::string describe_text(const Scene& scene) {
        scene.extensions.empty() ? "none" : fmt::format("{}", fmt::join(scene.extensions, ", ")));
   if (!scene.variants.empty()) line("variants     {}", fmt::join(scene.variants, ", "));
   if (!scene.unknown_extensions.empty()) line("unknown      {}", fmt::join(scene.unknown_extensions, ", "));
-  for (const auto& [key, value] : scene.settings) line("setting      {} = {}", key, value);
+  for (const auto& [key, value] : d["settings"].items())
+    line("setting      {} = {}", key, value.get<std::string>());
   for (const Json& warning : d["warnings"]) line("warning      {}", warning.get<std::string>());
   return text;
 }

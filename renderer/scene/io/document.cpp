@@ -1,68 +1,15 @@
 #include "scene/io/document.h"
 
 #include <algorithm>
-#include <cstring>
 #include <fstream>
 
 #include "base/json_text.h"
+#include "scene/io/container.h"
 #include "scene/light_groups.h"
 
 namespace lucerna::scene {
 
 namespace {
-
-constexpr uint32_t k_glb_magic = 0x46546c67, k_chunk_json = 0x4e4f534a, k_chunk_bin = 0x004e4942;
-
-uint32_t read_u32(const std::vector<uint8_t>& bytes, size_t at) {
-  uint32_t value = 0;
-  std::memcpy(&value, bytes.data() + at, 4);
-  return value;
-}
-
-struct Container {
-  std::vector<uint8_t> bytes;
-  size_t json_begin = 0, json_end = 0;
-  size_t bin_begin = 0, bin_end = 0;
-  bool binary = false;
-  bool has_bin = false;
-};
-
-Container read_container(const Document& document, const std::filesystem::path& path) {
-  const std::string& file = document.file;
-  Container c;
-  c.bytes = read_file(document, path, file);
-  const size_t size = c.bytes.size();
-  c.json_end = size;
-  if (size == 0) throw_error(file, "the file is empty");
-  if (size < 4 || read_u32(c.bytes, 0) != k_glb_magic) return c;
-
-  c.binary = true;
-  if (size < 20) throw_error(file, "truncated .glb: {} bytes, expected a header of 20", size);
-  const uint32_t version = read_u32(c.bytes, 4), length = read_u32(c.bytes, 8);
-  if (version != 2) throw_error(file, "container version {}, expected 2", version);
-  if (length > size) throw_error(file, "truncated .glb: {} bytes, expected {}", size, length);
-  size_t at = 12;
-  for (int chunk = 0; at < length; ++chunk) {
-    if (length - at < 8) throw_error(file, "truncated .glb: chunk {} has no header", chunk);
-    const uint32_t chunk_length = read_u32(c.bytes, at), type = read_u32(c.bytes, at + 4);
-    at += 8;
-    if (chunk_length > length - at)
-      throw_error(file, "truncated .glb: chunk {} claims {} bytes, {} are left", chunk, chunk_length,
-                  length - at);
-    if (chunk == 0) {
-      if (type != k_chunk_json) throw_error(file, "the first chunk of a .glb must be JSON");
-      c.json_begin = at;
-      c.json_end = at + chunk_length;
-    } else if (type == k_chunk_bin && !c.has_bin) {
-      c.bin_begin = at;
-      c.bin_end = at + chunk_length;
-      c.has_bin = true;
-    }
-    at += chunk_length;
-  }
-  if (c.json_begin == 0) throw_error(file, "a .glb without a JSON chunk");
-  return c;
-}
 
 int base64_value(char c) {
   if (c >= 'A' && c <= 'Z') return c - 'A';
@@ -294,12 +241,10 @@ std::filesystem::path resolve_uri(const Document& document, const Item& item) {
 void open_document(Document& document, const std::filesystem::path& path) {
   document.file = path.string();
   document.folder = path.parent_path();
-  const Container container = read_container(document, path);
-  const char* text = reinterpret_cast<const char*>(container.bytes.data());
-  const char *begin = text + container.json_begin, *end = text + container.json_end;
-  // A .glb pads its JSON with spaces; zeros are a common mistake.
-  while (container.binary && end != begin && end[-1] == '\0') --end;
-  document.json = parse_json(document.file, begin, end);
+  const Container container = take_apart(read_file(document, path, document.file), document.file);
+  const std::string_view text = container.json();
+  document.json = parse_json(document.file, text.data(), text.data() + text.size());
+  document.text = std::make_shared<const std::string>(text);
   document.progress(0.05f, "structure");
   check_structure(document);
   document.progress(0.1f, "buffers");

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -74,9 +75,10 @@ class Budget {
 struct Document {
   Document(const LoadOptions& options) : budget(options.most_bytes), outside(options.outside) {}
 
-  std::string file;              ///< as given, for messages
-  std::filesystem::path folder;  ///< where relative references start
-  nlohmann::json json;           ///< the whole document
+  std::string file;                         ///< as given, for messages
+  std::filesystem::path folder;             ///< where relative references start
+  nlohmann::json json;                      ///< the whole document
+  std::shared_ptr<const std::string> text;  ///< of the JSON, as in the file
   tinygltf::Model model;  ///< accessors, meshes, nodes, cameras, samplers, textures; buffers with their bytes
   Warnings warnings;
   std::function<void(float, const char*)> progress;  ///< throws Cancelled

@@ -5,6 +5,8 @@
 #include "base/json_text.h"
 #include "scene/io/images.h"
 #include "scene/io/nodes.h"
+#include "scene/io/own_extras.h"
+#include "scene/sky_image.h"
 
 namespace lucerna::scene {
 namespace {
@@ -12,13 +14,15 @@ namespace {
 void read_environment(Document& document, Scene& scene, const Item& item, bool strict) {
   const auto file = item.find("file");
   const auto radiance = item.find("radiance");
+  const auto sky = item.find("sky");
   if (strict) {
     for (const auto& [key, value] : item.json().items())
-      if (key != "file" && key != "radiance" && key != "scale" && key != "rotation")
-        item.at(key.c_str()).fail("unknown key; known are radiance, file, scale, rotation");
-    if (file && radiance) item.fail("'radiance' and 'file' exclude each other");
-    if (!file && !radiance) item.fail("expected 'radiance' or 'file'");
-  } else if (!file && !radiance) {
+      if (key != "file" && key != "radiance" && key != "sky" && key != "scale" && key != "rotation")
+        item.at(key.c_str()).fail("unknown key; known are radiance, file, sky, scale, rotation");
+    if (int(file.has_value()) + int(radiance.has_value()) + int(sky.has_value()) > 1)
+      item.fail("'radiance', 'file' and 'sky' exclude each other");
+    if (!file && !radiance && !sky) item.fail("expected 'radiance', 'file' or 'sky'");
+  } else if (!file && !radiance && !sky) {
     document.warnings.add("{} environment with neither 'file' nor 'radiance': ignored", item.path());
     return;
   }
@@ -38,6 +42,10 @@ void read_environment(Document& document, Scene& scene, const Item& item, bool s
                             image.name, mended);
     environment.image = static_cast<Id>(scene.images.size());
     scene.images.push_back(std::move(image));
+  } else if (sky) {
+    environment.sky = read_sky(*sky);
+    environment.image = static_cast<Id>(scene.images.size());
+    scene.images.push_back(sky_image(*environment.sky));
   } else {
     environment.radiance = radiance->rgb();
     if (glm::any(glm::lessThan(environment.radiance, vec3(0)))) radiance->fail("radiance is negative");
@@ -79,12 +87,13 @@ bool load_settings(Document& document, Scene& scene) {
   root.object();
   // Once more, keeping the order of keys: settings are applied in it.
   flatten(nlohmann::ordered_json::parse(bytes.begin(), bytes.end()), {}, file, scene);
-  const auto environment = root.find("environment");
+  const auto environment = own_environment(document) ? std::nullopt : root.find("environment");
   if (environment) read_environment(document, scene, environment->object(), true);
   return environment.has_value();
 }
 
 void load_extras_environment(Document& document, Scene& scene) {
+  if (const auto own = own_environment(document)) return read_environment(document, scene, *own, true);
   const auto source = default_scene(document);
   const auto extras = source ? source->find("extras") : std::nullopt;
   if (!extras || !extras->json().is_object()) return;

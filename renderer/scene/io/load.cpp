@@ -9,6 +9,7 @@
 #include "scene/io/geometry.h"
 #include "scene/io/materials.h"
 #include "scene/io/nodes.h"
+#include "scene/io/own_extras.h"
 #include "scene/io/portals.h"
 #include "scene/recentre.h"
 
@@ -190,8 +191,11 @@ void place(Scene& scene, Placement& placement, const std::vector<Box>& boxes, Do
     matrix[3] += glm::dvec4(glm::dmat3(matrix) * shifts[scene.instances[i].mesh] - scene.origin, 0);
     scene.instances[i].to_world = mat4(matrix);
   }
-  for (size_t i = 0; i < cameras.size(); ++i)
+  for (size_t i = 0; i < cameras.size(); ++i) {
     scene.cameras[i].to_world[3] = vec4(vec3(cameras[i] - scene.origin), 1);
+    Section& section = scene.cameras[i].section;
+    section.offset = static_cast<float>(section.offset - glm::dot(glm::dvec3(section.normal), scene.origin));
+  }
   for (size_t i = 0; i < scene.lights.size(); ++i)
     scene.lights[i].position = vec3(placement.lights[i] - scene.origin);
 }
@@ -209,6 +213,7 @@ Scene load(const std::filesystem::path& path, const LoadOptions& options, const 
   try {
     document.progress(0, "file");
     open_document(document, path);
+    scene.document = document.text;
     list_extensions(document, scene);
     list_variants(document, scene);
     warn_of_motion(document);
@@ -224,6 +229,7 @@ Scene load(const std::filesystem::path& path, const LoadOptions& options, const 
     document.progress(0.5f, "textures");
     materials.load_images(options.images);
     if (!options.settings || !load_settings(document, scene)) load_extras_environment(document, scene);
+    if (options.settings) read_own_settings(document, scene);
     document.progress(1, "done");
   } catch (const Error&) {
     throw;

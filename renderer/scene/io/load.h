@@ -29,9 +29,13 @@
 // values of settings.json go to Scene::settings, nested objects as dotted keys: {"film": {"ev": 1}} is
 // "film.ev" = "1".
 //
+// extras.lucerna of the default scene, which save.h writes, overrides both: "environment", also with a sky by
+// formula ("sky"), and "settings", flat, to Scene::own_settings. extras.lucerna of a light's node: whether it
+// is off, and the date and place of a sun (own_extras.h).
+//
 // Perspective cameras with extras {"lucerna": {"f_number": .., "focus_distance": ..}} have a lens (Lens),
 // with "aperture_blades" and "aperture_rotation" [radians] if given; "shift_right" and "shift_up" are
-// Camera::shift. An invalid lens is left out with a warning.
+// Camera::shift, "section" is Camera::section. An invalid lens is left out with a warning.
 //
 // Nodes or meshes with extras {"portal": true} are portals of the sky instead of surfaces (portals.h).
 //

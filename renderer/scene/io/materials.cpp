@@ -163,6 +163,7 @@ Id MaterialLoader::material(int index) {
     read(item, material, needs);
   }
   scene_.materials.push_back(std::move(material));
+  scene_.material_indices.push_back(index < 0 ? k_none : static_cast<Id>(index));
   needs_.push_back(needs);
   return place->second;
 }

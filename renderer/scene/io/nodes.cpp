@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/gtc/quaternion.hpp>
 #include <map>
 
 #include "scene/io/accessor.h"
+#include "scene/io/node_matrix.h"
+#include "scene/io/own_extras.h"
 #include "scene/range.h"
 
 namespace lucerna::scene {
@@ -15,12 +16,6 @@ using glm::dmat3;
 using glm::dmat4;
 using glm::dvec3;
 using glm::dvec4;
-
-dmat4 trs(const dvec3& t, const glm::dquat& r, const dvec3& s) {
-  const dmat3 rotation = glm::mat3_cast(r);
-  return dmat4(dvec4(rotation[0] * s.x, 0), dvec4(rotation[1] * s.y, 0), dvec4(rotation[2] * s.z, 0),
-               dvec4(t, 1));
-}
 
 enum class Kind {
   regular,  // invertible in single precision, in which the renderer computes
@@ -136,7 +131,7 @@ class Walker {
         item.at("rotation").fail("a quaternion of length 0 is no rotation");
       r = r / length;
     }
-    return trs(t, r, s);
+    return node_matrix(t, r, s);
   }
 
   // The node's matrix in the world, whether or not the scene shows the node.
@@ -242,7 +237,7 @@ class Walker {
       return;
     }
     if (node.camera >= 0) add_camera(name, static_cast<size_t>(node.camera), world);
-    if (light) add_light(*light, name, world, group);
+    if (light) add_light(*light, index, name, world, group);
   }
 
   bool is_portal(const Item& node, int mesh) const {
@@ -311,7 +306,7 @@ class Walker {
       glm::dquat r(q.w, q.x, q.y, q.z);
       // Items of size 0 may have no rotation either.
       if (s == vec3(0)) r = glm::dquat(1, 0, 0, 0);
-      const dmat4 to_world = world * trs(dvec3(t), r / glm::length(r), dvec3(s));
+      const dmat4 to_world = world * node_matrix(dvec3(t), r / glm::length(r), dvec3(s));
       if (kind_of(to_world) == Kind::endless) extension.fail("the matrix of instance {} is not finite", i);
       add_instance(fmt::format("{} #{}", name, i), mesh, weights, to_world,
                    fmt::format("{}, instance {}", extension.path(), i));
@@ -344,6 +339,11 @@ class Walker {
       } catch (const Error& error) {
         document_.warnings.add("{} lenses of cameras that cannot be used: pinholes instead", error.what());
       }
+    try {
+      read_own_section(item, camera);
+    } catch (const Error& error) {
+      document_.warnings.add("{} section planes of cameras that cannot be used: left out", error.what());
+    }
     if (camera.xmag < 0) x = -x;
     if (camera.ymag < 0) y = -y;
     camera.xmag = std::abs(camera.xmag), camera.ymag = std::abs(camera.ymag);
@@ -405,7 +405,7 @@ class Walker {
     }
   }
 
-  void add_light(const Item& reference, const std::string& node, const dmat4& world,
+  void add_light(const Item& reference, uint32_t index, const std::string& node, const dmat4& world,
                  const std::string& group) {
     const auto extensions = root_.find("extensions");
     const auto punctual = extensions ? extensions->find("KHR_lights_punctual") : std::nullopt;
@@ -416,6 +416,7 @@ class Walker {
     light.name = item.text("name", node);
     if (light.name.empty()) light.name = node;
     light.group = group.empty() ? light_group(item) : group;
+    light.id = index;
     const std::string& type = item.at("type").text();
     if (type == "point") {
       light.kind = LightKind::point;
@@ -431,7 +432,11 @@ class Walker {
     light.intensity = glm::clamp(value, vec3(0), vec3(1e30f));
     if (value != light.intensity)
       document_.warnings.add("{} lights with a negative or endless intensity: clamped", item.path());
-    light.direction = vec3(-axis(world, 2));
+    dvec3 forward = -axis(world, 2);
+    // What rotations as quaternions leave of 0 is 0.
+    for (int k = 0; k < 3; ++k)
+      if (std::abs(forward[k]) < 1e-12) forward[k] = 0;
+    light.direction = vec3(forward);
     if (const auto spot = item.find("spot"); spot && light.kind == LightKind::spot) {
       const double outer = spot->number("outerConeAngle", glm::radians(45.0));
       const double inner = spot->number("innerConeAngle", 0);
@@ -443,6 +448,7 @@ class Walker {
         document_.warnings.add("{} spot lights whose cone angles are not 0 <= inner < outer <= pi/2: clamped",
                                spot->path());
     }
+    read_own_extras(root_.at("nodes").at(index), light);
     scene_.lights.push_back(light);
     placement_.lights.emplace_back(world[3]);
   }

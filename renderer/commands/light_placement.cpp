@@ -1,0 +1,57 @@
+#include "commands/light_placement.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "commands/light_edit.h"
+
+namespace lucerna::commands {
+namespace {
+
+constexpr float k_far = 1e6f;  // m
+
+float radius_of(const Room& room) {
+  const float radius = room.core.empty() ? room.view.extent : room.core.radius();
+  return std::max(radius, 1e-3f);
+}
+
+}  // namespace
+
+LookedAt looked_at(const Room& room) {
+  const vec3 eye = eye_of(room.view.camera), ahead = forward_of(room.view.camera);
+  if (room.look)
+    if (const auto hit = room.look(eye, ahead, k_far)) return {eye + hit->distance * ahead, hit->normal};
+  return {pivot_of(room.view), -ahead};
+}
+
+vec3 off_surface(const Room& room) {
+  const LookedAt at = looked_at(room);
+  float off = 0.25f * glm::distance(eye_of(room.view.camera), at.point);
+  // The ray starts off the surface, so as not to meet it again.
+  const float least = 1e-3f * radius_of(room);
+  if (room.look)
+    if (const auto other = room.look(at.point + least * at.normal, at.normal, 2 * off))
+      off = std::min(off, 0.5f * (other->distance + least));
+  return at.point + std::max(off, least) * at.normal;
+}
+
+vec3 beside(const Room& room) { return 0.1f * radius_of(room) * right_of(room.view.camera); }
+
+void place_new(const Room& room, scene::Light& light) {
+  // Radiance 0.5 after exposure, of reflectance 0.5: irradiance pi.
+  const float irradiance = k_pi * std::exp2(-room.ev);
+  if (light.kind == scene::LightKind::directional) {
+    light.direction = direction_from({.azimuth = 135, .elevation = 45});
+    light.intensity = vec3(irradiance);
+    return;
+  }
+  light.position = off_surface(room);
+  const float distance = 0.25f * radius_of(room);
+  light.intensity = vec3(irradiance * distance * distance);
+  if (light.kind != scene::LightKind::spot) return;
+  const glm::dvec3 way(looked_at(room).point - light.position);
+  if (glm::length(way) > 0) light.direction = vec3(glm::normalize(way));
+  light.inner_cone = glm::radians(20.0f), light.outer_cone = glm::radians(35.0f);
+}
+
+}  // namespace lucerna::commands

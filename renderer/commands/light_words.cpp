@@ -1,0 +1,165 @@
+#include "commands/light_words.h"
+
+#include <algorithm>
+
+#include "base/blackbody.h"
+#include "base/color.h"
+#include "base/error.h"
+#include "commands/light_edit.h"
+#include "scene/lamp.h"
+
+namespace lucerna::commands {
+namespace {
+
+Parameter angle(const char* name, const char* help, double lo, double hi) {
+  return {.name = name,
+          .type = Type::real,
+          .help = help,
+          .lo = lo,
+          .hi = hi,
+          .unit = "degrees",
+          .optional = true};
+}
+
+/// Refuses what a lamp of its kind does not have.
+void check_kind(const Arguments& a, const scene::Light& light) {
+  const auto refuse = [&](const char* name, const char* why) {
+    if (a.has(name)) throw Error("", fmt::format("{}: a {} {}", name, kind_of(light), why));
+  };
+  if (light.kind == scene::LightKind::directional) {
+    refuse("power", "shines from infinitely far: its intensity is what counts");
+    refuse("position", "is infinitely far: azimuth and elevation say where");
+  }
+  if (light.kind == scene::LightKind::point)
+    for (const char* name : {"direction", "azimuth", "elevation"}) refuse(name, "shines in all directions");
+  if (light.kind != scene::LightKind::spot)
+    for (const char* name : {"cone", "inner_cone"}) refuse(name, "has no cone");
+}
+
+/// Applies the requested place, direction and cones.
+void aim(const Arguments& a, scene::Light& light) {
+  constexpr float degree = k_pi / 180;
+  const vec3 before = light.direction;
+  if (a.has("position")) light.position = a.vector("position");
+  if (a.has("direction")) {
+    const vec3 d = a.vector("direction");
+    if (!(glm::length(d) > 1e-6f)) throw Error("", "direction: its length is 0");
+    light.direction = vec3(glm::normalize(glm::dvec3(d)));
+  }
+  if (a.has("azimuth") || a.has("elevation")) {
+    Bearing bearing = bearing_of(light.direction);
+    if (a.has("azimuth")) bearing.azimuth = a.number("azimuth");
+    if (a.has("elevation")) bearing.elevation = a.number("elevation");
+    light.direction = direction_from(bearing);
+  }
+  // Turned by hand: no longer where a date puts it.
+  if (light.direction != before) light.sun.reset();
+  if (a.has("cone") && a.has("inner_cone") && a.real("inner_cone") > a.real("cone"))
+    throw Error("", fmt::format("inner_cone: {} degrees is more than the cone's {}", a.real("inner_cone"),
+                                a.real("cone")));
+  // One alone moves the other where it must.
+  if (a.has("cone")) light.outer_cone = degree * a.number("cone");
+  if (a.has("inner_cone"))
+    light.inner_cone = degree * a.number("inner_cone");
+  else
+    light.inner_cone = std::min(light.inner_cone, light.outer_cone);
+  light.outer_cone = std::max(light.outer_cone, light.inner_cone);
+}
+
+/// Applies the requested strength, colour and switch.
+void shine(const Arguments& a, scene::Light& light) {
+  float strength = strength_of(light.intensity);
+  const vec3 tint = requested_tint(a, "color", tint_of(light.intensity));
+  if (a.has("intensity")) strength = a.number("intensity");
+  if (a.has("power")) strength = a.number("power") / std::max(float(scene::solid_angle(light)), 1e-9f);
+  if (a.has("intensity") || a.has("power") || a.has("color") || a.has("kelvin"))
+    light.intensity = strength * tint;
+  if (a.has("on")) light.enabled = a.boolean("on");
+}
+
+}  // namespace
+
+Parameter kelvin() {
+  return {.name = "kelvin",
+          .type = Type::real,
+          .help = "colour of a black body of that temperature",
+          .lo = k_coolest_kelvin,
+          .hi = k_hottest_kelvin,
+          .unit = "K",
+          .optional = true};
+}
+
+void exclude(const Arguments& a, const char* one, const char* other) {
+  if (a.has(one) && a.has(other))
+    throw Error("", fmt::format("{} and {} exclude each other: give one", one, other));
+}
+
+vec3 requested_tint(const Arguments& a, const char* color, const vec3& before) {
+  if (a.has("kelvin")) return blackbody_color(a.number("kelvin"));
+  if (!a.has(color)) return before;
+  if (strength_of(a.vector(color)) <= 0)
+    throw Error("", fmt::format("{}: at least one channel must be above 0", color));
+  return tint_of(a.vector(color));
+}
+
+const char* kind_of(const scene::Light& light) {
+  return light.kind == scene::LightKind::directional ? "sun"
+         : light.kind == scene::LightKind::spot      ? "spot lamp"
+                                                     : "point lamp";
+}
+
+std::vector<Parameter> light_parameters() {
+  return {
+      {.name = "intensity",
+       .type = Type::real,
+       .help = "of the strongest channel; W/m2 for a sun",
+       .lo = 0,
+       .hi = 1e9,
+       .unit = "W/sr",
+       .optional = true},
+      {.name = "color",
+       .type = Type::vector,
+       .help = "linear; its strongest channel is scaled to 1",
+       .lo = 0,
+       .hi = 1e9,
+       .optional = true},
+      {.name = "on", .type = Type::boolean, .help = "turns it on or off", .optional = true},
+      kelvin(),
+      {.name = "power",
+       .type = Type::real,
+       .help = "total emitted power of a lamp, strongest channel; replaces intensity",
+       .lo = 0,
+       .hi = 1e9,
+       .unit = "W",
+       .optional = true},
+      {.name = "position",
+       .type = Type::vector,
+       .help = "of a lamp",
+       .lo = -1e6,
+       .hi = 1e6,
+       .unit = "m",
+       .optional = true},
+      {.name = "direction",
+       .type = Type::vector,
+       .help = "direction of a sun or spot; any length above 0",
+       .lo = -1e6,
+       .hi = 1e6,
+       .optional = true},
+      angle("azimuth", "from where a sun or a spot shines, as a compass: 0 from -Z, 90 from +X", -360, 360),
+      angle("elevation", "the same above the horizon", -90, 90),
+      angle("cone", "of a spot, from its axis to where there is no light", 0.01, 90),
+      angle("inner_cone", "of a spot, from its axis to where its light begins to fade", 0, 90)};
+}
+
+void check_light_words(const Arguments& a) {
+  exclude(a, "intensity", "power"), exclude(a, "color", "kelvin");
+  exclude(a, "direction", "azimuth"), exclude(a, "direction", "elevation");
+}
+
+void apply_light_words(const Arguments& a, scene::Light& light) {
+  check_kind(a, light);
+  aim(a, light);
+  shine(a, light);
+}
+
+}  // namespace lucerna::commands

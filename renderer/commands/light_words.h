@@ -1,0 +1,28 @@
+#pragma once
+// Words of commands that describe a light: its strength, colour, place and cones.
+#include <string>
+#include <vector>
+
+#include "commands/registry.h"
+#include "scene/scene.h"
+
+namespace lucerna::commands {
+
+/// Parameter "kelvin".
+Parameter kelvin();
+/// Throws Error if both are given.
+void exclude(const Arguments& a, const char* one, const char* other);
+/// The requested colour, its strongest channel 1, from the parameter of that name or in kelvin; else
+/// `before`.
+vec3 requested_tint(const Arguments& a, const char* color, const vec3& before);
+
+/// "sun", "spot lamp" or "point lamp".
+const char* kind_of(const scene::Light& light);
+/// Parameters of a light's properties, all optional.
+std::vector<Parameter> light_parameters();
+/// Checks that need no light: of parameters that exclude each other.
+void check_light_words(const Arguments& a);
+/// Applies the given parameters. Throws Error for those that a light of its kind does not have.
+void apply_light_words(const Arguments& a, scene::Light& light);
+
+}  // namespace lucerna::commands

@@ -1,0 +1,27 @@
+#pragma once
+// extras.lucerna: what no glTF extension covers, read from nodes, scenes and cameras. save.h writes it.
+#include "scene/io/document.h"
+
+namespace lucerna::scene {
+
+/// Of a node with a light: {"enabled": false}, and of a sun {"sun": {"date": "2024-06-21", "time": 12.5,
+/// "zone": 1, "latitude": 48.1, "longitude": 11.6, "north": 0}} (sun_time.h; time in hours). A place of the
+/// sun that does not fit the node's rotation within 0.01 degrees is ignored: the node was turned elsewhere.
+/// Throws a located Error for wrong types and values.
+void read_own_extras(const Item& node, Light& light);
+
+/// Of a camera: {"section": {"normal": [x, y, z], "offset": metres}}, in the file's coordinates.
+void read_own_section(const Item& camera, Camera& result);
+
+/// {"kind": "preetham", "turbidity": 3, "ground": 0.2, "to_sun": [x, y, z]}; "cie_clear", "cie_overcast".
+SkyModel read_sky(const Item& item);
+/// Its name in files and commands.
+const char* name_of(SkyKind kind);
+
+/// extras.lucerna.environment of the default scene, or nothing: {"file" | "radiance" | "sky", "scale",
+/// "rotation"}.
+std::optional<Item> own_environment(const Document& document);
+/// extras.lucerna.settings of the default scene: {"film.ev": "1", ...}, to Scene::own_settings.
+void read_own_settings(const Document& document, Scene& scene);
+
+}  // namespace lucerna::scene

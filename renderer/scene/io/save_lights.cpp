@@ -1,0 +1,308 @@
+#include "scene/io/save_parts.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/gtc/quaternion.hpp>
+#include <optional>
+#include <vector>
+
+#include "scene/io/node_matrix.h"
+#include "scene/solar.h"
+
+namespace lucerna::scene {
+namespace {
+
+using glm::dmat3;
+using glm::dmat4;
+using glm::dquat;
+using glm::dvec3;
+
+constexpr const char* k_punctual = "KHR_lights_punctual";
+
+/// The rotation of a node whose -Z axis has that direction (unit).
+dquat turned_to(const dvec3& direction) {
+  const dvec3 rest(0, 0, -1);
+  const double cosine = glm::dot(rest, direction);
+  if (cosine < -0.999999) {
+    // About +X by half a turn, then the small rest.
+    const dquat half(0, 1, 0, 0);
+    const dvec3 back = glm::inverse(half) * direction;
+    const dvec3 axis = glm::cross(rest, back);
+    return half * glm::normalize(dquat(1 + glm::dot(rest, back), axis.x, axis.y, axis.z));
+  }
+  const dvec3 axis = glm::cross(rest, direction);
+  return glm::normalize(dquat(1 + cosine, axis.x, axis.y, axis.z));
+}
+
+EditedJson json_of(const dvec3& v) { return EditedJson::array({v.x, v.y, v.z}); }
+EditedJson json_of(const dquat& q) { return EditedJson::array({q.x, q.y, q.z, q.w}); }
+
+std::vector<double> numbers(const EditedJson& node, const char* key) {
+  const auto found = node.find(key);
+  return found != node.end() && found->is_array() ? found->get<std::vector<double>>() : std::vector<double>();
+}
+
+/// The node's own matrix, as load_nodes reads it.
+dmat4 local_matrix(const EditedJson& node) {
+  if (const std::vector<double> m = numbers(node, "matrix"); m.size() == 16) {
+    dmat4 matrix;
+    for (int c = 0; c < 4; ++c)
+      for (int r = 0; r < 4; ++r) matrix[c][r] = m[size_t(4 * c + r)];
+    return matrix;
+  }
+  dvec3 t(0), s(1);
+  dquat r(1, 0, 0, 0);
+  if (const auto v = numbers(node, "translation"); v.size() == 3) t = {v[0], v[1], v[2]};
+  if (const auto v = numbers(node, "scale"); v.size() == 3) s = {v[0], v[1], v[2]};
+  if (const auto v = numbers(node, "rotation"); v.size() == 4)
+    r = glm::normalize(dquat(v[3], v[0], v[1], v[2]));
+  return node_matrix(t, r, s);
+}
+
+class LightWriter {
+ public:
+  LightWriter(EditedJson& root, const Scene& loaded, const Scene& edited)
+      : root_(root), loaded_(loaded), edited_(edited) {}
+
+  void write() {
+    if (loaded_.lights == edited_.lights) return;
+    find_parents();
+    for (const Light& before : loaded_.lights)
+      if (std::none_of(edited_.lights.begin(), edited_.lights.end(),
+                       [&](const Light& l) { return l.id == before.id; }))
+        remove(before.id);
+    for (const Light& light : edited_.lights) {
+      const auto before = std::find_if(loaded_.lights.begin(), loaded_.lights.end(),
+                                       [&](const Light& l) { return l.id == light.id; });
+      if (before == loaded_.lights.end())
+        add(light);
+      else if (*before != light)
+        change(*before, light);
+    }
+    drop_unused();
+  }
+
+ private:
+  EditedJson& node(size_t index) { return root_["nodes"][index]; }
+  EditedJson& definitions() {
+    EditedJson& list = extension_at(root_, root_, k_punctual)["lights"];
+    if (!list.is_array()) list = EditedJson::array();
+    return list;
+  }
+  EditedJson& reference(size_t index) { return node(index)["extensions"][k_punctual]["light"]; }
+
+  void find_parents() {
+    if (!root_.contains("nodes")) return;
+    parents_.assign(root_["nodes"].size(), k_none);
+    for (uint32_t i = 0; i < parents_.size(); ++i)
+      if (const auto children = node(i).find("children"); children != node(i).end())
+        for (const EditedJson& child : *children) parents_[child.get<size_t>()] = i;
+  }
+
+  dmat4 world_of(Id index) {
+    dmat4 world(1);
+    for (Id at = index; at != k_none; at = at < parents_.size() ? parents_[at] : k_none)
+      world = local_matrix(node(at)) * world;
+    return world;
+  }
+
+  void remove(Id index) {
+    remove_extension(node(index), k_punctual);
+    for (const char* key : {"enabled", "sun"}) remove_own(node(index), key);
+  }
+
+  void add(const Light& light) {
+    EditedJson made = EditedJson::object();
+    if (!light.name.empty()) made["name"] = light.name;
+    if (light.kind != LightKind::directional) place(made, dmat4(1), light);
+    if (light.kind != LightKind::point) turn(made, dmat4(1), light);
+    EditedJson& list = definitions();
+    list.push_back(definition(light, EditedJson::object()));
+    const size_t index = list.size() - 1;
+    extension_at(root_, made, k_punctual)["light"] = index;
+    if (!light.group.empty()) object_at(made, "extras")["light_group"] = light.group;
+    write_own(made, light);
+    add_root_node(root_, std::move(made));
+  }
+
+  void change(const Light& before, const Light& after) {
+    Id index = before.id;
+    const bool moved = before.position != after.position && after.kind != LightKind::directional;
+    const bool turned = before.direction != after.direction && after.kind != LightKind::point;
+    if ((moved || turned) && !holds_light_only(index)) index = move_to_own_node(index, after.name);
+    const dmat4 parent = world_of(index < parents_.size() ? parents_[index] : k_none);
+    if (turned) turn(node(index), parent, after);
+    if (moved) place(node(index), parent, after);
+    if (before.group != after.group) regroup(index, after.group);
+    write_own(node(index), after);
+    const bool defined = before.name != after.name || before.kind != after.kind ||
+                         before.intensity != after.intensity || before.inner_cone != after.inner_cone ||
+                         before.outer_cone != after.outer_cone;
+    if (!defined) return;
+    own_definition(index);
+    EditedJson& slot = definitions()[reference(index).get<size_t>()];
+    slot = definition(after, std::move(slot));
+  }
+
+  bool holds_light_only(Id index) {
+    const EditedJson& n = node(index);
+    for (const char* key : {"mesh", "camera", "children", "skin"})
+      if (n.contains(key)) return false;
+    return n.at("extensions").size() == 1 && !is_animated(index);
+  }
+
+  bool is_animated(Id index) const {
+    const auto animations = root_.find("animations");
+    if (animations == root_.end() || !animations->is_array()) return false;
+    for (const EditedJson& animation : *animations)
+      if (const auto channels = animation.find("channels"); channels != animation.end())
+        for (const EditedJson& channel : *channels)
+          if (const auto target = channel.find("target"); target != channel.end())
+            if (const auto at = target->find("node"); at != target->end() && at->get<size_t>() == index)
+              return true;
+    return false;
+  }
+
+  /// Moves the light to a new first child of its node, which keeps its place in the order of lights.
+  Id move_to_own_node(Id index, const std::string& name) {
+    EditedJson made = EditedJson::object();
+    made["name"] = name;
+    made["extensions"][k_punctual] = node(index)["extensions"][k_punctual];
+    if (const auto extras = node(index).find("extras"); extras != node(index).end() && extras->is_object())
+      if (const auto group = extras->find("light_group"); group != extras->end())
+        made["extras"]["light_group"] = *group;
+    remove(index);
+    const auto child = static_cast<Id>(root_["nodes"].size());
+    root_["nodes"].push_back(std::move(made));
+    EditedJson& children = node(index)["children"];
+    if (!children.is_array()) children = EditedJson::array();
+    children.insert(children.begin(), child);
+    parents_.resize(root_["nodes"].size(), k_none);
+    parents_[child] = index;
+    return child;
+  }
+
+  void place(EditedJson& n, const dmat4& parent, const Light& light) {
+    const dvec3 world = dvec3(light.position) + loaded_.origin;
+    const dvec3 local(glm::inverse(parent) * glm::dvec4(world, 1));
+    if (std::vector<double> m = numbers(n, "matrix"); m.size() == 16) {
+      for (int k = 0; k < 3; ++k) m[size_t(12 + k)] = local[k];
+      n["matrix"] = m;
+    } else {
+      n["translation"] = json_of(local);
+    }
+  }
+
+  static void turn(EditedJson& n, const dmat4& parent, const Light& light) {
+    const dvec3 local = glm::normalize(glm::inverse(dmat3(parent)) * unit_within(light.direction));
+    const dvec3 translation(local_matrix(n)[3]);
+    // A scale may turn the axis; a light has none.
+    n.erase("matrix"), n.erase("scale");
+    if (translation != dvec3(0)) n["translation"] = json_of(translation);
+    n["rotation"] = json_of(turned_to(local));
+  }
+
+  void regroup(Id index, const std::string& group) {
+    if (!group.empty()) {
+      object_at(node(index), "extras")["light_group"] = group;
+      return;
+    }
+    remove_from(node(index), "extras", "light_group");
+    own_definition(index);
+    remove_from(definitions()[reference(index).get<size_t>()], "extras", "light_group");
+  }
+
+  static void write_own(EditedJson& n, const Light& light) {
+    if (light.enabled)
+      remove_own(n, "enabled");
+    else
+      set_own(n, "enabled", false);
+    if (!light.sun) return remove_own(n, "sun");
+    const SunTime& t = *light.sun;
+    set_own(n, "sun",
+            {{"date", date_text(t)},
+             {"time", t.hours},
+             {"zone", t.zone},
+             {"latitude", t.latitude},
+             {"longitude", t.longitude},
+             {"north", t.north}});
+  }
+
+  /// Gives the light a definition that no other node uses.
+  void own_definition(Id index) {
+    const auto used = reference(index).get<size_t>();
+    size_t users = 0;
+    for (const EditedJson& n : root_["nodes"])
+      if (const auto e = n.find("extensions"); e != n.end() && e->contains(k_punctual))
+        users += e->at(k_punctual).at("light").get<size_t>() == used;
+    if (users < 2) return;
+    EditedJson copy = definitions()[used];
+    definitions().push_back(std::move(copy));
+    reference(index) = definitions().size() - 1;
+  }
+
+  static EditedJson definition(const Light& light, EditedJson from) {
+    static constexpr const char* k_types[] = {"point", "spot", "directional"};
+    if (!light.name.empty()) from["name"] = light.name;
+    from["type"] = k_types[static_cast<size_t>(light.kind)];
+    const auto [color, strength] = split_strength(light.intensity);
+    from["color"] = vector_json(color);
+    from["intensity"] = number_json(strength);
+    if (light.kind != LightKind::spot) {
+      from.erase("spot");
+      return from;
+    }
+    EditedJson& spot = object_at(from, "spot");
+    // A float may be a little above pi / 2, and the inner cone must be the smaller one.
+    double outer{light.outer_cone}, inner{light.inner_cone};
+    outer = std::min(outer, glm::radians(90.0));
+    if (inner >= outer) inner = outer * (1 - 1e-12);
+    spot["innerConeAngle"] =
+        light.inner_cone < light.outer_cone ? number_json(light.inner_cone) : EditedJson(inner);
+    spot["outerConeAngle"] =
+        outer < double{light.outer_cone} ? EditedJson(outer) : number_json(light.outer_cone);
+    return from;
+  }
+
+  /// Definitions that lights of the loaded scene used, and no node uses any more.
+  void drop_unused() {
+    const auto extensions = root_.find("extensions");
+    if (extensions == root_.end() || !extensions->contains(k_punctual)) return;
+    EditedJson& list = definitions();
+    std::vector<bool> used(list.size());
+    for (const EditedJson& n : root_["nodes"])
+      if (const auto e = n.find("extensions"); e != n.end() && e->contains(k_punctual))
+        used[e->at(k_punctual).at("light").get<size_t>()] = true;
+    // Animations may point at definitions by number.
+    const EditedJson& names = root_["extensionsUsed"];
+    const bool pointed = std::find(names.begin(), names.end(), "KHR_animation_pointer") != names.end();
+    if (pointed || std::find(used.begin(), used.end(), false) == used.end()) return;
+    std::vector<size_t> places(used.size());
+    EditedJson kept = EditedJson::array();
+    for (size_t i = 0; i < used.size(); ++i) {
+      places[i] = kept.size();
+      if (used[i]) kept.push_back(std::move(list[i]));
+    }
+    for (EditedJson& n : root_["nodes"])
+      if (const auto e = n.find("extensions"); e != n.end() && e->contains(k_punctual))
+        (*e)[k_punctual]["light"] = places[(*e)[k_punctual]["light"].get<size_t>()];
+    if (!kept.empty()) {
+      list = std::move(kept);
+      return;
+    }
+    remove_extension(root_, k_punctual);
+    drop_unused_extension(root_, k_punctual);
+  }
+
+  EditedJson& root_;
+  const Scene &loaded_, &edited_;
+  std::vector<Id> parents_;  // by node; k_none: a root
+};
+
+}  // namespace
+
+void write_lights(EditedJson& root, const Scene& loaded, const Scene& edited) {
+  LightWriter(root, loaded, edited).write();
+}
+
+}  // namespace lucerna::scene

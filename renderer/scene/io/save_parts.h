@@ -1,0 +1,50 @@
+#pragma once
+// The steps of save(): each writes the edits of one subject into the document's JSON.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "scene/io/json_edit.h"
+#include "scene/io/save.h"
+
+namespace lucerna::scene {
+
+/// Writes the lights of `edited` that differ from those of `loaded`, removes those that are gone, and adds
+/// the new ones as nodes of the default scene. Lights keep their nodes. A light that moves and whose node
+/// holds something else gets a node of its own there.
+void write_lights(EditedJson& root, const Scene& loaded, const Scene& edited);
+
+/// Writes colours, roughness, metalness and emission that differ.
+void write_materials(EditedJson& root, const Scene& loaded, const Scene& edited);
+
+/// Adds cameras, or replaces those of the same name. Positions are relative to `origin` of the file.
+void write_cameras(EditedJson& root, const glm::dvec3& origin, const std::vector<Camera>& cameras);
+
+/// Folders of the source and of the saved file, absolute.
+struct Folders {
+  std::filesystem::path from, to;
+  bool same() const { return from == to; }
+};
+
+/// extras.lucerna of the default scene: environment and settings. Both are left out if they are what the
+/// source's extras and, in the same folder, settings.json give.
+void write_scene_extras(EditedJson& root, const SaveRequest& request, const Folders& folders);
+
+/// The URI, relative to the new folder, of a file that `uri` names from the old one (as resolve_uri() reads
+/// it). Data, absolute paths and other schemes stay.
+std::string moved_uri(const std::string& uri, const Folders& folders);
+/// The relative URI of a file.
+std::string uri_of(const std::filesystem::path& file, const std::filesystem::path& folder);
+/// Makes all references of the document relative to the new folder: of buffers, images, extensions and
+/// extras.environment.
+void move_uris(EditedJson& root, const Folders& folders);
+/// Number of references to files outside the document's folder.
+size_t count_outside(EditedJson& root);
+
+/// Puts buffers, and PNG and JPEG images, into one binary chunk, which is returned. Images that cannot be
+/// read, or may not (SaveRequest::outside), keep their URIs. Files are read from folders.from. Throws Error
+/// at `where` if a buffer cannot be read.
+std::vector<uint8_t> embed_files(EditedJson& root, const Folders& folders, bool outside,
+                                 const std::string& where);
+
+}  // namespace lucerna::scene

@@ -1,0 +1,419 @@
+// links: scene_io
+// Saving of scenes: edits read back exactly, and everything else is kept.
+#include "scene/io/save.h"
+
+#include <catch2/catch.hpp>
+#include <memory>
+
+#include "base/color.h"
+#include "base/file.h"
+#include "scene/io/json_edit.h"
+#include "scene/sky_image.h"
+#include "scene/solar.h"
+#include "unit/scene_support.h"
+
+using namespace lucerna;
+using namespace lucerna::scene;
+using namespace lucerna::test;
+using Catch::Contains;
+
+namespace {
+
+/// Two lamps, of which one is in a turned and moved parent, a sun, a material, a camera, and things that are
+/// not known.
+Asset room() {
+  Asset a;
+  const int material = a.add("materials", {{"name", "paint"},
+                                           {"pbrMetallicRoughness", {{"roughnessFactor", 0.25}, {"x", 1}}},
+                                           {"extensions", {{"EXT_unknown", {{"a", {1, 2}}}}}}});
+  a.triangle({{"name", "floor"}})["material"] = material;
+  a.doc["extensionsUsed"] = {"KHR_lights_punctual", "EXT_unknown"};
+  a.doc["extensions"] = {
+      {"KHR_lights_punctual",
+       {{"lights",
+         {{{"type", "spot"}, {"name", "reading"}, {"intensity", 5}, {"spot", {{"outerConeAngle", 0.5}}}},
+          {{"type", "point"},
+           {"color", {1, 0.5, 0.25}},
+           {"range", 3},
+           {"extras", {{"light_group", "table"}}}},
+          {{"type", "directional"}, {"name", "sun"}}}}}},
+      {"EXT_unknown", {{"deep", {{"b", "c"}}}}}};
+  const auto lamp = [](int light) { return json{{"KHR_lights_punctual", {{"light", light}}}}; };
+  const int reading =
+      a.add("nodes", {{"name", "lamp node"}, {"extensions", lamp(0)}, {"translation", {0.1, 0.2, 0.3}}});
+  const int arm = a.add("nodes", {{"children", {reading}},
+                                  {"translation", {1, 2, 3}},
+                                  {"rotation", {0.1825741858, 0.3651483717, 0.5477225575, 0.7302967433}},
+                                  {"scale", {2, 1, 0.5}}});
+  const int table = a.add("nodes", {{"name", "table lamp"}, {"extensions", lamp(1)}});
+  const int sun = a.add("nodes", {{"extensions", lamp(2)}, {"extras", {{"note", "keep"}}}});
+  const int camera =
+      a.add("cameras",
+            {{"type", "perspective"}, {"name", "view"}, {"perspective", {{"yfov", 0.7}, {"znear", 0.1}}}});
+  const int eye = a.add("nodes", {{"camera", camera}, {"translation", {0, 1, 5}}});
+  for (const int n : {arm, table, sun, eye}) a.doc["scenes"][0]["nodes"].push_back(n);
+  a.doc["asset"]["generator"] = "by hand";
+  return a;
+}
+
+/// A scene in a folder, its edited copy, and what reading the saved file gives.
+struct Bench {
+  TempFolder folder;
+  std::filesystem::path source;
+  std::shared_ptr<const Scene> loaded;
+  std::shared_ptr<Scene> edited;
+  SaveRequest request;
+
+  explicit Bench(const Asset& asset, const std::string& name = "a.gltf") {
+    source = name.ends_with(".glb") ? asset.glb(folder, name) : asset.gltf(folder, name);
+    read();
+  }
+  void read() {
+    loaded = std::make_shared<const Scene>(load(source));
+    edited = std::make_shared<Scene>(*loaded);
+  }
+  Scene saved(const std::filesystem::path& file) {
+    request.loaded = loaded, request.edited = edited, request.file = file;
+    result = save(request);
+    LoadOptions options;
+    options.outside = true;
+    return load(file, options);
+  }
+  Scene saved() { return saved(folder / "b.gltf"); }
+  std::string failure(const std::filesystem::path& file) {
+    try {
+      saved(file);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  }
+  json document(const std::string& name = "b.gltf") { return json::parse(read_file(folder / name)); }
+  SavedScene result;
+};
+
+std::vector<uint8_t> pixels(const Scene& s) { return s.images[0].bytes; }
+std::vector<vec3> corners(const Scene& s) { return s.meshes[0].primitives[0].positions; }
+
+void check_equal(const std::vector<Light>& a, const std::vector<Light>& b) {
+  REQUIRE(a.size() == b.size());
+  for (size_t i = 0; i < a.size(); ++i) {
+    INFO(a[i].name);
+    Light other = b[i];
+    other.id = a[i].id;  // nodes may have other numbers
+    CHECK(a[i].name == other.name);
+    CHECK(a[i].position == other.position);
+    CHECK(a[i].direction == other.direction);
+    CHECK(a[i].intensity == other.intensity);
+    CHECK(a[i] == other);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("without edits a scene is saved to the byte") {
+  Bench b(room());
+  b.saved();
+  CHECK(read_file(b.folder / "b.gltf") == read_file(b.source));
+  Bench glb(room(), "a.glb");
+  glb.saved(glb.folder / "b.glb");
+  CHECK(read_file(glb.folder / "b.glb") == read_file(glb.source));
+}
+
+TEST_CASE("edited lights read back exactly") {
+  Bench b(room());
+  REQUIRE(b.edited->lights.size() == 3);
+  Light& reading = b.edited->lights[0];
+  reading.position = {0.7123f, -1.3f, 2.000001f};
+  reading.direction = vec3(glm::normalize(glm::dvec3(0.3, -1, 0.01)));
+  reading.intensity = {12.345f, 6.789f, 0.123f};
+  reading.inner_cone = reading.outer_cone = 0.5f * k_pi;
+  reading.name = "Reading \"lamp\" \xC3\xA9";
+  Light& table = b.edited->lights[1];
+  table.enabled = false, table.group = "evening";
+  table.intensity = vec3(0.3f);
+  Light& sun = b.edited->lights[2];
+  sun.sun = SunTime{.year = 2024,
+                    .month = 6,
+                    .day = 21,
+                    .hours = 12.25,
+                    .zone = 2,
+                    .latitude = 48.1,
+                    .longitude = 11.6,
+                    .north = 15};
+  sun.direction = sun_direction(*sun.sun);
+  const Scene back = b.saved();
+  check_equal(b.edited->lights, back.lights);
+  // The rest is as it was.
+  const json doc = b.document();
+  CHECK(doc["asset"] == room().doc["asset"]);
+  CHECK(doc["extensions"]["EXT_unknown"] == room().doc["extensions"]["EXT_unknown"]);
+  CHECK(doc["materials"] == room().doc["materials"]);
+  CHECK(doc["extensions"]["KHR_lights_punctual"]["lights"][1]["range"] == 3);
+  CHECK(doc["buffers"] == json::parse(read_file(b.source))["buffers"]);
+  bool noted = false;
+  for (const json& node : doc["nodes"])
+    noted |= node.contains("extras") && node["extras"].value("note", "") == "keep";
+  CHECK(noted);
+}
+
+TEST_CASE("lights in every direction and of many colours read back exactly") {
+  Asset a;
+  a.triangle();
+  Bench b(a);
+  uint32_t state = 7;
+  const auto random = [&] { return float((state = state * 1664525u + 1013904223u) >> 8) / float(1 << 24); };
+  for (Id i = 0; i < 300; ++i) {
+    Light l;
+    l.name = fmt::format("lamp {}", i), l.id = k_first_added + i;
+    l.kind = i % 2 ? LightKind::spot : LightKind::directional;
+    l.direction = vec3(glm::normalize(glm::dvec3(random() - 0.5, random() - 0.5, random() - 0.5)));
+    if (i < 6) l.direction = vec3(0), l.direction[int(i) % 3] = i < 3 ? 1.0f : -1.0f;
+    l.intensity = 100.0f * vec3(random(), random(), random());
+    if (l.kind == LightKind::spot) l.position = 10.0f * vec3(random(), random(), random()) - 5.0f;
+    b.edited->lights.push_back(l);
+  }
+  const Scene back = b.saved();
+  check_equal(b.edited->lights, back.lights);
+}
+
+TEST_CASE("added and deleted lights") {
+  Bench b(room());
+  Light lamp{.name = "new",
+             .kind = LightKind::spot,
+             .intensity = {3, 2, 1},
+             .position = {1, 2, 3},
+             .group = "mine",
+             .id = k_first_added};
+  lamp.direction = vec3(glm::normalize(glm::dvec3(1, -1, 0)));
+  b.edited->lights.erase(b.edited->lights.begin() + 1);
+  b.edited->lights.push_back(lamp);
+  const Scene back = b.saved();
+  check_equal(b.edited->lights, back.lights);
+  // Its definition is gone too, and the others are found.
+  CHECK(b.document()["extensions"]["KHR_lights_punctual"]["lights"].size() == 3);
+  // Without lights, the extension is no longer used.
+  b.edited->lights.clear();
+  CHECK(b.saved(b.folder / "c.gltf").lights.empty());
+  const json none = b.document("c.gltf");
+  CHECK(none["extensionsUsed"] == json{"EXT_unknown"});
+  CHECK_FALSE(none["extensions"].contains("KHR_lights_punctual"));
+}
+
+TEST_CASE("a light that moves out of a node with a mesh leaves the mesh there") {
+  Asset a;
+  a.triangle({{"name", "body"},
+              {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}},
+              {"translation", {1, 1, 1}},
+              {"extras", {{"light_group", "g"}}}});
+  a.doc["extensionsUsed"] = {"KHR_lights_punctual"};
+  a.doc["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}, {"name", "bulb"}}};
+  Bench b(a);
+  b.edited->lights[0].position = {5, 5, 5};
+  const Scene back = b.saved();
+  check_equal(b.edited->lights, back.lights);
+  CHECK(back.instances.size() == 1);
+  CHECK(std::as_const(back.instances)[0].to_world == std::as_const(b.loaded->instances)[0].to_world);
+}
+
+TEST_CASE("two nodes of one light are edited apart") {
+  Asset a;
+  a.triangle();
+  a.doc["extensionsUsed"] = {"KHR_lights_punctual"};
+  a.doc["extensions"]["KHR_lights_punctual"]["lights"] = {{{"type", "point"}}};
+  for (const char* name : {"left", "right"})
+    a.doc["scenes"][0]["nodes"].push_back(
+        a.add("nodes", {{"name", name}, {"extensions", {{"KHR_lights_punctual", {{"light", 0}}}}}}));
+  Bench b(a);
+  b.edited->lights[1].intensity = {7, 0, 0};
+  const Scene back = b.saved();
+  check_equal(b.edited->lights, back.lights);
+  CHECK(back.lights[0].intensity == vec3(1));
+}
+
+TEST_CASE("materials' factors read back exactly, also of the default material") {
+  Asset a = room();
+  a.triangle();
+  Bench b(a);
+  REQUIRE(b.edited->materials.size() == 2);
+  for (Material& m : b.edited->materials) {
+    m.base_color = {0.1f, 0.23456f, 0.9f, m.base_color.w};
+    m.roughness = 0.777f, m.metallic = 0.1f;
+    m.emission = {40.5f, 28.123f, 12.7f};
+  }
+  const Scene back = b.saved();
+  REQUIRE(back.materials.size() == 2);
+  for (size_t i = 0; i < 2; ++i) {
+    CHECK(back.materials[i].base_color == b.edited->materials[i].base_color);
+    CHECK(back.materials[i].emission == b.edited->materials[i].emission);
+    CHECK(back.materials[i].roughness == 0.777f);
+    CHECK(back.materials[i].metallic == 0.1f);
+  }
+  CHECK(b.document()["materials"][0]["extensions"]["EXT_unknown"] ==
+        room().doc["materials"][0]["extensions"]["EXT_unknown"]);
+  // Weak emission needs no extension.
+  for (Material& m : b.edited->materials) m.emission = {0.5f, 0.25f, 0};
+  CHECK(b.saved(b.folder / "c.gltf").materials[0].emission == vec3(0.5f, 0.25f, 0));
+  CHECK_FALSE(read_file(b.folder / "c.gltf").find("emissive_strength") != std::string::npos);
+}
+
+TEST_CASE("colours and strengths multiply to exactly the given values") {
+  uint32_t state = 3;
+  for (int i = 0; i < 2000; ++i) {
+    vec3 value;
+    for (int k = 0; k < 3; ++k)
+      value[k] = std::ldexp(float((state = state * 1664525u + 1013904223u) >> 8), i % 40 - 30);
+    const auto [color, strength] = split_strength(value);
+    const vec3 written(float(number_json(color.x).get<double>()), float(number_json(color.y).get<double>()),
+                       float(number_json(color.z).get<double>()));
+    CHECK(written * float(number_json(strength).get<double>()) == value);
+    CHECK(strength_of(color) <= 1);
+  }
+  CHECK(split_strength(vec3(0)).second == 0);
+}
+
+TEST_CASE("cameras are added, and replaced by name") {
+  Bench b(room());
+  Camera corner = b.loaded->cameras[0];
+  corner.name = "corner";
+  corner.to_world = mat4(1);
+  corner.to_world[3] = vec4(3, 1, 2, 1);
+  corner.yfov = 0.5f, corner.lens = {.f_number = 2, .focus_distance = 3, .blades = 6},
+  corner.shift = {0, 0.1f};
+  corner.section = {.normal = {0, 0, 1}, .offset = -0.5f};
+  Camera view = corner;
+  view.name = "view", view.yfov = 0.9f;
+  b.request.cameras = {corner, view};
+  const Scene back = b.saved();
+  REQUIRE(back.cameras.size() == 2);
+  CHECK(back.cameras[0].name == "view");
+  CHECK(back.cameras[0].yfov == 0.9f);
+  CHECK(back.cameras[1].name == "corner");
+  CHECK(glm::distance(vec3(back.cameras[1].to_world[3]), vec3(3, 1, 2)) < 1e-6f);
+  CHECK(back.cameras[1].lens == corner.lens);
+  CHECK(back.cameras[1].shift == corner.shift);
+  CHECK(back.cameras[1].section == corner.section);
+}
+
+TEST_CASE("environment and settings are in the file, over settings.json") {
+  Asset a = room();
+  Bench b(a);
+  write(b.folder / "settings.json",
+        std::string(R"({"film": {"ev": 1}, "samples": 8, "environment": {"radiance": [1, 1, 1]}})"));
+  b.read();
+  b.edited->environment.scale = 0.5f;
+  b.request.settings = {{"film.ev", "2"}, {"samples", "8"}};
+  Scene back = b.saved();
+  CHECK(back.environment.radiance == vec3(1));
+  CHECK(back.environment.scale == 0.5f);
+  // Only what differs from settings.json, which is beside it.
+  CHECK(back.own_settings == std::vector<std::pair<std::string, std::string>>{{"film.ev", "2"}});
+  // In another folder, all.
+  std::filesystem::create_directory(b.folder / "other");
+  back = b.saved(b.folder / "other/c.gltf");
+  CHECK(back.own_settings.size() == 2);
+  CHECK(back.environment.scale == 0.5f);
+  CHECK(back.settings.empty());
+  // A sky by formula.
+  b.edited->environment = {
+      .image = k_none - 1, .scale = 2, .given = true, .sky = SkyModel{.turbidity = 4, .to_sun = {0, 1, 0}}};
+  back = b.saved(b.folder / "d.gltf");
+  REQUIRE(back.environment.sky);
+  CHECK(*back.environment.sky == *b.edited->environment.sky);
+  CHECK(back.environment.scale == 2);
+  REQUIRE(back.environment.image != k_none);
+  CHECK(std::as_const(back.images)[back.environment.image].floats == sky_image(*back.environment.sky).floats);
+}
+
+TEST_CASE("references stay right in another folder") {
+  TempFolder folder;
+  std::filesystem::create_directories(folder / "in/tex tures");
+  std::filesystem::create_directories(folder / "out");
+  write_image<uint8_t>(folder / "in/tex tures/a b.png", 1, 1, 4, {255, 0, 0, 255});
+  Asset a;
+  const int image = a.add("images", {{"uri", "tex%20tures/a%20b.png"}});
+  a.textured_triangle({{"pbrMetallicRoughness",
+                        {{"baseColorTexture", {{"index", a.add("textures", {{"source", image}})}}}}}});
+  json doc = a.complete(false);
+  doc["buffers"][0]["uri"] = "a.bin";
+  write(folder / "in/a.bin", a.bin.data(), a.bin.size());
+  write(folder / "in/a.gltf", doc.dump());
+  const auto loaded = std::make_shared<const Scene>(load(folder / "in/a.gltf"));
+  SaveRequest request{.loaded = loaded, .edited = loaded, .file = folder / "out/b.gltf"};
+  const SavedScene saved = save(request);
+  REQUIRE(saved.notes.size() == 1);
+  CHECK_THAT(saved.notes[0], Contains("2 files that it names lie outside its folder"));
+  const json out = json::parse(read_file(folder / "out/b.gltf"));
+  CHECK(out["buffers"][0]["uri"] == "../in/a.bin");
+  CHECK(out["images"][0]["uri"] == "../in/tex%20tures/a%20b.png");
+  LoadOptions outside;
+  outside.outside = true;
+  CHECK(pixels(load(folder / "out/b.gltf", outside)) == pixels(*loaded));
+  // A .glb holds all of it.
+  request.file = folder / "out/b.glb";
+  CHECK(save(request).notes.empty());
+  const Scene glb = load(folder / "out/b.glb");
+  CHECK(pixels(glb) == pixels(*loaded));
+  CHECK(corners(glb) == corners(*loaded));
+  // And back: the binary chunk is a file.
+  SaveRequest back{.loaded = std::make_shared<const Scene>(glb), .file = folder / "out/c.gltf"};
+  back.edited = back.loaded;
+  save(back);
+  CHECK(std::filesystem::exists(folder / "out/c.bin"));
+  CHECK(corners(load(folder / "out/c.gltf")) == corners(*loaded));
+}
+
+TEST_CASE("nothing is replaced that the user may not know of") {
+  Bench b(room());
+  b.edited->lights[0].intensity = vec3(3);
+  CHECK_THAT(b.failure(b.folder / "gone/b.gltf"), Contains("gone"));
+  CHECK_THAT(b.failure(b.folder / "b.obj"), Contains("a scene is saved as .gltf or .glb"));
+  write(b.folder / "b.gltf", std::string("{}"));
+  CHECK_THAT(b.failure(b.folder / "b.gltf"),
+             Contains("the file exists and is not the open scene; replace=true"));
+  CHECK(read_file(b.folder / "b.gltf") == "{}");
+  // Over the source, twice.
+  CHECK(b.failure(b.source).empty());
+  CHECK_THAT(b.failure(b.source), Contains("has changed on disk"));
+  b.request.written = b.result.written;
+  b.edited->lights[0].intensity = vec3(4);
+  CHECK(b.failure(b.source).empty());
+  CHECK(load(b.source).lights[0].intensity == vec3(4));
+  // Meanwhile somebody else writes it.
+  json doc = json::parse(read_file(b.source));
+  doc["asset"]["generator"] = "another";
+  write(b.source, doc.dump());
+  b.request.written = b.result.written;
+  CHECK_THAT(b.failure(b.source), Contains("the file has changed on disk since it was opened or saved here"));
+  CHECK(json::parse(read_file(b.source)) == doc);
+  b.request.replace = true;
+  CHECK(b.failure(b.source).empty());
+  // A .glb whose geometry is gone.
+  Bench glb(room(), "a.glb");
+  Asset other;
+  other.triangle(), other.triangle();
+  other.glb(glb.folder, "a.glb");
+  CHECK_THAT(glb.failure(glb.folder / "c.glb"), Contains("its geometry is no longer there"));
+}
+
+TEST_CASE("damaged extras are refused or ignored where they stand") {
+  const auto with = [](const json& own) {
+    Asset a = room();
+    for (json& node : a.doc["nodes"])
+      if (node.contains("extras")) node["extras"]["lucerna"] = own;
+    return failure(a);
+  };
+  CHECK(with({{"enabled", false}}).empty());
+  CHECK_THAT(with({{"enabled", "no"}}), Contains("extras.lucerna.enabled: expected true or false"));
+  const json sun{{"date", "2024-06-31"}, {"time", 12}, {"latitude", 1}, {"longitude", 2}};
+  CHECK_THAT(with({{"sun", sun}}), Contains("extras.lucerna.sun: there is no date 2024-06-31"));
+  Asset a = room();
+  a.doc["scenes"][0]["extras"]["lucerna"]["environment"] = {
+      {"sky", {{"kind", "starry"}, {"to_sun", {0, 1, 0}}}}};
+  CHECK_THAT(failure(a), Contains("extras.lucerna.environment.sky.kind: 'starry', expected preetham"));
+  a.doc["scenes"][0]["extras"]["lucerna"]["environment"] = {
+      {"sky", {{"kind", "preetham"}, {"turbidity", 99}, {"to_sun", {0, 1, 0}}}}};
+  CHECK_THAT(failure(a), Contains("the turbidity is 99"));
+  a.doc["scenes"][0]["extras"]["lucerna"] = {{"settings", {{"film.ev", json::array()}}}};
+  CHECK_THAT(failure(a), Contains("extras.lucerna.settings.film.ev: expected a number"));
+}

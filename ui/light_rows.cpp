@@ -1,0 +1,266 @@
+#include "light_rows.h"
+
+#include <fmt/format.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/blackbody.h"
+#include "base/color.h"
+#include "commands/light_edit.h"
+#include "emitters.h"
+#include "scene/display_name.h"
+#include "scene/lamp.h"
+#include "scene/light_groups.h"
+#include "sun_rows.h"
+
+namespace lucerna::ui {
+
+using commands::Kind;
+using commands::named;
+using commands::Selection;
+using scene::display_name;
+
+void colour_rows(Actions& actions, const char* command, size_t item, const char* color_name, const vec3& tint,
+                 const std::string& note) {
+  vec3 picked = tint;
+  if (colour_field("##colour", "Colour", picked, note) && strength_of(picked) > 0)
+    actions.act(command, item, named(color_name, tint_of(picked)));
+  tooltip("Colour of the light, its strongest channel 1. Press to choose another.");
+  const NearestKelvin nearest = nearest_kelvin(tint);
+  float kelvin = nearest.kelvin;
+  const bool near = nearest.off < 0.02f;
+  if (slider("##kelvin", near ? "Temperature" : "Temperature, about", kelvin,
+             {.lo = k_coolest_kelvin,
+              .hi = k_hottest_kelvin,
+              .log = true,
+              .decimals = 0,
+              .unit = "K",
+              .bar = near,
+              .step = 10,
+              .travel = 0.5f}))
+    actions.act(command, item, named("kelvin", kelvin));
+  tooltip(
+      near ? "Temperature of the black body of this colour. Candles 1900 K, bulbs 2700 K, daylight 6500 K."
+           : "No black body has this colour; the nearest by blue over red. A drag takes the colour of that "
+             "temperature.");
+}
+
+namespace {
+
+/// Drags scale the value; a light of strength 0 starts from a thousandth.
+Slider strength_slider(const char* unit) {
+  return {.lo = 1e-3f, .hi = 1e5f, .log = true, .decimals = 2, .unit = unit, .bar = false, .travel = 0.25f};
+}
+constexpr const char* k_radiance_unit = "W/m\xC2\xB2sr";
+
+}  // namespace
+
+void emission_slider(Controls& controls, uint32_t index) {
+  const Slider how = strength_slider(k_radiance_unit);
+  float shown = std::max(strength_of(controls.open.emission(index)), how.lo);
+  ImGui::BeginDisabled(!controls.open.emits(index));
+  if (slider("##strength", "Radiance", shown, how))
+    controls.act("material.set", index + 1, named("strength", shown));
+  ImGui::EndDisabled();
+  tooltip("Emitted radiance of the surface's strongest channel; its texture multiplies it.");
+}
+
+namespace {
+
+constexpr const char* k_menu = "##menu";  ///< of a row's right button
+
+/// Properties of a selected lamp besides its strength.
+void light_details(Actions& actions, const Box& core, size_t i, const scene::Light& light) {
+  colour_rows(actions, "light.set", i + 1, "color", tint_of(light.intensity));
+  if (light.kind != scene::LightKind::directional) {
+    const auto solid = float(scene::solid_angle(light));
+    float power = std::max(strength_of(light.intensity) * solid, 1e-3f);
+    if (slider(
+            "##power", "Power", power,
+            {.lo = 1e-3f, .hi = 1e6f, .log = true, .decimals = 2, .unit = "W", .bar = false, .travel = 0.2f}))
+      actions.act("light.set", i + 1, named("power", power));
+    tooltip("Total power of the lamp, in its strongest channel.");
+    const vec3 middle = core.empty() ? vec3(0) : core.centre();
+    const float radius = std::max(core.empty() ? 1.0f : core.radius(), 1e-2f);
+    const float reach = 4 * radius + glm::length(middle);
+    vec3 position = light.position;
+    if (slider_row("##position", "Position", position,
+                   {.lo = -reach,
+                    .hi = reach,
+                    .decimals = radius < 1 ? 3 : 2,
+                    .bar = false,
+                    .travel = 0.25f * radius / reach,
+                    .typed_lo = -1e6f,
+                    .typed_hi = 1e6f}) >= 0)
+      actions.act("light.set", i + 1, named("position", position));
+    tooltip("Position of the lamp: x, y (up), z in metres.");
+  }
+  if (light.kind != scene::LightKind::point) {
+    const commands::Bearing bearing = commands::bearing_of(light.direction);
+    float azimuth = bearing.azimuth, elevation = bearing.elevation;
+    if (slider("##azimuth", "Azimuth", azimuth,
+               {.lo = 0, .hi = 360, .decimals = 1, .unit = "\xC2\xB0", .typed_lo = -360, .typed_hi = 360}))
+      actions.act("light.set", i + 1, named("azimuth", azimuth));
+    tooltip("Compass direction from which the light comes: 0 from \xE2\x88\x92Z, 90 from +X.");
+    if (slider("##elevation", "Elevation", elevation,
+               {.lo = -90, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
+      actions.act("light.set", i + 1, named("elevation", elevation));
+    tooltip("Angle above the horizon from which the light comes; 90 is vertical.");
+  }
+  if (light.kind == scene::LightKind::spot) {
+    float cone = light.outer_cone * 180 / k_pi, inner = light.inner_cone * 180 / k_pi;
+    if (slider("##cone", "Cone", cone, {.lo = 0.5f, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
+      actions.act("light.set", i + 1, named("cone", cone));
+    tooltip("Angle from the axis at which the light ends.");
+    if (slider("##inner", "Inner cone", inner, {.lo = 0, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
+      actions.act("light.set", i + 1, named("inner_cone", inner));
+    tooltip("Angle from the axis at which the light begins to fade.");
+  }
+}
+
+/// A row of the list of lights with its switch, and its properties if selected. Returns true if its switch
+/// was pressed.
+bool light_row(Actions& actions, SceneView& view, bool chosen, bool reveal, const std::string& name,
+               const char* note, const vec3& tint, bool on, const char* kind, size_t index) {
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  if (chosen && reveal) show_row(at.y);
+  if (list_row("##light", chosen, name, note, colour::with_alpha(display_colour(tint), on ? 1.0f : 0.3f), 28))
+    choose(actions, view, chosen, kind, index);
+  if (ImGui::IsItemClicked(ImGuiMouseButton_Right)) ImGui::OpenPopup(k_menu);
+  tooltip(fmt::format("{}. Press to select and edit it; F frames it.", name));
+  return row_sign(at, "##on", Sign::power, on, on ? "Switches the light off." : "Switches the light on.");
+}
+
+/// Name and group of a selected light.
+void light_label(Controls& controls, SceneView& view, size_t i, const scene::Light& light) {
+  // Typed texts are applied when the field is left.
+  if (view.named_light != light.id || !ImGui::IsAnyItemActive())
+    view.named_light = light.id, view.light_name = light.name;
+  ImGui::SetNextItemWidth(ImGui::CalcItemWidth());
+  ImGui::InputTextWithHint("##name", "Name", &view.light_name);
+  if (ImGui::IsItemDeactivatedAfterEdit() && view.light_name != light.name)
+    controls.act("light.rename", i + 1, view.light_name);
+  tooltip("Name of the light. Press to change it.");
+  std::vector<std::string> groups{"of its kind"};
+  int chosen = 0;
+  for (const scene::LightGroup& group : controls.open.light_groups().groups) {
+    groups.push_back(group.name);
+    if (group.name == light.group) chosen = int(groups.size()) - 1;
+  }
+  if (chosen == 0 && !light.group.empty()) groups.push_back(light.group), chosen = int(groups.size()) - 1;
+  if (choice("##group", "Light group", groups, chosen)) {
+    if (chosen == 0)
+      controls.act("light.group", i + 1);
+    else
+      controls.act("light.group", i + 1, named("group", groups[size_t(chosen)]));
+  }
+  tooltip("Group of the light in the light mix. The command light.group makes new groups.");
+}
+
+/// Buttons below a selected light.
+void list_buttons(Controls& controls, size_t i, const scene::Light& light) {
+  const bool sun = light.kind == scene::LightKind::directional, spot = light.kind == scene::LightKind::spot;
+  const float third = (ImGui::CalcItemWidth() - px(8)) / 3;
+  if (button("##duplicate", "Duplicate", false, third)) controls.act("light.duplicate", i + 1);
+  tooltip("Adds a copy beside it and selects it.");
+  ImGui::SameLine(0, px(4));
+  ImGui::BeginDisabled(sun);
+  if (button("##here", spot ? "Aim here" : "Move here", false, third))
+    controls.act(spot ? "light.aim" : "light.move", i + 1);
+  ImGui::EndDisabled();
+  tooltip(spot ? "Points the spot at the surface in the middle of the picture."
+               : "Moves the lamp to the surface in the middle of the picture, some distance off.");
+  ImGui::SameLine(0, px(4));
+  if (button("##delete", "Delete", false, third)) controls.act("light.delete", i + 1);
+  tooltip("Removes the light. Ctrl+Z brings it back.");
+}
+
+/// The menu of the right button on a row.
+void light_menu(Controls& controls, size_t i, const scene::Light& light) {
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(8), px(6)});
+  if (ImGui::BeginPopup(k_menu)) {
+    if (ImGui::Selectable("Duplicate")) controls.act("light.duplicate", i + 1);
+    if (light.kind != scene::LightKind::directional && ImGui::Selectable("Move to the middle of the picture"))
+      controls.act("light.move", i + 1);
+    if (light.kind == scene::LightKind::spot && ImGui::Selectable("Aim at the middle of the picture"))
+      controls.act("light.aim", i + 1);
+    if (ImGui::Selectable("Delete")) controls.act("light.delete", i + 1);
+    ImGui::EndPopup();
+  }
+  ImGui::PopStyleVar();
+}
+
+/// Buttons that add lights.
+void add_buttons(Controls& controls) {
+  const float third = (ImGui::CalcItemWidth() - px(8)) / 3;
+  const auto add = [&](const char* id, const char* name, const char* kind, const char* help) {
+    if (button(id, name, false, third)) controls.act("light.add", kind);
+    tooltip(help);
+  };
+  add("##add_point", "+ Lamp", "point",
+      "Adds a point lamp at the surface in the middle of the picture, some distance off.");
+  ImGui::SameLine(0, px(4));
+  add("##add_spot", "+ Spot", "spot", "Adds a spot that shines on the surface in the middle of the picture.");
+  ImGui::SameLine(0, px(4));
+  add("##add_sun", "+ Sun", "sun", "Adds a sun, 45 degrees above the horizon.");
+  gap(4);
+}
+
+}  // namespace
+
+void draw_light_rows(Controls& controls, const commands::Navigation& camera, SceneView& view, bool reveal) {
+  const std::vector<scene::Light> lights = controls.open.lights();
+  const std::vector<uint32_t> glowing = emitters(controls.open, camera);
+  add_buttons(controls);
+  if (lights.empty() && glowing.empty()) quiet_line("No lights");
+  static const char* kinds[] = {"point", "spot", "sun"};
+  for (size_t i = 0; i < lights.size(); ++i) {
+    const auto index = static_cast<uint32_t>(i);
+    const scene::Light& light = lights[i];
+    ImGui::PushID(static_cast<int>(i));
+    const bool chosen = camera.selection == Selection{Kind::light, index};
+    if (light_row(controls.actions, view, chosen, reveal, display_name(light.name, "Light", i),
+                  kinds[static_cast<size_t>(light.kind)], tint_of(light.intensity), light.enabled, "light",
+                  i))
+      controls.act("light.set", i + 1, named("on", !light.enabled));
+    light_menu(controls, i, light);
+    const bool sun = light.kind == scene::LightKind::directional;
+    const Slider how = strength_slider(sun ? "W/m\xC2\xB2" : "W/sr");
+    ImGui::BeginDisabled(!light.enabled);
+    float shown = std::max(strength_of(light.intensity), how.lo);
+    if (slider("##strength", sun ? "Irradiance" : "Intensity", shown, how))
+      controls.act("light.set", i + 1, named("intensity", shown));
+    ImGui::EndDisabled();
+    tooltip(sun ? "Irradiance on a surface that faces the light, in its strongest channel."
+                : "Radiant intensity in the strongest channel.");
+    if (chosen) {
+      light_details(controls.actions, camera.core, i, light);
+      if (sun) sun_details(controls, i, light);
+      light_label(controls, view, i, light);
+      list_buttons(controls, i, light);
+    }
+    ImGui::PopID();
+    gap(4);
+  }
+  // Emissive surfaces are lights too; in many interiors the only ones.
+  for (const uint32_t index : glowing) {
+    const scene::Material m = controls.open.material(index);
+    ImGui::PushID(static_cast<int>(lights.size() + index));
+    const bool chosen = camera.selection == Selection{Kind::material, index}, on = controls.open.emits(index);
+    const vec3 tint = tint_of(controls.open.emission(index));
+    if (light_row(controls.actions, view, chosen, false, display_name(m.name, "Material", index), "surface",
+                  tint, on, "material", index))
+      controls.act("material.set", index + 1, named("on", !on));
+    emission_slider(controls, index);
+    if (chosen)
+      colour_rows(controls.actions, "material.set", index + 1, "emission_color", tint,
+                  m.emission_texture ? "\xC3\x97 texture" : "");
+    ImGui::PopID();
+    gap(4);
+  }
+}
+
+}  // namespace lucerna::ui
