@@ -384,13 +384,13 @@ TEST_CASE("invalid environments and settings") {
              Contains("settings.json: samples: expected a number, a string, true or false, found array"));
   CHECK_THAT(with("{\"film\": {\"ev\": null}}"), Contains("settings.json: film.ev: expected"));
   CHECK_THAT(with("{\"environment\": 3}"), Contains("settings.json: environment: expected an object"));
-  CHECK_THAT(with("{\"environment\": {}}"), Contains("environment: expected 'radiance' or 'file'"));
+  CHECK_THAT(with("{\"environment\": {}}"), Contains("environment: expected 'radiance', 'file' or 'sky'"));
   CHECK_THAT(with("{\"environment\": {\"radiance\": [1, 1]}}"),
              Contains("environment.radiance: expected 3 numbers, found 2"));
   CHECK_THAT(with("{\"environment\": {\"radiance\": [1, 1, -1]}}"),
              Contains("environment.radiance: radiance is negative"));
   CHECK_THAT(with("{\"environment\": {\"radiance\": [1, 1, 1], \"sun\": 2}}"),
-             Contains("environment.sun: unknown key; known are radiance, file, scale, rotation"));
+             Contains("environment.sun: unknown key; known are radiance, file, sky, scale, rotation"));
   CHECK_THAT(with("{\"environment\": {\"radiance\": [1, 1, 1], \"file\": \"x.exr\"}}"),
              Contains("exclude each other"));
   CHECK_THAT(with("{\"environment\": {\"file\": \"no.exr\"}}"),
