@@ -27,9 +27,19 @@ Workspace::Workspace(session::Session& s, WorkspaceEvents e)
   add_scene_commands(*this);
   add_render_commands(*this);
   add_script_commands(*this);
+  add_session_test_commands(*this);
   add_wait_commands(*this);
   add_inspect_commands(*this);
   add_solver_commands(registry, open, files);
+  add_values(*this);
+}
+
+void Workspace::note_log(log::Level level, const std::string& text) {
+  constexpr size_t k_kept = 1000;
+  if (level == log::Level::error) ++error_count;
+  if (level != log::Level::error && level != log::Level::warning) return;
+  problems.push_back({text, level == log::Level::error ? error_count : 0, false});
+  if (problems.size() > k_kept) problems.pop_front();
 }
 
 void Workspace::refresh(double time) {
@@ -46,6 +56,7 @@ void Workspace::refresh(double time) {
       events.measured(of_load ? fmt::format("The scene names no exposure; {:+.1f} EV was found for it", ev)
                               : fmt::format("Exposure {:+.2f} EV", ev));
   });
+  if (pixel) pixel->follow(open, camera);
   for (const std::string& name : files.take_written())
     if (events.written) events.written(name);
 }

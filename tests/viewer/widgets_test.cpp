@@ -360,7 +360,8 @@ TEST_CASE("no id is used twice in a frame, and every control of every panel rece
     CHECK(clicked > 45);
   }
   SECTION("the dialogs, the keys and the cards") {
-    for (const char* dialog : {"dialog.open", "dialog.save", "dialog.reference", "dialog.script"}) {
+    for (const char* dialog :
+         {"dialog.open", "dialog.save", "dialog.reference", "dialog.script", "dialog.test"}) {
       walk.act(dialog);
       if (std::string(dialog) == "dialog.save") ui.dialog.path = "a.png";
       clicked += walk.click_all(dialog, Walk::in_popup);
