@@ -76,12 +76,12 @@ Runner::Runner(Ui& ui, commands::ReportFolder& report)
                      return ui.camera.resizing && !next.name.starts_with("window.") &&
                             !next.name.starts_with("view.");
                    },
-               .patient = [this] { return measuring(); }}),
+               .patient = [this] { return measuring(); },
+               .add_kinds = [&ui](commands::Expectations& kinds) { add_window_expectations(ui, kinds); }}),
       ui_(ui) {
   add_picture_commands();
   add_mouse_commands();
   add_key_commands();
-  add_window_expectations(ui_, scripts);
 }
 
 namespace {

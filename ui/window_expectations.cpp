@@ -26,8 +26,8 @@ std::string read_part(WordReader& words, bool with_dialog) {
   words.refuse(fmt::format("one of {}", fmt::join(parts, ", ")));
 }
 
-void add_text(Ui& ui, commands::ScriptRunner& scripts) {
-  scripts.expectations.add(
+void add_text(Ui& ui, commands::Expectations& expectations) {
+  expectations.add(
       {.name = "text",
        .usage = "text [not] TEXT [in PART]",
        .help = fmt::format("a text in the window, also if it is cut for lack of room; PART is one of {}",
@@ -52,7 +52,12 @@ void add_text(Ui& ui, commands::ScriptRunner& scripts) {
            for (const std::string& line : shown.lines(part)) all += (all.empty() ? "" : " | ") + line;
            const bool found = all.find(text) != std::string::npos;
            constexpr size_t k_longest = 600;
-           if (all.size() > k_longest) all = all.substr(0, k_longest) + " ...";
+           if (all.size() > k_longest) {
+             // Not within a code point.
+             size_t end = k_longest;
+             while (end > 0 && (static_cast<unsigned char>(all[end]) & 0xC0) == 0x80) --end;
+             all = all.substr(0, end) + " ...";
+           }
            return Verdict{
                found != negated,
                fmt::format("'{}' is {}in {}{}", text, found ? "" : "not ", part.empty() ? "the window" : part,
@@ -94,8 +99,8 @@ Requests::Grab cut(const Requests::Grab& window, const Area& area) {
   return part;
 }
 
-void add_window(Ui& ui, commands::ScriptRunner& scripts) {
-  scripts.expectations.add(
+void add_window(Ui& ui, commands::Expectations& expectations) {
+  expectations.add(
       {.name = "window",
        .usage = "window FILE.png [in PART] [within DIFFERENCE] [share SHARE]",
        .help = "the window with its panels, or a PART of it, as 'expect picture' compares the picture",
@@ -133,9 +138,9 @@ void add_window(Ui& ui, commands::ScriptRunner& scripts) {
 
 }  // namespace
 
-void add_window_expectations(Ui& ui, commands::ScriptRunner& scripts) {
-  add_text(ui, scripts);
-  add_window(ui, scripts);
+void add_window_expectations(Ui& ui, commands::Expectations& expectations) {
+  add_text(ui, expectations);
+  add_window(ui, expectations);
 }
 
 }  // namespace lucerna::ui

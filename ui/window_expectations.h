@@ -6,6 +6,6 @@
 namespace lucerna::ui {
 
 /// Adds the kinds 'text' and 'window' (commands/expectation.h).
-void add_window_expectations(Ui& ui, commands::ScriptRunner& scripts);
+void add_window_expectations(Ui& ui, commands::Expectations& expectations);
 
 }  // namespace lucerna::ui

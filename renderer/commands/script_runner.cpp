@@ -37,6 +37,7 @@ std::string without(const std::string& where, const std::string& message) {
 ScriptRunner::ScriptRunner(Workspace& work, ReportFolder& report, ScriptHost host)
     : work_(work), report_(report), host_(std::move(host)) {
   add_expectations(work_, expectations);
+  if (host_.add_kinds) host_.add_kinds(expectations);
   add_commands();
 }
 
@@ -47,7 +48,6 @@ void ScriptRunner::start(const std::vector<std::string>& lines, const std::strin
   for (Step& step : parse_script(work_.registry, lines, name, variables)) steps_.push_back(std::move(step));
   if (!stay) steps_.push_back({"quit", name + ": end", "", {}});
   for (Step& step : steps_) step.call = call;
-  started_ = work_.now;
 }
 
 bool ScriptRunner::needs_window() const {
@@ -56,11 +56,12 @@ bool ScriptRunner::needs_window() const {
 
 ScriptResult ScriptRunner::result() const {
   ScriptResult result = result_;
-  result.seconds = work_.now - started_;
+  result.seconds = work_.now - started_.value_or(work_.now);
   return result;
 }
 
 void ScriptRunner::advance() {
+  if (running() && !started_) started_ = work_.now;
   while (running()) {
     // A script may insert steps behind the one that is running.
     const Step step = steps_.front();

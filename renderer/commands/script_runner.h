@@ -35,6 +35,8 @@ struct ScriptHost {
   std::function<bool(const Command& command)> waits = {};
   /// True while a step may take as long as it likes.
   std::function<bool()> patient = {};
+  /// Adds kinds of expectations, before the commands are registered.
+  std::function<void(Expectations&)> add_kinds = {};
 };
 
 class ScriptRunner {
@@ -45,7 +47,7 @@ class ScriptRunner {
   ScriptRunner(const ScriptRunner&) = delete;
   ScriptRunner& operator=(const ScriptRunner&) = delete;
 
-  Expectations expectations;  ///< contains the kinds that need no window; others may be added
+  Expectations expectations;
 
   /// Adds the program's own script; `stay`: its end does not end the program. Throws Error like parse_script.
   void start(const std::vector<std::string>& lines, const std::string& name, bool stay,
@@ -96,7 +98,7 @@ class ScriptRunner {
   Check check_;      ///< of the current expectation
   std::optional<Verdict> verdict_;
   ScriptResult result_;
-  double started_ = 0;
+  std::optional<double> started_;  ///< when its first step was run
 };
 
 }  // namespace lucerna::commands
