@@ -14,10 +14,10 @@
 #include "base/huge_pages.h"
 #include "base/log.h"
 #include "bench/matrix.h"
+#include "commands/script.h"
 #include "plan/settings.h"
 #include "scene/range.h"
 #include "solvers/registry.h"
-#include "ui/script.h"
 #include "ui/viewer.h"
 
 namespace lucerna::app {
@@ -66,6 +66,7 @@ class Program {
   void add_viewer();
   void add_render();
   void add_small_verbs();
+  void add_script_verbs();
   void add_bench();
   void add_bench_rays();
   void add_bench_latency();
@@ -85,12 +86,14 @@ class Program {
 
   CLI::App *render_ = nullptr, *info_ = nullptr, *convert_ = nullptr, *devices_ = nullptr,
            *compare_ = nullptr, *bench_ = nullptr, *rays_ = nullptr, *latency_ = nullptr, *photons_ = nullptr,
-           *interiors_ = nullptr, *auto_ = nullptr;
+           *interiors_ = nullptr, *auto_ = nullptr, *scripts_ = nullptr, *help_ = nullptr;
   RenderArguments r;
   InfoArguments i;
   ConvertArguments v;
   bool devices_json_ = false;
   CompareArguments c;
+  ScriptArguments s;
+  std::string topic_;
   BenchArguments bm;
   BenchRaysArguments b;
   BenchLatencyArguments bt;
@@ -105,6 +108,7 @@ Program::Program() {
   add_viewer();
   add_render();
   add_small_verbs();
+  add_script_verbs();
   add_bench();
   add_bench_rays();
   add_bench_latency();
@@ -243,6 +247,30 @@ void Program::add_small_verbs() {
       ->add_option("--max-relmse", c.max_relmse,
                    "exit with 1 if the relative MSE is above this, or a value of any layer is not finite")
       ->check(finite() & CLI::Range(0.0, 1e300));
+}
+
+void Program::add_script_verbs() {
+  scripts_ = app_.add_subcommand(
+      "script", "run scripts as tests: status 0 if all passed, 1 if one failed, 2 if one cannot be read");
+  scripts_
+      ->add_option(
+          "FILE", s.words,
+          "scripts (.lucerna), and variables NAME=VALUE for ${NAME} in them; see 'lucerna help scripts'")
+      ->required();
+  scripts_->add_flag(
+      "--headless", s.headless,
+      "use no display: the session alone, or an X server of its own (xvfb-run) where a script needs "
+      "the window");
+  scripts_
+      ->add_option(
+          "--report", s.report,
+          "folder for junit.xml, report.html and pictures that differ [lucerna-report, made if a picture "
+          "differs]")
+      ->check(named());
+  scripts_->add_option("--device", s.device, k_device_help);
+  add_scene_options(scripts_);
+  help_ = app_.add_subcommand("help", "explain a command of scripts and of the console, or list them");
+  help_->add_option("COMMAND", topic_, "a command, a setting, or one of settings, values, scripts");
 }
 
 void Program::add_bench() {
@@ -480,6 +508,13 @@ int Program::run(int argc, char** argv) {
   }
   if (*devices_) return devices(devices_json_);
   if (*compare_) return compare(c);
+  if (*help_) return help(topic_);
+  if (*scripts_) {
+    s.scenes = scenes_;
+    if (s.device.empty()) s.device = device_;
+    s.typed.assign(argv + 1, argv + argc);
+    return run_scripts(s);
+  }
   if (*rays_) return bench_rays(b);
   if (*latency_) return bench_latency(bt);
   const auto typed = [&] {
@@ -514,7 +549,7 @@ int Program::view() {
   options.set = set_;
   options.stay = stay_;
   if (!script_.empty()) {
-    options.script = ui::read_script(script_);
+    options.script = commands::read_script(script_);
     if (options.script.empty()) options.script.emplace_back();  // an empty script ends too
     options.script_name = script_;
   }

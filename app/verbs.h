@@ -106,6 +106,18 @@ struct BenchInteriorsArguments {
 };
 int bench_interiors(const BenchInteriorsArguments& arguments);
 
+struct ScriptArguments {
+  std::vector<std::string> words;  ///< files, and variables NAME=VALUE
+  bool headless = false;           ///< never uses a display of the user's
+  std::string report, device;
+  std::vector<std::string> typed;  ///< the program's arguments, to start it again
+  scene::LoadOptions scenes;
+};
+/// 0: all passed; 1: an expectation or a command failed; 2: a script cannot be read, or there is no window.
+int run_scripts(const ScriptArguments& arguments);
+/// Prints the help of a command, setting or topic; "": the list of commands.
+int help(const std::string& topic);
+
 struct CompareArguments {
   std::string a, b, layer, difference;
   bool json = false;

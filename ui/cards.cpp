@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/figures.h"
+#include "shown_lines.h"
 #include "shown_text.h"
 #include "state.h"
 #include "widgets.h"
@@ -59,6 +60,7 @@ void welcome_card(CardsView& view, const Area& area) {
             theme().fonts.strong);
   y += px(28);
   for (const char* text : sentences) {
+    ShownLines::instance().note(text);
     list->AddText(font, font->FontSize, {lo.x + pad, y}, colour::text, text, nullptr, room);
     y += font->CalcTextSizeA(font->FontSize, 1e9f, room, text).y + px(10);
   }
@@ -135,6 +137,7 @@ void error_strip(Actions& actions, const std::vector<std::string>& errors, const
   ImDrawList* list = ImGui::GetWindowDrawList();
   list->AddRectFilled(lo, hi, colour::error_field);
   list->AddRectFilled(lo, {lo.x + px(3), hi.y}, colour::error);
+  ShownLines::instance().note(message);
   list->AddText(font, font->FontSize, {lo.x + pad, lo.y + px(8)}, colour::text, message.c_str(), nullptr,
                 room);
   if (errors.size() > 1)

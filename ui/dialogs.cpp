@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "shown_lines.h"
 #include "solvers/registry.h"
 #include "state.h"
 #include "widgets.h"
@@ -28,6 +29,7 @@ std::vector<std::pair<std::string, std::string>> key_rows() {
       {"Alt while moving", "pass through walls"},
       {"Ctrl + left drag", "rotate the environment, or the sun if there is none"},
       {"Click", "select the object; a second click selects its material"},
+      {"Hold", "the left button still: values, noise and surface of the pixel"},
       {"F", "frame the selection, or the scene"},
       {"L", "mark lamps and emissive surfaces; click to select, drag to move a lamp"},
       {"Drag on a lamp's mark",
@@ -113,6 +115,7 @@ void key_page(Ui& ui) {
       const float room = names - px(20);
       ImGui::Dummy({names + texts, std::max(lines(keys, room), lines(what, texts)) + px(3)});
       ImDrawList* list = ImGui::GetWindowDrawList();
+      ShownLines::instance().note(keys), ShownLines::instance().note(what);
       list->AddText(font, font->FontSize, at, colour::text, keys.c_str(), nullptr, room);
       list->AddText(font, font->FontSize, {at.x + names, at.y}, colour::text_dim, what.c_str(), nullptr,
                     texts);

@@ -63,6 +63,14 @@ Question question(const Dialog& dialog) {
               .command = "script.save",
               .answer = "Save",
               .endings = {".lucerna"}};
+    case Purpose::test:
+      return {
+          .title = "Save the session as a test",
+          .note =
+              "A script that repeats this session and expects the present picture, which is saved beside it.",
+          .command = "script.save_test",
+          .answer = "Save",
+          .endings = {".lucerna"}};
     case Purpose::reference:
       return {.title = "Load a reference",
               .note = "A converged .exr of this view and size, rendered with another seed.",
@@ -290,8 +298,8 @@ void draw_file_dialog(Ui& ui) {
     label(asked.title, colour::text, theme().fonts.strong);
     std::error_code ignored;
     if (!asked.reads && fs::is_regular_file(expanded(dialog.path), ignored))
-      label(dialog.purpose == Dialog::Purpose::script
-                ? "A file of that name exists; it is replaced if it is a saved session."
+      label(dialog.purpose == Dialog::Purpose::script || dialog.purpose == Dialog::Purpose::test
+                ? "A file of that name exists; it is replaced if it is of the same kind."
                 : "A file of that name exists and will be replaced.",
             colour::warning, theme().fonts.small);
     else
@@ -392,7 +400,7 @@ void Ui::start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver
                                }));
   } else if (purpose == Dialog::Purpose::reference || purpose == Dialog::Purpose::solver_load) {
     dialog.path = fs::current_path(error).string() + "/";
-  } else if (purpose == Dialog::Purpose::script) {
+  } else if (purpose == Dialog::Purpose::script || purpose == Dialog::Purpose::test) {
     dialog.path = (open.scene ? open.scene->name : "session") + ".lucerna";
   } else if (purpose == Dialog::Purpose::scene) {
     dialog.path = work.scene_file.file();

@@ -13,6 +13,7 @@
 #include "film/tile_scale.h"
 #include "shaders/shared/preview.h"
 #include "shaders/shared/ramp.h"
+#include "shown_lines.h"
 #include "shown_text.h"
 #include "state.h"
 #include "widgets.h"
@@ -301,9 +302,11 @@ Area draw_legend(const commands::OpenScene& open, bool light_marks, const Area& 
     const Block& block = blocks[i];
     draw_text(list, at, {lo.x + w - pad, at.y + px(16)}, block.title, colour::text, Align::left, font);
     block.draw(list, {at.x, at.y + px(k_title)});
-    if (notes && !block.note.empty())
+    if (notes && !block.note.empty()) {
+      ShownLines::instance().note(block.note);
       list->AddText(font, font->FontSize, {at.x, at.y + px(k_title) + block.body}, colour::text_dim,
                     block.note.c_str(), nullptr, px(k_ramp_width));
+    }
     at.y += block.height(notes) + px(k_between);
   }
   return {lo, {lo.x + w, lo.y + h}};

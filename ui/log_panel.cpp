@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "shown_lines.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -200,6 +201,7 @@ void draw_log(Actions& actions, const commands::Registry& registry, LogView& log
       if (line.level >= log::Level::warning)
         list->AddRectFilled({at.x + px(55), at.y + px(1)}, {at.x + px(57), at.y + height - px(5)},
                             level_colour(line.level), px(1));
+      ShownLines::instance().note(line.text);
       list->AddText(font, font->FontSize, {text_x, at.y},
                     line.level == log::Level::error || line.level == log::Level::warning
                         ? colour::text

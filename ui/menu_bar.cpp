@@ -167,6 +167,11 @@ void file_menu(Ui& ui) {
   if (entry("Save session as script\xE2\x80\xA6", nullptr,
             "Saves the commands of this session, one per line; lucerna --script repeats them."))
     ui.act("dialog.script");
+  if (entry(
+          "Save session as test\xE2\x80\xA6", nullptr,
+          "Saves a script that repeats this session and expects the present picture; lucerna script runs it.",
+          false, picture))
+    ui.act("dialog.test");
   divide();
   if (entry("Quit", "Ctrl+Q", "Closes the window and ends the render.")) ui.act("window.close");
   end_menu();

@@ -1,5 +1,6 @@
 #pragma once
 // Requests of commands and scripts to the main loop.
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +15,12 @@ struct Requests {
     int settle = 0;       ///< frames to draw before it is taken
     bool failed = false;  ///< the last one could not be written
   } shot;
+  /// The window as drawn, for a script: requested while it has no pixels. Shot::settle applies.
+  struct Grab {
+    std::vector<uint8_t> rgba;  ///< top row first
+    uint32_t width = 0, height = 0;
+  };
+  std::optional<Grab> grab;
   std::optional<std::pair<int, int>> size;  ///< window size wanted
   std::optional<float> scale;               ///< requested scale of text and controls
   /// Mouse and keys moved by a script.

@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "film/io/image_file.h"
+#include "window_expectations.h"
 
 namespace lucerna::ui {
 
@@ -22,7 +23,6 @@ using commands::Type;
 
 namespace {
 
-constexpr double k_longest_wait = 300;   // seconds
 constexpr double k_between_moves = 1.5;  // seconds
 const std::vector<std::string> k_buttons{"left", "right", "middle"};
 
@@ -64,63 +64,32 @@ int held_key_of(const std::string& name) {
   return key;
 }
 
-/// The first script in the chain of calls.
-const Call& root(const Call& call) {
-  const Call* at = &call;
-  while (at->by) at = at->by.get();
-  return *at;
-}
-
-std::string one_form(const std::string& file) {
-  std::error_code error;
-  return std::filesystem::weakly_canonical(file, error).string();
-}
-
 }  // namespace
 
-Runner::Runner(Ui& ui, const std::vector<std::string>& lines, const std::string& name, bool stay) : ui_(ui) {
-  add_commands();
-  if (lines.empty()) return;
-  const auto call = std::make_shared<const Call>(Call{.file = one_form(name), .by = {}, .own = true});
-  for (Step& step : parse_script(ui_.work.registry, lines, name)) steps_.push_back(std::move(step));
-  if (!stay) steps_.push_back({"quit", name + ": end"});
-  for (Step& step : steps_) step.call = call;
-}
-
-void Runner::add_commands() {
-  add_script_commands();
+Runner::Runner(Ui& ui, commands::ReportFolder& report)
+    : scripts(ui.work, report,
+              {.wake = [&ui](int frames) { ui.wake(frames); },
+               .quit = [&ui](int status) { ui.requests.status = status; },
+               .waits =
+                   [&ui](const commands::Command& next) {
+                     // The panels' own commands need no picture.
+                     return ui.camera.resizing && !next.name.starts_with("window.") &&
+                            !next.name.starts_with("view.");
+                   },
+               .patient = [this] { return measuring(); },
+               .add_kinds = [&ui](commands::Expectations& kinds) { add_window_expectations(ui, kinds); }}),
+      ui_(ui) {
+  add_picture_commands();
   add_mouse_commands();
   add_key_commands();
 }
 
-void Runner::add_script_commands() {
+namespace {
+bool always(const Arguments&) { return true; }
+}  // namespace
+
+void Runner::add_picture_commands() {
   auto& registry = ui_.work.registry;
-  registry.add(
-      {.name = "quit",
-       .help = "Ends the program. In a script: after all commands are done; without a status with 1 after an "
-               "error, otherwise with 0.",
-       .parameters = {{.name = "status", .type = Type::integer, .lo = 0, .hi = 255, .optional = true}},
-       .run =
-           [this](const Arguments& a) {
-             settled_ = 0;
-             if (!in_script_)
-               ui_.requests.status = a.has("status") ? static_cast<int>(a.integer("status")) : 0;
-           },
-       .done =
-           [this](const Arguments& a) {
-             ui_.wake();
-             // Errors of the last command are read one frame after it is done.
-             const bool settled =
-                 ui_.open.snapshot ? ui_.open.up_to_date() : ui_.work.session.commands() == 0;
-             settled_ = settled ? settled_ + 1 : 0;
-             if (settled_ < 2) return false;
-             const bool complains = ui_.work.error_count > root(*steps_.front().call).errors;
-             ui_.requests.status = a.has("status") ? static_cast<int>(a.integer("status"))
-                                   : complains     ? 1
-                                                   : 0;
-             return true;
-           },
-       .recorded = false});
   registry.add(
       {.name = "screenshot",
        .help = "Saves the window with its panels as PNG; without a name under an unused name in the working "
@@ -137,23 +106,20 @@ void Runner::add_script_commands() {
              if (ui_.requests.shot.failed) throw Error("", "nothing was written");
              return ui_.requests.shot.file.empty();
            },
-       .recorded = false});
+       .recorded = false,
+       .needs_window = always});
   registry.add(
       {.name = "measure",
        .help = "In a script: measures frame times and response times to camera moves; prints one JSON line.",
        .parameters = {{.name = "time", .type = Type::real, .lo = 0.1, .hi = 3600, .unit = "seconds"}},
        .run = [this](const Arguments& a) { measure(a.real("time")); },
        .done = [this](const Arguments&) { return measured(); },
-       .recorded = false});
-  registry.add({.name = "script.run",
-                .help = "Runs the commands of a file.",
-                .parameters = {{.name = "file", .type = Type::file, .choices = {".lucerna"}}},
-                .run = [this](const Arguments& a) { run_script(a.text("file")); },
-                .recorded = false});
+       .recorded = false,
+       .needs_window = always});
 }
 
 std::function<bool(const commands::Arguments&)> Runner::drawn() {
-  return [this](const Arguments&) { return ui_.wake(2), frames_ >= 2; };
+  return [this](const Arguments&) { return ui_.wake(2), scripts.frames() >= 2; };
 }
 
 void Runner::add_mouse_commands() {
@@ -163,7 +129,8 @@ void Runner::add_mouse_commands() {
                 .parameters = {{.name = "file", .type = Type::file}},
                 .run = [this](const Arguments& a) { ui_.requests.drops.push_back(a.text("file")); },
                 .done = drawn(),
-                .recorded = false});
+                .recorded = false,
+                .needs_window = always});
   registry.add({.name = "mouse.move",
                 .help = "In a script: moves the pointer.",
                 .parameters = {{.name = "x", .type = Type::real, .unit = "pixels"},
@@ -173,7 +140,8 @@ void Runner::add_mouse_commands() {
                       ui_.requests.inputs.push_back({a.number("x"), a.number("y")});
                     },
                 .done = drawn(),
-                .recorded = false});
+                .recorded = false,
+                .needs_window = always});
   for (const bool down : {true, false})
     registry.add(
         {.name = down ? "mouse.down" : "mouse.up",
@@ -184,13 +152,15 @@ void Runner::add_mouse_commands() {
                ui_.requests.inputs.push_back({.button = button_of(a), .down = down});
              },
          .done = drawn(),
-         .recorded = false});
+         .recorded = false,
+         .needs_window = always});
   registry.add({.name = "mouse.wheel",
                 .help = "In a script: turns the wheel.",
                 .parameters = {{.name = "notches", .type = Type::real, .lo = -100, .hi = 100}},
                 .run = [this](const Arguments& a) { ui_.requests.wheel += a.number("notches"); },
                 .done = drawn(),
-                .recorded = false});
+                .recorded = false,
+                .needs_window = always});
 }
 
 void Runner::add_key_commands() {
@@ -202,7 +172,8 @@ void Runner::add_key_commands() {
        .check = [](const Arguments& a) { key_of(a.text("name")); },
        .run = [this](const Arguments& a) { ui_.requests.key_strokes.push_back(key_of(a.text("name"))); },
        .done = drawn(),
-       .recorded = false});
+       .recorded = false,
+       .needs_window = always});
   registry.add({.name = "key.hold",
                 .help = "In a script: holds a key down, such as w or ctrl, shift, alt; or releases it.",
                 .parameters = {{.name = "name"}, {.name = "down", .type = Type::boolean}},
@@ -212,95 +183,20 @@ void Runner::add_key_commands() {
                       ui_.requests.key_holds.emplace_back(held_key_of(a.text("name")), a.boolean("down"));
                     },
                 .done = drawn(),
-                .recorded = false});
+                .recorded = false,
+                .needs_window = always});
   registry.add({.name = "type",
                 .help = "In a script: types a text.",
                 .parameters = {{.name = "text"}},
                 .run = [this](const Arguments& a) { ui_.requests.keyboard += a.text("text"); },
                 .done = drawn(),
-                .recorded = false});
+                .recorded = false,
+                .needs_window = always});
 }
 
 void Runner::advance() {
   for (const std::string& line : std::exchange(ui_.log.typed, {})) console(line);
-  while (running() && !ui_.requests.status) {
-    // A script may insert steps behind the one that is running.
-    const Step step = steps_.front();
-    if (!current_.command && waits_for_earlier(step)) {
-      ui_.wake();
-      return;
-    }
-    const bool failed = [&] {
-      try {
-        if (carry_out(step)) return false;
-        const commands::Arguments& a = current_.arguments;
-        const double limit = a.has("limit") ? a.real("limit") : k_longest_wait;
-        if (ui_.work.now - began_ > limit && !measure_ && current_.command->name != "wait")
-          throw_error(step.where, "{}: gave up after {:.0f} s", current_.command->name, limit);
-        return false;
-      } catch (const std::exception& error) {
-        log::error("{}", error.what());
-        give_up(step);
-        return true;
-      }
-    }();
-    if (failed || current_.command) return;
-    steps_.pop_front();
-    ui_.wake(3);
-  }
-}
-
-bool Runner::waits_for_earlier(const Step& step) const {
-  const commands::Command* next = ui_.work.registry.parse(step.line, step.where).command;
-  if (!next) return false;
-  if (next->needs_outcome && ui_.open.snapshot && !ui_.open.up_to_date() && !ui_.open.loading()) return true;
-  // The panels' own commands need no picture.
-  return ui_.camera.resizing && !next->name.starts_with("window.") && !next->name.starts_with("view.");
-}
-
-bool Runner::carry_out(const Step& step) {
-  if (!current_.command) {
-    began_ = ui_.work.now, frames_ = 0;
-    in_script_ = true;
-    try {
-      current_ = ui_.work.run(step.line, 0, step.where);
-    } catch (...) {
-      in_script_ = false;
-      throw;
-    }
-    in_script_ = false;
-    ui_.wake();
-    if (current_.command->done) return false;
-  } else {
-    try {
-      if (!current_.command->done(current_.arguments)) return false;
-    } catch (const Error& error) {
-      throw_error(step.where, "{}: {}", current_.command->name, error.what());
-    }
-  }
-  current_ = {};
-  return true;
-}
-
-void Runner::give_up(const Step& step) {
-  const Call& script = root(*step.call);
-  if (script.own) ui_.requests.status = 1;
-  current_ = {};
-  measure_.reset();
-  std::erase_if(steps_, [&, script = &script](const Step& s) { return &root(*s.call) == script; });
-}
-
-void Runner::run_script(const std::string& file) {
-  const std::shared_ptr<const Call> by = in_script_ ? steps_.front().call : nullptr;
-  const std::string form = one_form(file);
-  for (const Call* call = by.get(); call; call = call->by.get())
-    if (call->file == form) throw Error(file, "is already running: a script cannot run itself");
-  const auto call = std::make_shared<const Call>(
-      Call{.file = form, .by = by, .own = false, .errors = ui_.work.error_count});
-  auto steps = parse_script(ui_.work.registry, read_script(file), file);
-  for (Step& step : steps) step.call = call;
-  // After the running step, which is at the front.
-  steps_.insert(steps_.begin() + (steps_.empty() ? 0 : 1), steps.begin(), steps.end());
+  if (!ui_.requests.status) scripts.advance();
 }
 
 /// A line at the console runs immediately; its failures are shown there, not in the error strip.
@@ -309,9 +205,8 @@ void Runner::console(const std::string& line) {
   try {
     const commands::Line parsed = ui_.work.registry.parse(line);
     if (!parsed.command) return;
-    if (parsed.command->name == "help")
-      ui_.print(log::Level::info,
-                ui_.work.manual(parsed.arguments.has("command") ? parsed.arguments.text("command") : ""));
+    if (parsed.command->answer)
+      ui_.print(log::Level::info, parsed.command->answer(parsed.arguments));
     else
       ui_.work.run(line);
   } catch (const std::exception& error) {
@@ -355,7 +250,7 @@ bool Runner::measured() {
 }
 
 void Runner::presented(double interval_ms) {
-  ++frames_;
+  scripts.drawn();
   if (!measure_) return;
   Measure& m = *measure_;
   // Before the first frame the window may have slept without anything to draw.
@@ -365,6 +260,15 @@ void Runner::presented(double interval_ms) {
     m.coarse.push_back(1e3 * (ui_.time() - m.moved_at));
     m.moved_at = -1;
   }
+}
+
+double percentile(std::vector<double> values, double p) {
+  if (values.empty()) return 0;
+  std::sort(values.begin(), values.end());
+  const double at = std::clamp(p, 0.0, 1.0) * static_cast<double>(values.size() - 1);
+  const auto below = static_cast<size_t>(at);
+  const size_t above = std::min(below + 1, values.size() - 1);
+  return values[below] + (at - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
 }  // namespace lucerna::ui

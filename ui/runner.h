@@ -1,9 +1,19 @@
 #pragma once
-// Runs the steps of a script and the lines of the console, a few per frame, and measures.
-#include <deque>
+// Runs scripts (commands/script_runner.h) and the lines of the console, and measures. Registers the commands
+// of scripts that need a window:
+//
+//   screenshot [FILE]        writes the window as PNG once its panels have settled; an existing file
+//                            is replaced only if it is such a picture
+//   measure SECONDS          draws continuously, moves the camera every 1.5 s, and prints one JSON line:
+//                            {"measure": {"seconds", "frames", "frame_ms_p50", "frame_ms_p95",
+//                            "frame_ms_max", "coarse_ms_median", "coarse_ms_max", "moves", "answered",
+//                            "picture": [w, h]}}
+//   drop FILE                does what dropping the file on the window does
+//   mouse.move X Y | mouse.down [BUTTON] | mouse.up [BUTTON] | key NAME | type TEXT
 #include <optional>
+#include <vector>
 
-#include "script.h"
+#include "commands/script_runner.h"
 #include "state.h"
 
 namespace lucerna::ui {
@@ -11,21 +21,24 @@ namespace lucerna::ui {
 /// Metadata that identifies pictures of the window.
 inline constexpr const char* k_window_mark = "window";
 
+/// The value below which a share `p` (0..1) of the values lies, linear between neighbours; 0 for no values.
+double percentile(std::vector<double> values, double p);
+
 class Runner {
  public:
-  /// Registers the commands of script.h at the workspace and reads a script (see parse_script); `stay`: its
-  /// end does not end the program. The workspace's commands refer to this object afterwards.
-  Runner(Ui& ui, const std::vector<std::string>& lines, const std::string& name, bool stay = false);
+  /// Registers the commands at the workspace, which refer to this object afterwards.
+  Runner(Ui& ui, commands::ReportFolder& report);
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
-  /// Runs steps until one has to wait; call at the start of each frame.
+  commands::ScriptRunner scripts;
+
+  /// Runs lines of the console, then steps until one has to wait; call at the start of each frame.
   void advance();
   /// Call after each presented frame. `interval_ms`: since the previous one.
   void presented(double interval_ms);
 
-  /// True if steps of a script remain.
-  bool running() const { return !steps_.empty(); }
+  bool running() const { return scripts.running(); }
   /// True if frames must be drawn continuously.
   bool measuring() const { return measure_.has_value(); }
 
@@ -39,31 +52,17 @@ class Runner {
     bool begun = false;  ///< a frame has been shown since
   };
 
-  /// True while earlier commands do not yet have the effect that the step reads.
-  bool waits_for_earlier(const Step& step) const;
-  /// True if the step is done; false: call again.
-  bool carry_out(const Step& step);
-  /// Ends the step's script, and the program if the script is its own.
-  void give_up(const Step& step);
-  void run_script(const std::string& file);
   void measure(double seconds);
   bool measured();
   void console(const std::string& line);
-  void add_commands();
-  void add_script_commands();  ///< that act on scripts and the program as a whole
-  void add_mouse_commands();   ///< pointer events, including dropped files
+  void add_picture_commands();  ///< screenshots and measurements
+  void add_mouse_commands();    ///< pointer events, including dropped files
   void add_key_commands();
   /// For commands that are done after two drawn frames.
   std::function<bool(const commands::Arguments&)> drawn();
 
   Ui& ui_;
-  std::deque<Step> steps_;
-  commands::Line current_;  ///< begun and not done
-  double began_ = 0;        ///< when
   std::optional<Measure> measure_;
-  int frames_ = 0;          ///< drawn since the step began
-  bool in_script_ = false;  ///< the running command belongs to a script
-  int settled_ = 0;         ///< consecutive frames without pending work
 };
 
 }  // namespace lucerna::ui

@@ -33,7 +33,7 @@ inline constexpr const char* k_scene_side = "scene";
 inline constexpr size_t k_recent_files = 8;  ///< number of recent files kept
 
 struct Dialog {
-  enum class Purpose { none, open, save, scene, script, reference, solver_load, solver_save };
+  enum class Purpose { none, open, save, scene, script, test, reference, solver_load, solver_save };
   Purpose purpose = Purpose::none;
   const solvers::SolverInfo* solver = nullptr;  ///< for solver_load and solver_save
   std::string path;
@@ -43,6 +43,12 @@ struct Dialog {
   int marked = -1;        ///< entry of the completion list
   bool pictures = false;  ///< shows the program's scenes
   bool as_shown = true;   ///< a PNG is saved as the window shows it
+};
+
+/// The left button held on the picture, for the pixel inspector.
+struct HeldPixel {
+  std::optional<double> since;  ///< when it was pressed; none: it is not
+  bool reported = false;        ///< its report was requested
 };
 
 /// The window's state over a workspace.
@@ -85,6 +91,8 @@ struct Ui {
   /// ... does not select: it sets the exposure or the plane of focus.
   bool click_taken() const { return dropper || scene_view.focusing; }
 
+  HeldPixel held_pixel;
+
   CardsView cards;
   void notice(const std::string& text, double seconds = 6);
   /// Reports that a wall is in the way, at most now and then.
@@ -99,6 +107,7 @@ struct Ui {
   // The window.
   Layout layout;                         ///< as chosen
   Layout shown;                          ///< as it fits this frame
+  Areas areas;                           ///< of the parts in this frame
   std::map<std::string, bool> sections;  ///< open or not, by title
   Controls controls{actions, open, sections};
   SceneView scene_view;

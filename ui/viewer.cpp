@@ -12,6 +12,8 @@
 #include "film/io/image_file.h"
 #include "recall.h"
 #include "runner.h"
+#include "setting_lines.h"
+#include "shown_lines.h"
 #include "solvers/registry.h"
 #include "widgets.h"
 #include "window.h"
@@ -27,8 +29,8 @@ class Viewer {
   Viewer(session::Session& session, const ViewerOptions& options)
       : options_(options),
         ui_(session),
-        runner_(ui_, options.script, options.script_name, options.stay),  // before a window is opened
-        settings_(checked(ui_.work.registry, options.set)),
+        runner_(ui_, options.report ? *options.report : report_),
+        settings_(started(runner_, options)),  // before a window is opened
         window_(options.width, options.height, options.hidden, options.scale) {
     ui_.scripted = !options.script.empty();
     if (remembers()) {
@@ -43,6 +45,8 @@ class Viewer {
   }
 
   ~Viewer() { ui_.work.session.on_publish({}); }
+
+  commands::ScriptResult result() const { return runner_.scripts.result(); }
 
   int run() {
     const auto interrupted = [&] { return options_.interrupted && options_.interrupted(); };
@@ -60,16 +64,11 @@ class Viewer {
   }
 
  private:
-  /// Settings of the command line as commands. Throws Error.
-  static std::vector<std::string> checked(const commands::Registry& registry,
-                                          const std::vector<std::string>& changes) {
-    std::vector<std::string> lines;
-    for (const std::string& change : changes) {
-      const auto [key, value] = split_change(change, "--set");
-      lines.push_back(commands::line("set", key, value));
-      registry.parse(lines.back(), "--set");
-    }
-    return lines;
+  /// Reads script and settings; returns the settings as commands. Throws Error.
+  std::vector<std::string> started(Runner& runner, const ViewerOptions& options) {
+    if (!options.script.empty())
+      runner.scripts.start(options.script, options.script_name, options.stay, options.variables);
+    return setting_lines(ui_.work.registry, options.set);
   }
 
   /// Scripted runs save nothing.
@@ -95,7 +94,8 @@ class Viewer {
     // Errors first: the workspace queries whether there were any.
     ui_.work.now = ui_.time();
     for (LogLine& line : inbox_.take()) {
-      if (line.level == log::Level::error) ui_.fail(line.text), ++ui_.work.error_count;
+      ui_.work.note_log(line.level, line.text);
+      if (line.level == log::Level::error) ui_.fail(line.text);
       ui_.log.lines.push_back(std::move(line));
       if (ui_.log.lines.size() > k_log_lines) ui_.log.lines.pop_front();
       ui_.wake(2);
@@ -173,17 +173,23 @@ class Viewer {
     for (const Window::Key& key : window_.pressed()) ui_.keys.emplace_back(key.key, key.mods);
 
     window_.begin_frame();
+    ShownLines::instance().begin_frame();
     ImGui::PushFont(theme().fonts.regular);
     ui_.actions.follow_gesture();
     draw_parts(ui_);
     if (ui_.frames_to_settle > 0) --ui_.frames_to_settle, ui_.wake(1);
     ImGui::PopFont();
     window_.end_frame();
-    if (!ui_.requests.shot.file.empty()) {
+    const bool grabs = ui_.requests.grab && ui_.requests.grab->rgba.empty();
+    if (!ui_.requests.shot.file.empty() || grabs) {
       ui_.wake(2);
       // Waits until the picture shows earlier commands, unless a scene is loading.
       const bool waits = ui_.open.snapshot && ui_.open.snapshot->activity.empty() && !ui_.open.up_to_date();
-      if (!waits && ui_.requests.shot.settle-- <= 0) screenshot(std::exchange(ui_.requests.shot.file, {}));
+      if (!waits && ui_.requests.shot.settle-- <= 0) {
+        if (grabs)
+          ui_.requests.grab->rgba = window_.read(ui_.requests.grab->width, ui_.requests.grab->height);
+        if (!ui_.requests.shot.file.empty()) screenshot(std::exchange(ui_.requests.shot.file, {}));
+      }
     }
     window_.present();
     const double now = ui_.time();
@@ -250,6 +256,7 @@ class Viewer {
   LogInbox inbox_;
   Ui ui_;
   std::optional<Memory> memory_;
+  commands::ReportFolder report_;
   Runner runner_;
   std::vector<std::string> settings_;
   Window window_;
@@ -266,7 +273,7 @@ class Viewer {
 void draw_parts(Ui& ui) {
   handle_keys(ui);
   const Areas areas = arrange(ui.layout, ImGui::GetIO().DisplaySize, theme().scale);
-  ui.shown = areas.shown;
+  ui.shown = areas.shown, ui.areas = areas;
   if (ui.layout.panels) {
     draw_splitters(ui, areas);
     draw_menu_bar(ui, areas.bar);
@@ -286,8 +293,11 @@ void draw_parts(Ui& ui) {
   draw_dialogs(ui);
 }
 
-int run_viewer(session::Session& session, const ViewerOptions& options) {
-  return Viewer(session, options).run();
+int run_viewer(session::Session& session, const ViewerOptions& options, commands::ScriptResult* result) {
+  Viewer viewer(session, options);
+  const int status = viewer.run();
+  if (result) *result = viewer.result();
+  return status;
 }
 
 bool display_available() {

@@ -11,6 +11,7 @@
 #include "base/figures.h"
 #include "commands/light_edit.h"
 #include "lamp_handles.h"
+#include "pixel_card.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -458,6 +459,7 @@ void draw_picture(Ui& ui, const Area& area) {
   if (ui.open.snapshot) {
     legend = draw_legend(ui.open, ui.light_marks, frame, ui.picture);
     draw_inspection(*ui.open.snapshot, frame, legend);
+    draw_pixel_card(ui.work, frame);
   }
   draw_cards(ui.actions, ui.open, ui.cards, ui.work.now, area, legend);
 
@@ -473,7 +475,8 @@ void draw_picture(Ui& ui, const Area& area) {
     if (ImGui::IsItemActivated()) begin_drag(ui, frame);
     if (hot && ui.picture_hovered && !active) tooltip(help_of(ui, *hot));
     if ((ui.click_taken() || hot) && ui.picture_hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
-    if (ui.picture_hovered && ImGui::IsMouseReleased(0) && ImGui::IsItemDeactivated() &&
+    const bool inspected = inspect_while_held(ui, frame, active);
+    if (!inspected && ui.picture_hovered && ImGui::IsMouseReleased(0) && ImGui::IsItemDeactivated() &&
         ImGui::GetIO().MouseDragMaxDistanceSqr[0] < px(k_drag) * px(k_drag))
       click(ui, frame);
   }

@@ -1,5 +1,7 @@
 #include "widgets.h"
 
+#include "shown_lines.h"
+
 #define IMGUI_DEFINE_MATH_OPERATORS
 #include <imgui_internal.h>
 
@@ -26,6 +28,7 @@ std::string upper(const char* text) {
 /// Draws capitals with one pixel between the letters.
 void draw_caps(ImDrawList* list, ImVec2 at, const std::string& text, ImU32 colour) {
   ImFont* font = theme().fonts.caps;
+  ShownLines::instance().note(text);
   for (const char& c : text) {
     list->AddText(font, font->FontSize, at, colour, &c, &c + 1);
     at.x += font->GetCharAdvance(static_cast<unsigned char>(c)) + px(0.6f);
@@ -63,6 +66,7 @@ float from_fraction(float f, const Slider& how) {
 void draw_text(ImDrawList* list, const ImVec2& lo, const ImVec2& hi, const std::string& text, ImU32 colour,
                Align align, ImFont* font) {
   if (!font) font = theme().fonts.regular;
+  ShownLines::instance().note(text);
   const float width = text_width(text, font);
   float x = lo.x;
   if (align == Align::centre) x = 0.5f * (lo.x + hi.x - width);
@@ -76,6 +80,7 @@ void draw_text(ImDrawList* list, const ImVec2& lo, const ImVec2& hi, const std::
 void label(const std::string& text, ImU32 colour, ImFont* font, float max_width) {
   if (!font) font = theme().fonts.regular;
   const std::string shown = max_width > 0 ? elided(text, max_width, font) : text;
+  ShownLines::instance().note(text);
   ImGui::PushFont(font);
   ImGui::PushStyleColor(ImGuiCol_Text, colour);
   ImGui::TextUnformatted(shown.data(), shown.data() + shown.size());

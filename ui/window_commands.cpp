@@ -61,9 +61,9 @@ using commands::Type;
 /// Registers a command: name, help, parameters, action, whether scripts record it.
 struct Add {
   Ui& ui;
-  void operator()(std::string name, std::string help, std::vector<Parameter> parameters,
+  void operator()(const std::string& name, std::string help, std::vector<Parameter> parameters,
                   std::function<void(const Arguments&)> run, bool recorded = true) const {
-    ui.work.registry.add({.name = std::move(name),
+    ui.work.registry.add({.name = name,
                           .help = std::move(help),
                           .parameters = std::move(parameters),
                           .run =
@@ -72,7 +72,14 @@ struct Add {
                                 ui.frames_to_settle = 2, ui.camera.resizing = true;
                                 ui.wake(3);
                               },
-                          .recorded = recorded});
+                          .recorded = recorded,
+                          .needs_window = needs_window(name)});
+  }
+
+  /// Dialogs and the clipboard exist only in a window.
+  static std::function<bool(const Arguments&)> needs_window(const std::string& name) {
+    if (!name.starts_with("dialog.") && name != "log.copy") return {};
+    return [](const Arguments&) { return true; };
   }
 };
 
@@ -219,6 +226,9 @@ void add_dialog_commands(Ui& ui, const Add& add) {
   add(
       "dialog.script", "Opens the dialog to save the session as a script.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::script); }, false);
+  add(
+      "dialog.test", "Opens the dialog to save the session as a test.", {},
+      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::test); }, false);
   add(
       "dismiss", "Closes the dialog, or otherwise the newest message over the picture.", {},
       [&ui](const Arguments&) {

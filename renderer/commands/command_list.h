@@ -31,6 +31,7 @@ void add_scene_commands(Workspace& work);
 void add_save_commands(Workspace& work);
 void add_render_commands(Workspace& work);
 void add_script_commands(Workspace& work);
+void add_session_test_commands(Workspace& work);
 void add_wait_commands(Workspace& work);
 void add_inspect_commands(Workspace& work);
 void add_solver_commands(Registry& registry, const OpenScene& open, SavedFiles& files);

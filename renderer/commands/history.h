@@ -20,6 +20,9 @@ class History {
 
   bool can_undo() const { return !undo_.empty(); }
   bool can_redo() const { return !redo_.empty(); }
+  /// Numbers of steps that can be undone and done again.
+  size_t undo_steps() const { return undo_.size(); }
+  size_t redo_steps() const { return redo_.size(); }
   /// The lines that undo would revert and redo would repeat; "": none.
   std::string undo_text() const { return undo_.empty() ? "" : undo_.back().line; }
   std::string redo_text() const { return redo_.empty() ? "" : redo_.back().line; }

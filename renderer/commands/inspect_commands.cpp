@@ -1,11 +1,30 @@
 // Commands that inspect solver data at a place of the picture.
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <chrono>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "commands/command_list.h"
+#include "commands/pixel_report.h"
 #include "commands/workspace.h"
 
 namespace lucerna::commands {
+
+void PixelInquiry::follow(const OpenScene& open, const Navigation& camera) {
+  if (!lines.empty() || layers.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  try {
+    lines = to_lines(report_pixel(layers.get(), at));
+    if (open.scene && camera.view)
+      for (std::string& line : surface_lines(*open.scene, camera.view->camera, at, camera.aspect))
+        lines.push_back(std::move(line));
+  } catch (const std::exception& error) {
+    lines = {error.what()};
+  }
+  layers = {};
+  log::info("{}", fmt::join(lines, "\n"));
+}
 
 void add_inspect_commands(Workspace& work) {
   const auto place = [](const Arguments& a) { return vec2(a.number("right"), a.number("down")); };
@@ -31,10 +50,31 @@ void add_inspect_commands(Workspace& work) {
                                 [&](const auto& report) { return report->looked_at == place(a); });
            },
        .recorded = false});
+  work.registry.add(
+      {.name = "inspect.pixel",
+       .help =
+           "Reports a pixel of the picture in the log: the value of each layer with its noise, and the "
+           "surface: object, material, triangle, texture coordinates, place. A script continues when it is "
+           "reported.",
+       .parameters = {{.name = "right", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture widths"},
+                      {.name = "down", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture heights"}},
+       .run =
+           [&work, place](const Arguments& a) {
+             work.open.needs_scene();
+             work.camera.needs_view();
+             work.pixel = PixelInquiry{place(a), work.session.layers(work.open.id()), {}};
+           },
+       .done = [&work](const Arguments&) { return !work.pixel || !work.pixel->lines.empty(); },
+       .recorded = false,
+       .needs_outcome = true});
   work.registry.add({.name = "inspect.none",
                      .help = "Ends the inspection.",
                      .parameters = {},
-                     .run = [&work](const Arguments&) { work.session.inspect(std::nullopt); },
+                     .run =
+                         [&work](const Arguments&) {
+                           work.session.inspect(std::nullopt);
+                           work.pixel.reset();
+                         },
                      .recorded = false});
 }
 

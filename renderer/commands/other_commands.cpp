@@ -1,17 +1,27 @@
 // Commands for the scene file, rendering and scripts, and commands that wait.
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "base/error.h"
 #include "base/log.h"
 #include "commands/command_list.h"
+#include "commands/picture_wait.h"
 #include "commands/workspace.h"
 
 namespace lucerna::commands {
 namespace {
 
-constexpr double k_standstill = 10;  // seconds without a new picture
+constexpr const char* k_script_manual =
+    "Scripts: one command per line; # starts a comment. 'lucerna script FILE' runs one as a test. Besides "
+    "commands:\n"
+    "  let NAME VALUE: a variable, for ${NAME} in later lines; NAME=VALUE of the command line takes "
+    "precedence\n"
+    "  include FILE: the lines of another script, relative to this one's folder\n"
+    "  for NAME in A B C ... end: repeats the lines up to its 'end'\n"
+    "  ${here}: the folder of the script's file; $${ stands for ${\n"
+    "The commands wait, expect, fails and quit are for scripts.";
 
 std::string settings_manual() {
   std::string text = "Settings, for 'set KEY VALUE':";
@@ -111,60 +121,25 @@ void add_script_commands(Workspace& work) {
            },
        .recorded = false,
        .needs_outcome = true});
-  work.registry.add({.name = "help",
-                     .help = "Lists the commands, or describes one.",
-                     .parameters = {{.name = "command",
-                                     .help = "a command, a setting, or 'settings'",
-                                     .optional = true,
-                                     .names =
-                                         [&work](const std::vector<std::string>&) {
-                                           std::vector<std::string> names{"settings"};
-                                           for (const auto& [name, command] : work.registry.all())
-                                             names.push_back(name);
-                                           return names;
-                                         }}},
-                     .run =
-                         [&work](const Arguments& a) {
-                           log::info("{}", work.manual(a.has("command") ? a.text("command") : ""));
-                         },
-                     .recorded = false});
+  work.registry.add(
+      {.name = "help",
+       .help = "Lists the commands, or describes one.",
+       .parameters = {{.name = "command",
+                       .help = "a command, a setting, 'settings', 'values' or 'scripts'",
+                       .optional = true,
+                       .names =
+                           [&work](const std::vector<std::string>&) {
+                             std::vector<std::string> names{"settings", "values", "scripts"};
+                             for (const auto& [name, command] : work.registry.all()) names.push_back(name);
+                             return names;
+                           }}},
+       .answer =
+           [&work](const Arguments& a) { return work.manual(a.has("command") ? a.text("command") : ""); },
+       .recorded = false});
 }
-
-namespace {
-
-/// A wait in progress.
-struct Waiting {
-  double since = -1;     ///< time of its start, or of the last new picture during it
-  uint64_t errors = 0;   ///< at its start
-  uint64_t picture = 0;  ///< last seen
-};
-
-/// True if the picture has that many samples a pixel, or is finished. Throws Error if it never will.
-bool has_samples(const Workspace& work, Waiting& waiting, int64_t samples) {
-  const session::Snapshot* snapshot = work.open.snapshot.get();
-  if (snapshot && snapshot->id != waiting.picture) waiting.picture = snapshot->id, waiting.since = work.now;
-  if (work.error_count > waiting.errors && work.now - waiting.since > k_standstill)
-    throw Error("", "the picture stands still after an error");
-  // A picture from before the last edits, cameras and sizes does not count.
-  if (!work.open.up_to_date() || work.camera.resizing) return false;
-  if (const solvers::Report* waiting_report = work.open.waiting()) throw Error("", waiting_report->to_go_on);
-  if (snapshot->finished || (!snapshot->coarse && snapshot->samples >= samples)) return true;
-  if (snapshot->paused) throw Error("", "rendering is paused; render.resume takes more samples");
-  return false;
-}
-
-}  // namespace
 
 void add_wait_commands(Workspace& work) {
   const Parameter limit = time_limit();
-  const auto waiting = std::make_shared<Waiting>();
-  work.registry.add(
-      {.name = "wait",
-       .help = "In a script: lets the window run. Saved sessions leave it out.",
-       .parameters = {{.name = "time", .type = Type::real, .lo = 0, .hi = 86400, .unit = "seconds"}},
-       .run = [&work, waiting](const Arguments&) { waiting->since = work.now; },
-       .done = [&work, waiting](const Arguments& a) { return work.now - waiting->since >= a.real("time"); },
-       .recorded = false});
   work.registry.add({.name = "wait_scene",
                      .help = "In a script: waits until the scene is loaded; fails if loading fails.",
                      .parameters = {limit},
@@ -182,26 +157,31 @@ void add_wait_commands(Workspace& work) {
                      .parameters = {limit},
                      .run = [](const Arguments&) {},
                      .done = [&work](const Arguments&) { return !work.open.loading(); }});
+  const auto waiting = std::make_shared<std::optional<PictureWait>>();
   work.registry.add(
       {.name = "wait_samples",
        .help = "In a script: waits until the picture has that many samples per pixel, or is finished.",
        .parameters = {{.name = "samples", .type = Type::integer, .lo = 0, .hi = 1 << 20}, limit},
-       .run =
-           [&work, waiting](const Arguments&) {
-             waiting->since = work.now, waiting->errors = work.error_count;
-             waiting->picture = work.open.snapshot ? work.open.snapshot->id : 0;
-           },
-       .done = [&work,
-                waiting](const Arguments& a) { return has_samples(work, *waiting, a.integer("samples")); }});
+       .run = [&work, waiting](const Arguments&) { waiting->emplace(work); },
+       .done =
+           [&work, waiting](const Arguments& a) {
+             if (!*waiting) waiting->emplace(work);
+             return (*waiting)->poll(work, [samples = a.integer("samples")](const session::Snapshot& s) {
+               return s.finished || (!s.coarse && s.samples >= samples);
+             });
+           }});
 }
 
 std::string Workspace::manual(const std::string& topic) const {
   if (topic == "settings") return settings_manual();
+  if (topic == "values") return values.manual();
+  if (topic == "scripts") return k_script_manual;
   if (const Command* command = registry.find(topic)) return registry.manual(*command);
   if (const OptionInfo* option = plan::find_option(topic))
     return fmt::format("set {} VALUE\n  {}", topic, option->help);
   std::vector<std::string> names;
-  std::string list = "Commands; 'help COMMAND' explains one, 'help settings' lists the settings:";
+  std::string list =
+      "Commands; 'help COMMAND' explains one, 'help settings', 'help values' and 'help scripts' the rest:";
   for (const auto& [name, command] : registry.all()) {
     names.push_back(name);
     list += "\n  " + registry.usage(command);

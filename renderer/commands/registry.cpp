@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/log.h"
 
 namespace lucerna::commands {
 namespace {
@@ -33,6 +34,8 @@ std::string kind_text(const Parameter& p) {
       return fmt::format("one of {}", fmt::join(p.choices, ", "));
     case Type::text:
       return "a text on one line";
+    case Type::rest:
+      return "the rest of the line";
     case Type::file:
       return p.choices.empty() ? "a file"
              : p.writes        ? fmt::format("a file name that ends in {}", fmt::join(p.choices, " or "))
@@ -86,6 +89,7 @@ std::string canonical(const Command& c, const Parameter& p, const std::string& t
            })))
         refuse();
       [[fallthrough]];
+    case Type::rest:
     case Type::text:
       if (text.find_first_of("\r\n") != std::string::npos) refuse();
       return text;
@@ -142,7 +146,9 @@ vec3 Arguments::vector(const std::string& name) const {
 }
 
 void Registry::add(Command command) {
-  assert(!commands_.count(command.name) && command.run);
+  assert(!commands_.count(command.name) && (command.run || command.answer));
+  if (!command.run)
+    command.run = [answer = command.answer](const Arguments& a) { log::info("{}", answer(a)); };
   commands_.emplace(command.name, std::move(command));
 }
 
@@ -162,7 +168,8 @@ std::vector<std::string> Registry::names() const {
   return list;
 }
 
-Arguments Registry::bind(const Command& c, std::vector<Word> words, const std::string& where) const {
+Arguments Registry::bind(const Command& c, const std::string& line, std::vector<Word> words,
+                         const std::string& where) const {
   Arguments result;
   std::vector<const Parameter*> places;
   for (const Parameter& p : c.parameters)
@@ -177,6 +184,10 @@ Arguments Registry::bind(const Command& c, std::vector<Word> words, const std::s
   size_t place = 0;
   for (size_t i = 1; i < words.size(); ++i) {
     const Word& word = words[i];
+    if (place < places.size() && places[place]->type == Type::rest) {
+      give(*places[place], text_after(line, i));
+      break;
+    }
     if (const size_t end = name_end(word); end != std::string::npos) {
       const std::string name = word.text.substr(0, end);
       if (const Parameter* p = find_parameter(c, name)) {
@@ -231,7 +242,7 @@ Line Registry::parse(const std::string& line, const std::string& where) const {
     if (near.empty()) near = "; 'help' lists the commands";
     throw_error(where, "unknown command '{}'{}", words[0].text, near);
   }
-  Line result{command, bind(*command, std::move(words), where)};
+  Line result{command, bind(*command, line, std::move(words), where)};
   if (command->check) {
     try {
       command->check(result.arguments);
@@ -248,6 +259,10 @@ std::string Registry::print(const Line& line) const {
   for (const Parameter& p : line.command->parameters) {
     if (!line.arguments.has(p.name)) continue;
     text += ' ';
+    if (p.type == Type::rest) {
+      text += line.arguments.text(p.name);
+      continue;
+    }
     if (p.optional) text += p.name + '=';
     text += quote(line.arguments.text(p.name));
   }
@@ -335,7 +350,11 @@ std::vector<std::string> Registry::complete(const std::string& line) const {
   size_t place = 0;
   for (const bool optional : {false, true})
     for (const Parameter& p : c->parameters)
-      if (p.optional == optional && place++ == before.size()) values(p, typed, "", before);
+      if (p.optional == optional &&
+          (place == before.size() || (place < before.size() && p.type == Type::rest)))
+        values(p, typed, "", before), ++place;
+      else if (p.optional == optional)
+        ++place;
   if (list.empty())
     for (const Parameter& p : c->parameters) {
       const bool given = std::any_of(words.begin() + 1, words.end() - 1,

@@ -27,6 +27,7 @@ enum class Type {
   choice,  ///< one of `choices`
   text,    ///< anything on one line
   file,    ///< a path
+  rest,    ///< the rest of the line, as written; only as the last parameter
 };
 
 struct Parameter {
@@ -80,13 +81,17 @@ struct Command {
   std::function<void(const Arguments&)> check = {};
   /// Executes it; throws Error if it cannot.
   std::function<void(const Arguments&)> run;
+  /// For commands that answer a question: the answer, which run() logs if no other is given.
+  std::function<std::string(const Arguments&)> answer = {};
   /// For commands that take time: scripts call it after run() until it returns true; a console does not wait.
   std::function<bool(const Arguments&)> done = {};
   bool undoable = false;  ///< changes the document (workspace.h)
   bool moves = false;     ///< moves the camera, which can be undone too
   bool recorded = true;   ///< recorded in the script of a session
-  /// It reads which earlier lines were refused, so a script waits for that.
+  /// It reads the results of earlier lines, or which of them were refused, so a script waits for those.
   bool needs_outcome = false;
+  /// True if it needs a window on a display, not only the window's state; empty: never.
+  std::function<bool(const Arguments&)> needs_window = {};
 };
 
 /// A parsed line.
@@ -97,7 +102,8 @@ struct Line {
 
 class Registry {
  public:
-  /// Adds a command; the name must be new (assertion). References to commands stay valid.
+  /// Adds a command with run() or answer(); the name must be new (assertion). References to commands stay
+  /// valid.
   void add(Command command);
   /// Adds a word that expands to the beginning of a line unless a command has that name: "film.ev" -> "set
   /// film.ev".
@@ -124,7 +130,8 @@ class Registry {
 
  private:
   std::vector<std::string> names() const;
-  Arguments bind(const Command& command, std::vector<Word> words, const std::string& where) const;
+  Arguments bind(const Command& command, const std::string& line, std::vector<Word> words,
+                 const std::string& where) const;
 
   std::map<std::string, Command> commands_;
   std::map<std::string, std::string> prefixes_;

@@ -61,6 +61,25 @@ std::vector<Word> split(std::string_view line, const std::string& where) {
   return words;
 }
 
+std::string text_after(std::string_view line, size_t count) {
+  size_t begin = std::string_view::npos, end = 0, words = 0;
+  bool quotes = false, between = true;
+  for (size_t i = 0; i < line.size(); ++i) {
+    if (!quotes && blank(line[i])) {
+      between = true;
+      continue;
+    }
+    if (between && line[i] == '#') break;
+    if (between && words++ == count) begin = i;
+    between = false, end = i + 1;
+    if (quotes && line[i] == '\\' && i + 1 < line.size())
+      ++i, end = i + 1;
+    else if (line[i] == '"')
+      quotes = !quotes;
+  }
+  return begin == std::string_view::npos ? "" : std::string(line.substr(begin, end - begin));
+}
+
 size_t last_word(std::string_view line) {
   size_t begin = 0;
   bool quotes = false, between = true;

@@ -20,6 +20,9 @@ struct Word {
 /// Splits a line at blanks. "..." keeps blanks, and inside it \" and \\ mean " and \; # starts a comment.
 /// Throws Error at `where` if a quotation mark is not closed.
 std::vector<Word> split(std::string_view line, const std::string& where = "");
+/// The text of a line behind its first `count` words, as written, without blanks at its ends and without a
+/// comment.
+std::string text_after(std::string_view line, size_t count);
 /// Start of the last word of an unfinished line; its length if the next word has not begun.
 size_t last_word(std::string_view line);
 /// The text as a word for split(): in quotation marks if necessary.

@@ -35,9 +35,19 @@ Workspace::Workspace(session::Session& s, WorkspaceEvents e)
   add_save_commands(*this);
   add_render_commands(*this);
   add_script_commands(*this);
+  add_session_test_commands(*this);
   add_wait_commands(*this);
   add_inspect_commands(*this);
   add_solver_commands(registry, open, files);
+  add_values(*this);
+}
+
+void Workspace::note_log(log::Level level, const std::string& text) {
+  constexpr size_t k_kept = 1000;
+  if (level == log::Level::error) ++error_count;
+  if (level != log::Level::error && level != log::Level::warning) return;
+  problems.push_back({text, level == log::Level::error ? error_count : 0, false});
+  if (problems.size() > k_kept) problems.pop_front();
 }
 
 void Workspace::refresh(double time) {
@@ -57,6 +67,7 @@ void Workspace::refresh(double time) {
                               : fmt::format("Exposure {:+.2f} EV", ev));
   });
   scene_file.follow();
+  if (pixel) pixel->follow(open, camera);
   for (const std::string& name : files.take_written())
     if (events.written) events.written(name);
 }

@@ -4,11 +4,15 @@
 //
 // Edits are sent in the order of the lines, so each line acts on the result of the lines before. If the
 // session refuses one, it is removed from the undo history and the script.
+#include <deque>
 #include <functional>
+#include <future>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "base/log.h"
 #include "commands/exposure.h"
 #include "commands/history.h"
 #include "commands/navigation.h"
@@ -16,6 +20,7 @@
 #include "commands/registry.h"
 #include "commands/saved_files.h"
 #include "commands/scene_file.h"
+#include "commands/values.h"
 
 namespace lucerna::commands {
 
@@ -37,6 +42,23 @@ struct WorkspaceEvents {
   std::function<bool()> exposes_at_load = {};
 };
 
+/// An error or a warning that was logged.
+struct LoggedProblem {
+  std::string text;
+  uint64_t error = 0;     ///< its number among the errors, from 1; 0: a warning
+  bool expected = false;  ///< a script has stated it
+};
+
+/// A pixel that is being reported, or has been.
+struct PixelInquiry {
+  vec2 at;  ///< 0..1 to the right and down
+  std::shared_future<film::FilmImage> layers;
+  std::vector<std::string> lines;  ///< empty until they are known
+
+  /// Makes the lines when the layers are there, and logs them.
+  void follow(const OpenScene& open, const Navigation& camera);
+};
+
 class Workspace {
  public:
   explicit Workspace(session::Session& session, WorkspaceEvents events = {});
@@ -50,14 +72,20 @@ class Workspace {
   Exposure exposure;
   SceneFile scene_file;
   SavedFiles files;
+  Values values;      ///< what lines can read; others may be added
   Registry registry;  ///< contains the commands of this module; others may be added
   WorkspaceEvents events;
-  double now = 0;            ///< seconds on the caller's clock
-  uint64_t error_count = 0;  ///< number of logged errors so far, counted by a log listener
-  uint64_t inspections = 0;  ///< inspect.at commands so far
+  double now = 0;                      ///< seconds on the caller's clock
+  uint64_t error_count = 0;            ///< number of logged errors so far, counted by note_log()
+  std::deque<LoggedProblem> problems;  ///< the latest errors and warnings
+  std::optional<PixelInquiry> pixel;   ///< by inspect.pixel
+  uint64_t inspections = 0;            ///< inspect.at commands so far
 
   /// Reads what the session has published since. Call before reading state and before running commands.
   void refresh(double time);
+
+  /// Notes a line of the log; the owner calls it from its listener, on this thread.
+  void note_log(log::Level level, const std::string& text);
 
   /// Executes a line. Lines of one `gesture` (not 0) on the same target are one undo step and one line of the
   /// script: the last. Throws Error, at `where`, if it is invalid or cannot be executed; then nothing has

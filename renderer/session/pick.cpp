@@ -51,6 +51,15 @@ bool stops(const scene::Scene& s, const scene::Primitive& p, const uvec3& t, flo
 
 }  // namespace
 
+std::optional<vec2> picked_uv(const scene::Scene& scene, const Picked& picked) {
+  const scene::Primitive& p =
+      scene.meshes[scene.instances[picked.instance].mesh].primitives[picked.primitive];
+  if (p.uv0.empty()) return std::nullopt;
+  const uvec3& t = p.triangles[picked.triangle];
+  const auto [a, b] = std::pair(picked.barycentric.x, picked.barycentric.y);
+  return (1 - a - b) * p.uv0[t.x] + a * p.uv0[t.y] + b * p.uv0[t.z];
+}
+
 PickRay pick_ray(const scene::Camera& camera, float x, float y, float aspect) {
   const mat4& m = camera.to_world;
   const vec3 right = glm::normalize(vec3(m[0])), up = glm::normalize(vec3(m[1]));
@@ -80,8 +89,11 @@ std::optional<Picked> pick(const scene::Scene& scene, const scene::Camera& camer
     // The ray keeps its parameter in object space, so distances are comparable.
     const mat4 to_object = glm::inverse(instance.to_world);
     const vec3 o(to_object * vec4(origin, 1)), d(to_object * vec4(direction, 0));
-    for (const scene::Primitive& p : scene.meshes[instance.mesh].primitives)
-      for (const uvec3& t : p.triangles) {
+    const std::vector<scene::Primitive>& primitives = scene.meshes[instance.mesh].primitives;
+    for (uint32_t part = 0; part < primitives.size(); ++part) {
+      const scene::Primitive& p = primitives[part];
+      for (uint32_t triangle = 0; triangle < p.triangles.size(); ++triangle) {
+        const uvec3& t = p.triangles[triangle];
         const vec3 &v0 = p.positions[t.x], e1 = p.positions[t.y] - v0, e2 = p.positions[t.z] - v0;
         const vec3 q = glm::cross(d, e2);
         const float det = glm::dot(e1, q);
@@ -92,9 +104,16 @@ std::optional<Picked> pick(const scene::Scene& scene, const scene::Camera& camer
         if (!stops(scene, p, t, a, b)) continue;
         nearest = distance;
         const vec3 normal = glm::normalize(glm::transpose(glm::mat3(to_object)) * glm::cross(e1, e2));
-        best = Picked{i, p.material, distance, origin + distance * direction,
-                      glm::dot(normal, direction) > 0 ? -normal : normal};
+        best = Picked{i,
+                      p.material,
+                      distance,
+                      origin + distance * direction,
+                      glm::dot(normal, direction) > 0 ? -normal : normal,
+                      part,
+                      triangle,
+                      {a, b}};
       }
+    }
   }
   return best;
 }
@@ -125,8 +144,10 @@ std::optional<Picked> Probe::nearest(const vec3& origin, const vec3& direction, 
     return scene_->meshes[scene_->instances[hit.instance].mesh].primitives[hit.part];
   };
   const auto picked = [&](const bvh::InstancedTracer::Hit& hit) {
-    return Picked{hit.instance, primitive(hit).material, hit.distance, origin + hit.distance * direction,
-                  hit.normal};
+    return Picked{hit.instance, primitive(hit).material,
+                  hit.distance, origin + hit.distance * direction,
+                  hit.normal,   hit.part,
+                  hit.triangle, {hit.u, hit.v}};
   };
   const auto hit = tracer_.nearest(origin, direction, limit, [&](const bvh::InstancedTracer::Hit& h) {
     const scene::Primitive& p = primitive(h);

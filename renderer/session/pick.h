@@ -11,12 +11,17 @@
 namespace lucerna::session {
 
 struct Picked {
-  uint32_t instance = 0;  ///< index into Scene::instances
-  uint32_t material = 0;  ///< index into Scene::materials
-  float distance = 0;     ///< from the origin of the ray, metres
-  vec3 position{0};       ///< in the world, metres
-  vec3 normal{0};         ///< of the surface, unit, towards the eye
+  uint32_t instance = 0;                 ///< index into Scene::instances
+  uint32_t material = 0;                 ///< index into Scene::materials
+  float distance = 0;                    ///< from the origin of the ray, metres
+  vec3 position{0};                      ///< in the world, metres
+  vec3 normal{0};                        ///< of the surface, unit, towards the eye
+  uint32_t primitive = 0, triangle = 0;  ///< of the instance's mesh, and in the primitive
+  vec2 barycentric{0};                   ///< weights of the triangle's second and third vertex
 };
+
+/// Texture coordinates there, of the first set; nullopt: the primitive has none.
+std::optional<vec2> picked_uv(const scene::Scene& scene, const Picked& picked);
 
 struct PickRay {
   vec3 origin, direction;  ///< unit

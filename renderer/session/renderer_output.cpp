@@ -235,6 +235,30 @@ film::FilmImage Renderer::film_image() {
   return out;
 }
 
+film::FilmImage Renderer::film_image_with_halves() {
+  constexpr uint32_t k_tile = 16;
+  if (!setup_.engine || samples() == 0) throw Error("", "the picture has no sample yet");
+  film::FilmImage out = film_image();
+  const film::Image image = setup_.film->read();
+  std::vector<vec3> sum(image.samples.size(), vec3(0));
+  for (const auto& component : image.odd_half)
+    for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
+  film::add_plane(out, "odd.", "RGB", sum);
+  for (int c = 0; c < film::k_components; ++c)
+    film::add_plane(out, std::string("odd.") + paths::k_component_names[c] + ".", "RGB", image.odd_half[c]);
+  if (!looks_up()) return out;
+  const std::vector<film::TileError> tiles = film::tile_errors(*setup_.film, k_tile);
+  const uint32_t across = (image.width + k_tile - 1) / k_tile;
+  std::vector<float> noise(sum.size()), bias(sum.size());
+  for (size_t i = 0; i < sum.size(); ++i) {
+    const film::TileError& t = tiles[i / image.width / k_tile * across + i % image.width / k_tile];
+    noise[i] = float(t.records.noise), bias[i] = float(t.records.interpolation);
+  }
+  out.channels.emplace_back("lookup.noise", std::move(noise));
+  out.channels.emplace_back("lookup.bias", std::move(bias));
+  return out;
+}
+
 void Renderer::save(const std::filesystem::path& file, bool as_shown) {
   if (!setup_.engine) throw Error(file.string(), "nothing to save yet; load a scene first");
   const std::string extension = file.extension().string();

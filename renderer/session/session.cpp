@@ -8,7 +8,7 @@ const std::array<const char*, k_components> k_component_names = paths::k_compone
 
 Session::Session(const Options& options) : impl_(std::make_unique<Impl>()) {
   impl_->options = options;
-  impl_->thread = std::thread([this] { impl_->run(); });
+  if (!options.idle) impl_->thread = std::thread([this] { impl_->run(); });
 }
 
 Session::~Session() {
@@ -19,7 +19,7 @@ Session::~Session() {
     impl_->pending = true;
   }
   impl_->wake.notify_one();
-  impl_->thread.join();
+  if (impl_->thread.joinable()) impl_->thread.join();
 }
 
 void Session::load(const std::filesystem::path& file) {
@@ -197,8 +197,26 @@ std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at, Sc
   return result;
 }
 
+std::shared_future<film::FilmImage> Session::layers(SceneId scene) {
+  auto promise = std::make_shared<std::promise<film::FilmImage>>();
+  auto result = promise->get_future().share();
+  const auto run = [promise](Renderer& r) {
+    try {
+      promise->set_value(r.film_image_with_halves());
+    } catch (...) {
+      promise->set_exception(std::current_exception());
+    }
+  };
+  impl_->post({.run = run, .subject = "the layers", .scene = scene});
+  return result;
+}
+
 Saved Session::save(const std::filesystem::path& file, bool as_shown) {
   return impl_->post_save(file, "", k_any_scene, as_shown);
+}
+
+Saved Session::save_reference(const std::filesystem::path& file) {
+  return impl_->post_save(file, "", k_any_scene, false, true);
 }
 
 Saved Session::solver_save(const std::string& solver, const std::filesystem::path& file, SceneId scene) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "film/exposure.h"
+#include "film/io/image_file.h"
 #include "film/shown_error.h"
 #include "plan/settings.h"
 #include "scene/io/load.h"
@@ -82,6 +83,7 @@ struct Snapshot {
   /// Why light groups are not separate, so that a mix relights the picture; "" if they are separate.
   std::string lights_together;
   bool paused = false, finished = false;
+  bool resting = false;  ///< nothing is left to do until the next command: finished or paused, and drawn
   /// Current preparation (solvers::Report::preparing), or "".
   std::string preparing;
   double preparing_done = -1;            ///< progress of that, 0..1; -1: unknown
@@ -112,6 +114,8 @@ struct Options {
   bool validation = false;
   std::filesystem::path shaders;   ///< empty: ShaderCompiler::default_root()
   scene::LoadOptions scenes = {};  ///< limits on scene files
+  /// True: makes no device and carries out nothing, so that commands can be read and explained.
+  bool idle = false;
 };
 
 /// State of the session at one moment.
@@ -169,9 +173,14 @@ class Session {
   void inspect(std::optional<vec2> at, SceneId scene = k_any_scene);
   /// Renderer::measure, as soon as there is an image; get() throws on failure. Nothing is logged.
   std::shared_future<film::Brightness> measure(std::optional<vec2> at, SceneId scene = k_any_scene);
+  /// The layers of the present picture as floats (Renderer::film_image_with_halves); get() throws Error if it
+  /// has no sample. Nothing is logged.
+  std::shared_future<film::FilmImage> layers(SceneId scene = k_any_scene);
   /// Writes EXR or PNG as soon as every pixel has a sample, or at once if rendering rests without.
   /// `as_shown`: a PNG includes the preview's filter, like the snapshots.
   Saved save(const std::filesystem::path& file, bool as_shown = false);
+  /// Writes the sum with what its noise is known by, for film::compare_stochastic(), when save() would.
+  Saved save_reference(const std::filesystem::path& file);
   /// Saves a solver's data (SolverInfo::file) as soon as it is complete; cancelled if another scene is
   /// loaded.
   Saved solver_save(const std::string& solver, const std::filesystem::path& file,

@@ -4,6 +4,8 @@
 #include <sys/syscall.h>
 #include <unistd.h>
 
+#include "session/kept_device.h"
+
 namespace lucerna::session {
 
 namespace {
@@ -16,8 +18,9 @@ constexpr int k_nice = 10;  // rendering yields to the window's thread
 
 std::unique_ptr<Renderer> Session::Impl::make_renderer() {
   try {
-    auto renderer = std::make_unique<Renderer>(
-        RendererOptions{options.device, options.validation, options.shaders, {}, true, options.scenes});
+    RendererOptions made{options.device, options.validation, options.shaders, {}, true, options.scenes};
+    if (!options.validation) made.on = kept_device(options.device);
+    auto renderer = std::make_unique<Renderer>(made);
     next.device = renderer->device().info().name;
     publish();
     return renderer;

@@ -8,6 +8,7 @@
 
 #include "base/log.h"
 #include "base/timer.h"
+#include "film/io/stochastic.h"
 #include "session/renderer.h"
 #include "session/session.h"
 #include "solvers/registry.h"
@@ -49,6 +50,7 @@ struct Session::Impl {
     std::filesystem::path file;
     std::string solver;  // solver whose data is saved; "": the picture
     bool as_shown = false;
+    bool reference = false;  // Session::save_reference
     std::shared_ptr<std::promise<void>> promise;
   };
   std::vector<Save> saves;  // waiting for their data
@@ -75,7 +77,9 @@ struct Session::Impl {
 
   static void write(Renderer& r, const Save& save) {
     try {
-      if (save.solver.empty())
+      if (save.reference)
+        film::write_exr(save.file, film::stochastic_layers(r.film_image_with_halves(), ""));
+      else if (save.solver.empty())
         r.save(save.file, save.as_shown);
       else
         r.solver_save(save.solver, save.file);
@@ -122,12 +126,12 @@ struct Session::Impl {
   }
 
   Saved post_save(const std::filesystem::path& file, const std::string& solver, SceneId scene,
-                  bool as_shown = false) {
+                  bool as_shown = false, bool reference = false) {
     // A promise dropped for lack of a device is reported as a failure to its waiter.
     auto promise = std::make_shared<std::promise<void>>();
     Saved saved = promise->get_future().share();
-    const auto run = [this, file, solver, as_shown, promise](Renderer& r) {
-      saves.push_back({file, solver, as_shown, promise});
+    const auto run = [this, file, solver, as_shown, reference, promise](Renderer& r) {
+      saves.push_back({file, solver, as_shown, reference, promise});
       if (!solver.empty() && !due(r, saves.back()))
         log::info("{}: will be written when {} is complete", file.string(), solvers::find(solver)->title);
     };
@@ -220,6 +224,7 @@ struct Session::Impl {
     next.lights_together = r.relight().why_not;
     next.paused = paused;
     next.finished = r.done();
+    next.resting = !works(r) && !r.overlay_waits() && !r.mix_pending();
     next.seconds = r.seconds();
     next.prepared_seconds = r.prepared_seconds();
     next.reports = r.reports();

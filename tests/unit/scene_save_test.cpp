@@ -240,6 +240,10 @@ TEST_CASE("materials' factors read back exactly, also of the default material") 
     m.base_color = {0.1f, 0.23456f, 0.9f, m.base_color.w};
     m.roughness = 0.777f, m.metallic = 0.1f;
     m.emission = {40.5f, 28.123f, 12.7f};
+    m.clearcoat = 0.3f, m.clearcoat_roughness = 0.12f;
+    m.sheen_color = {0.1f, 0.2f, 0.7f}, m.sheen_roughness = 0.35f;
+    m.anisotropy = 0.45f, m.anisotropy_rotation = 1.2f;
+    m.iridescence = 0.9f, m.iridescence_maximum = 333.3f;
   }
   const Scene back = b.saved();
   REQUIRE(back.materials.size() == 2);
@@ -248,6 +252,7 @@ TEST_CASE("materials' factors read back exactly, also of the default material") 
     CHECK(back.materials[i].emission == b.edited->materials[i].emission);
     CHECK(back.materials[i].roughness == 0.777f);
     CHECK(back.materials[i].metallic == 0.1f);
+    CHECK(back.materials[i] == b.edited->materials[i]);
   }
   CHECK(b.document()["materials"][0]["extensions"]["EXT_unknown"] ==
         room().doc["materials"][0]["extensions"]["EXT_unknown"]);

@@ -133,6 +133,6 @@ TEST_CASE("inspecting a cache that is not used is an error with advice") {
   const auto outcome = test::window("wait_scene\ninspect.at 0.5 0.5\nquit\n");
   INFO(outcome.output);
   CHECK(outcome.status != 0);
-  CHECK_THAT(outcome.output, Catch::Contains("line 2: inspect.at: no component takes its light from the "
+  CHECK_THAT(outcome.output, Catch::Contains(":2: inspect.at: no component takes its light from the "
                                              "cache; set components.secondary cache"));
 }

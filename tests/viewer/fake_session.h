@@ -27,6 +27,20 @@ namespace fake {
 /// The report of an additional solver of a test, from the settings and the inspected point.
 inline std::function<std::optional<solvers::Report>(const plan::Settings&, std::optional<vec2>)> more;
 
+/// Every pixel is 0.5 with a noise that falls with the samples; the first lamp's switch is not looked at.
+inline film::FilmImage layers(uint32_t samples, uint32_t width, uint32_t height) {
+  film::FilmImage image{.width = width, .height = height};
+  const size_t n = size_t{width} * height;
+  for (const char* name : {"R", "G", "B", "odd.R", "odd.G", "odd.B"}) {
+    std::vector<float> plane(n);
+    for (size_t i = 0; i < n; ++i)
+      plane[i] = 0.5f + 0.1f * std::sin(float(i * 7919) + (name[0] == 'o' ? 1.0f : 0.0f));
+    image.channels.emplace_back(name, plane);
+  }
+  image.channels.emplace_back("samples", std::vector<float>(n, float(samples)));
+  return image;
+}
+
 /// Duration of each command.
 inline std::atomic<int> busy_ms{0};
 
@@ -159,6 +173,7 @@ struct Session::Impl {
     s->commands = done;
     if (!refused.empty()) s->refused = std::make_shared<const std::vector<uint64_t>>(refused);
     s->samples = samples, s->paused = paused, s->finished = scene && samples >= s->max_samples;
+    s->resting = s->paused || s->finished;
     s->coarse = samples == 0;
     if (scene && width > 0) {
       s->width = width, s->height = height;
@@ -471,6 +486,13 @@ std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at, Sc
       scene);
   return promise->get_future().share();
 }
+std::shared_future<film::FilmImage> Session::layers(SceneId scene) {
+  auto promise = std::make_shared<std::promise<film::FilmImage>>();
+  impl_->post(
+      [this, promise] { promise->set_value(fake::layers(impl_->samples, impl_->width, impl_->height)); },
+      scene);
+  return promise->get_future().share();
+}
 void Session::set_material(uint32_t index, const scene::Material& material, SceneId scene) {
   impl_->post_edit([index, material](scene::Scene& s) { s.materials[index] = material; }, scene);
 }
@@ -527,6 +549,7 @@ Saved Session::save(const std::filesystem::path& file, bool) {
   });
   return promise->get_future().share();
 }
+Saved Session::save_reference(const std::filesystem::path& file) { return save(file); }
 Saved Session::solver_save(const std::string&, const std::filesystem::path& file, SceneId) {
   return save(file);
 }

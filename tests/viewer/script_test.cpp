@@ -43,19 +43,19 @@ TEST_CASE("a script waits for its saves, and fails if one fails") {
     const auto failed = test::window("wait_scene\n" + std::string(save) + "\nlog.clear\nquit 0\n");
     INFO(failed.output);
     CHECK(failed.status != 0);
-    CHECK_THAT(failed.output, Catch::Contains("script: line 2: ") && Catch::Contains("nothing was written"));
+    CHECK_THAT(failed.output, Catch::Contains("script:2: ") && Catch::Contains("nothing was written"));
   }
 }
 
 TEST_CASE("file names of other formats are refused before the script runs") {
   session::Session session({});
   ui::Ui window(session);
-  ui::Runner runner(window, {}, "");
+  commands::ReportFolder report;
+  ui::Runner runner(window, report);
   for (const char* line : {"image.save a.jpg", "image.save .exr", "image.save a", "screenshot a.exr",
                            "script.save a.txt", "cache.save a.exr"})
-    CHECK_THROWS_WITH(
-        ui::parse_script(window.work.registry, {line}, "s"),
-        Catch::StartsWith("s: line 1: ") && Catch::Contains("expected a file name that ends in ."));
+    CHECK_THROWS_WITH(commands::parse_script(window.work.registry, {line}, "s"),
+                      Catch::StartsWith("s:1: ") && Catch::Contains("expected a file name that ends in ."));
 }
 
 TEST_CASE("the busy card names the running command, not a finished one") {
@@ -90,8 +90,8 @@ TEST_CASE("a script that calls itself is refused") {
   const auto outcome = test::window("script.run " + a + "\nquit 0\n");
   INFO(outcome.output);
   CHECK(outcome.status != 0);
-  CHECK_THAT(outcome.output, Catch::Contains("b.lucerna: line 1: script.run: ") &&
-                                 Catch::Contains("a script cannot run itself"));
+  CHECK_THAT(outcome.output,
+             Catch::Contains("b.lucerna:1: script.run: ") && Catch::Contains("a script cannot run itself"));
   // Two calls in sequence are no recursion.
   std::ofstream(b) << "wait_scene\n";
   CHECK(test::window("script.run " + a + "\nscript.run " + a + "\n").status == 0);

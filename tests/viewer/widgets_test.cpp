@@ -361,7 +361,7 @@ TEST_CASE("no id is used twice in a frame, and every control of every panel rece
   }
   SECTION("the dialogs, the keys and the cards") {
     for (const char* dialog :
-         {"dialog.open", "dialog.save", "dialog.scene", "dialog.reference", "dialog.script"}) {
+         {"dialog.open", "dialog.save", "dialog.scene", "dialog.reference", "dialog.script", "dialog.test"}) {
       walk.act(dialog);
       if (std::string(dialog) == "dialog.save") ui.dialog.path = "a.png";
       clicked += walk.click_all(dialog, Walk::in_popup);

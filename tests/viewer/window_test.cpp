@@ -30,10 +30,11 @@ std::vector<std::string> lines_of(const std::string& file) {
 TEST_CASE("a script is checked before it runs") {
   session::Session session({});
   ui::Ui window(session);
-  ui::Runner runner(window, {}, "");
+  commands::ReportFolder report;
+  ui::Runner runner(window, report);
   const auto message = [&](const std::vector<std::string>& lines) -> std::string {
     try {
-      ui::parse_script(window.work.registry, lines, "s");
+      commands::parse_script(window.work.registry, lines, "s");
     } catch (const Error& error) {
       return error.what();
     }
@@ -43,18 +44,20 @@ TEST_CASE("a script is checked before it runs") {
                  "quit", "film.ev=1", "key ctrl+shift+z"})
             .empty());
   CHECK_THAT(message({"wait 1", "orbt 1 2"}),
-             Catch::StartsWith("s: line 2: unknown command 'orbt'; did you mean 'camera.orbit'?"));
-  CHECK_THAT(message({"camera.orbit 1"}), Catch::StartsWith("s: line 1: camera.orbit: up is missing"));
-  CHECK_THAT(message({"wait soon"}), Catch::StartsWith("s: line 1: wait: time = 'soon': expected a number"));
-  CHECK_THAT(message({"scene.open \"a"}), Catch::StartsWith("s: line 1: a quotation mark"));
+             Catch::StartsWith("s:2: unknown command 'orbt'; did you mean 'camera.orbit'?"));
+  CHECK_THAT(message({"camera.orbit 1"}), Catch::StartsWith("s:1: camera.orbit: up is missing"));
+  CHECK_THAT(message({"wait soon"}),
+             Catch::StartsWith("s:1: wait: word 1 ('soon'): expected a number of seconds, or one of"));
+  CHECK_THAT(message({"scene.open \"a"}), Catch::StartsWith("s:1: a quotation mark"));
   CHECK_THAT(message({"key ctrl+hyper"}), Catch::Contains("there is no key 'ctrl+hyper'"));
-  CHECK(ui::parse_script(window.work.registry, {"", "quit 0"}, "s").at(0).where == "s: line 2");
+  CHECK(commands::parse_script(window.work.registry, {"", "quit 0"}, "s").at(0).where == "s:2");
 }
 
 TEST_CASE("every command of the window is unchanged after read, write and read") {
   session::Session session({});
   ui::Ui window(session);
-  ui::Runner runner(window, {}, "");
+  commands::ReportFolder report;
+  ui::Runner runner(window, report);
   CHECK(test::round_trip(window.work.registry) > 200);
   for (const char* name : {"window.panels", "measure", "screenshot", "drop", "camera.orbit", "log.clear"})
     CHECK(window.work.registry.find(name));
@@ -207,7 +210,7 @@ TEST_CASE("an error is shown over the previous scene, and a failing script repor
   const auto failed = window("missing.gltf", "wait_scene\nquit\n");
   INFO(failed.output);
   CHECK(failed.status != 0);
-  CHECK_THAT(failed.output, Catch::Contains("script: line 1: wait_scene: no scene was loaded"));
+  CHECK_THAT(failed.output, Catch::Contains("script:1: wait_scene: no scene was loaded"));
 }
 
 TEST_CASE("an empty window, a cancelled load, and every step run") {

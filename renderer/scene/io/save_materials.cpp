@@ -31,6 +31,31 @@ void write_material(EditedJson& root, EditedJson& m, const Material& before, con
   if (before.emission != after.emission) write_emission(root, m, after.emission);
 }
 
+/// Coat, sheen, brushing and thin film.
+void write_layers(EditedJson& root, EditedJson& m, const Material& before, const Material& after) {
+  const auto differs = [&](auto... members) { return ((before.*members != after.*members) || ...); };
+  if (differs(&Material::clearcoat, &Material::clearcoat_roughness)) {
+    EditedJson& e = extension_at(root, m, "KHR_materials_clearcoat");
+    e["clearcoatFactor"] = number_json(after.clearcoat);
+    e["clearcoatRoughnessFactor"] = number_json(after.clearcoat_roughness);
+  }
+  if (differs(&Material::sheen_color, &Material::sheen_roughness)) {
+    EditedJson& e = extension_at(root, m, "KHR_materials_sheen");
+    e["sheenColorFactor"] = vector_json(after.sheen_color);
+    e["sheenRoughnessFactor"] = number_json(after.sheen_roughness);
+  }
+  if (differs(&Material::anisotropy, &Material::anisotropy_rotation)) {
+    EditedJson& e = extension_at(root, m, "KHR_materials_anisotropy");
+    e["anisotropyStrength"] = number_json(after.anisotropy);
+    e["anisotropyRotation"] = number_json(after.anisotropy_rotation);
+  }
+  if (differs(&Material::iridescence, &Material::iridescence_maximum)) {
+    EditedJson& e = extension_at(root, m, "KHR_materials_iridescence");
+    e["iridescenceFactor"] = number_json(after.iridescence);
+    e["iridescenceThicknessMaximum"] = number_json(after.iridescence_maximum);
+  }
+}
+
 /// A material in place of glTF's default one, on all primitives without a material.
 size_t add_default_material(EditedJson& root, const std::string& name) {
   EditedJson& list = root["materials"];
@@ -51,6 +76,7 @@ void write_materials(EditedJson& root, const Scene& loaded, const Scene& edited)
     const Id index = loaded.material_indices[i];
     const size_t at = index == k_none ? add_default_material(root, before.name) : size_t{index};
     write_material(root, root["materials"][at], before, after);
+    write_layers(root, root["materials"][at], before, after);
   }
 }
 

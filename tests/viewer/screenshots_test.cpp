@@ -1,0 +1,51 @@
+// links: base
+// The scripts in tests/screenshots, in one program: pictures of overlays, views and panels, and what they
+// state.
+#include <algorithm>
+#include <filesystem>
+#include <vector>
+
+#include "support.h"
+
+using namespace lucerna;
+
+TEST_CASE("every script in tests/screenshots passes") {
+  if (test::no_program()) return;
+  std::vector<std::string> scripts;
+  for (const auto& entry : std::filesystem::directory_iterator("tests/screenshots"))
+    if (entry.path().extension() == ".lucerna") scripts.push_back(entry.path().string());
+  std::sort(scripts.begin(), scripts.end());
+  REQUIRE(scripts.size() >= 24);
+  const test::Folder folder;
+  std::string command = std::string(LUCERNA_BINARY) + " script";
+  for (const std::string& script : scripts) command += " " + script;
+  const auto outcome = test::run(
+      test::with_display(command + " --device cpu --report " + folder.path.string() + "/report"), 600);
+  INFO(outcome.output);
+  CHECK(outcome.status == 0);
+  CHECK(std::filesystem::exists(folder.path / "report/junit.xml"));
+}
+
+TEST_CASE("a broken overlay fails its script, with the pictures and the command to accept") {
+  if (test::no_program()) return;
+  const test::Folder folder;
+  // The script with the pictures of another one.
+  for (const char* file : {"components.lucerna", "parts/small.lucerna"}) {
+    std::filesystem::create_directories((folder.path / "a/b" / file).parent_path());
+    std::filesystem::copy_file(std::string("tests/screenshots/") + file, folder.path / "a/b" / file);
+  }
+  std::filesystem::create_directory_symlink(std::filesystem::absolute("scenes"), folder.path / "scenes");
+  for (const char* component : {"primary", "secondary", "tertiary", "caustic"})
+    std::filesystem::copy_file("tests/screenshots/components-primary.png",
+                               folder.path / "a/b" / ("components-" + std::string(component) + ".png"));
+  const auto outcome = test::run(std::string(LUCERNA_BINARY) + " script --headless " +
+                                 (folder.path / "a/b/components.lucerna").string() + " --report " +
+                                 (folder.path / "report").string());
+  INFO(outcome.output);
+  CHECK(outcome.status == 1);
+  CHECK_THAT(outcome.output, Catch::Contains("3 failed") && Catch::Contains("cp ") &&
+                                 Catch::Contains("components.lucerna:7 (component = caustic)"));
+  for (const char* file :
+       {"report.html", "junit.xml", "1-picture.png", "1-reference.png", "1-difference.png"})
+    CHECK(std::filesystem::exists(folder.path / "report" / file));
+}

@@ -1,0 +1,67 @@
+#include "pixel_card.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "widgets.h"
+
+namespace lucerna::ui {
+namespace {
+
+constexpr double k_hold = 0.5;  // seconds
+constexpr float k_still = 4;    // design pixels that the pointer may move
+constexpr float k_row = 16, k_pad = 10, k_edge = 12;
+
+}  // namespace
+
+bool inspect_while_held(Ui& ui, const Area& picture, bool active) {
+  const ImGuiIO& io = ImGui::GetIO();
+  HeldPixel& held = ui.held_pixel;
+  const bool pressed = active && io.MouseDown[0] && !ui.click_taken() && !ui.drag.lamp;
+  if (!pressed) {
+    held.since.reset();
+    if (!std::exchange(held.reported, false)) return false;
+    ui.act("inspect.none");
+    return true;
+  }
+  if (!held.since) held.since = ui.work.now;
+  const bool still = io.MouseDragMaxDistanceSqr[0] < px(k_still) * px(k_still);
+  if (held.reported || !still || ui.open.loading() || !ui.has_picture()) return false;
+  ui.wake(2);
+  if (ui.work.now - *held.since < k_hold) return false;
+  const float x = (io.MousePos.x - picture.lo.x) / std::max(1.0f, picture.width());
+  const float y = (io.MousePos.y - picture.lo.y) / std::max(1.0f, picture.height());
+  if (x < 0 || x > 1 || y < 0 || y > 1) return false;
+  held.reported = true;
+  ui.act("inspect.pixel", x, y);
+  return false;
+}
+
+void draw_pixel_card(const commands::Workspace& work, const Area& picture) {
+  if (!work.pixel || work.pixel->lines.empty()) return;
+  const std::vector<std::string>& lines = work.pixel->lines;
+  ImFont* font = theme().fonts.small;
+  float width = 0;
+  for (const std::string& line : lines) width = std::max(width, text_width(line, font));
+  width = std::min(width + 2 * px(k_pad), picture.width() - 2 * px(k_edge));
+  const float height = std::min(px(k_row) * static_cast<float>(lines.size()) + 2 * px(k_pad),
+                                picture.height() - 2 * px(k_edge));
+  if (width < px(80) || height < px(40)) return;
+  // On the side of the picture that the pixel is not on.
+  const bool right = work.pixel->at.x < 0.5f;
+  const ImVec2 lo(std::floor(right ? picture.hi.x - width - px(k_edge) : picture.lo.x + px(k_edge)),
+                  std::floor(picture.lo.y + px(k_edge)));
+  ImDrawList* list = card(lo, {lo.x + width, lo.y + height});
+  const ImVec2 at(picture.lo.x + work.pixel->at.x * picture.width(),
+                  picture.lo.y + work.pixel->at.y * picture.height());
+  list->AddCircle(at, px(5), colour::accent, 0, px(1));
+  float y = lo.y + px(k_pad);
+  for (const std::string& line : lines) {
+    if (y + px(k_row) > lo.y + height) break;
+    draw_text(list, {lo.x + px(k_pad), y}, {lo.x + width - px(k_pad), y + px(k_row)},
+              elided(line, width - 2 * px(k_pad), font), colour::text, Align::left, font);
+    y += px(k_row);
+  }
+}
+
+}  // namespace lucerna::ui
