@@ -41,7 +41,7 @@ void draw_closing_dialog(Ui& ui) {
     gap(4);
     const float w = px(124);
     bool done = true;
-    if (button("##save", "Save", true, w)) {
+    if (button("##save_scene", "Save", true, w)) {
       ui.act("scene.save");
       ui.closing = Ui::Closing::saves;
     } else {

@@ -169,7 +169,7 @@ void list_buttons(Controls& controls, size_t i, const scene::Light& light) {
   ImGui::SameLine(0, px(4));
   ImGui::BeginDisabled(sun);
   if (button("##here", spot ? "Aim here" : "Move here", false, third))
-    controls.act(spot ? "light.aim" : "light.move", i + 1);
+    controls.act(spot ? "light.aim_at" : "light.move", i + 1);
   ImGui::EndDisabled();
   tooltip(spot ? "Points the spot at the surface in the middle of the picture."
                : "Moves the lamp to the surface in the middle of the picture, some distance off.");
@@ -186,7 +186,7 @@ void light_menu(Controls& controls, size_t i, const scene::Light& light) {
     if (light.kind != scene::LightKind::directional && ImGui::Selectable("Move to the middle of the picture"))
       controls.act("light.move", i + 1);
     if (light.kind == scene::LightKind::spot && ImGui::Selectable("Aim at the middle of the picture"))
-      controls.act("light.aim", i + 1);
+      controls.act("light.aim_at", i + 1);
     if (ImGui::Selectable("Delete")) controls.act("light.delete", i + 1);
     ImGui::EndPopup();
   }

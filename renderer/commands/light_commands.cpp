@@ -160,7 +160,7 @@ void add_light_label_commands(Registry& registry, OpenScene& open) {
 
 void add_light_place_commands(Workspace& work) {
   work.registry.add(
-      {.name = "light.aim",
+      {.name = "light.aim_at",
        .help = "Points a spot at a point; without one, at the surface in the middle of the picture.",
        .parameters = {which_light(work.open), point("at", "a point of the scene")},
        .run =

@@ -15,9 +15,9 @@
 namespace lucerna::commands {
 
 bool is_kept(const std::string& key) {
-  constexpr std::array<std::string_view, 7> keys{"film.ev",        "film.background", "film.tone_curve",
-                                                 "effects.off",    "relight.groups",  "relight.mix",
-                                                 "relight.presets"};
+  constexpr std::array<std::string_view, 8> keys{"film.ev",       "film.background", "film.tone_curve",
+                                                 "scene.variant", "effects.off",     "relight.groups",
+                                                 "relight.mix",   "relight.presets"};
   return std::find(keys.begin(), keys.end(), key) != keys.end();
 }
 

@@ -112,7 +112,7 @@ TEST_CASE("lights are named, grouped, aimed and moved") {
   b.run("light.move Kitchen by=0,0.5,0");
   CHECK(b.work.open.light(1).position == vec3(1, 1.5f, 1));
   b.run("light.move 3 to=0,3,0");
-  b.run("light.aim 3 at=0,0,0");
+  b.run("light.aim_at 3 at=0,0,0");
   CHECK(b.work.open.light(2).direction == vec3(0, -1, 0));
 }
 
@@ -173,8 +173,8 @@ TEST_CASE("invalid edits of lights are refused and change nothing") {
   refused("light.delete 9", "there is no light 9; the scene has 3");
   refused("light.rename 1 \"Brass lamp\"", "there is a light 'Brass lamp' already");
   refused("light.rename 1 \"\"", "name: it is empty");
-  refused("light.aim 2", "a point lamp cannot be aimed at a point");
-  refused("light.aim 3 at=0,2,0", "the spot is there itself");
+  refused("light.aim_at 2", "a point lamp cannot be aimed at a point");
+  refused("light.aim_at 3 at=0,2,0", "the spot is there itself");
   refused("light.move 1 to=0,0,0", "a sun is infinitely far");
   refused("light.move 2 by=1,0,0 to=0,0,0", "exclude each other");
   refused("sun.set 2 date=2024-06-21", "is no sun");

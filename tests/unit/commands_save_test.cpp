@@ -45,7 +45,7 @@ TEST_CASE("a failed save is reported, and leaves something to save") {
   b.open();
   TempFolder folder;
   CHECK_THAT(b.failure("scene.save " + (folder / "a.png").string()),
-             Contains("a file (.gltf, .glb)"));
+             Contains("expected a file name that ends in .gltf or .glb"));
   b.run("light.set 1 intensity=4");
   // The fake scene was not read from a file.
   const commands::Line line = b.work.run("scene.save " + quote((folder / "a.gltf").string()));

@@ -155,15 +155,16 @@ TEST_CASE("a dropped image lights the scene; the first steps are shown on reques
 
 TEST_CASE("a lamp's strength, temperature and position are dragged in the panel, each drag one step") {
   if (test::no_display()) return;
-  const auto lines =
-      session_of("select light 3\nwait 0.3\n" + drag(1200, 526, 10, 0) + drag(1200, 578, 10, 0) +
-                 drag(1250, 630, 10, 0) + drag(1240, 656, 10, 0) + "key ctrl+z\nkey ctrl+z\nkey ctrl+z\n");
-  REQUIRE(lines.size() == 8);
-  CHECK_THAT(lines[1], Catch::StartsWith("light.set 3 intensity="));
-  CHECK_THAT(lines[2], Catch::StartsWith("light.set 3 kelvin="));
-  CHECK_THAT(lines[3], Catch::StartsWith("light.set 3 position=") && Catch::EndsWith(",2,0"));
-  CHECK_THAT(lines[4], Catch::StartsWith("light.set 3 azimuth="));
-  for (size_t i = 5; i < 8; ++i) CHECK(lines[i] == "undo");
+  const auto lines = session_of("window.section Camera false\nselect light 3\nwait 0.3\n" +
+                                drag(1200, 340, 10, 0) + drag(1200, 392, 10, 0) + drag(1250, 444, 10, 0) +
+                                drag(1240, 470, 10, 0) + "key ctrl+z\nkey ctrl+z\nkey ctrl+z\n");
+  INFO(fmt::format("{}", fmt::join(lines, "\n")));
+  REQUIRE(lines.size() == 9);
+  CHECK_THAT(lines[2], Catch::StartsWith("light.set 3 intensity="));
+  CHECK_THAT(lines[3], Catch::StartsWith("light.set 3 kelvin="));
+  CHECK_THAT(lines[4], Catch::StartsWith("light.set 3 position=") && Catch::EndsWith(",2,0"));
+  CHECK_THAT(lines[5], Catch::StartsWith("light.set 3 azimuth="));
+  for (size_t i = 6; i < 9; ++i) CHECK(lines[i] == "undo");
 }
 
 TEST_CASE("a colour is picked; emissive surfaces are listed among the lights") {
@@ -171,8 +172,8 @@ TEST_CASE("a colour is picked; emissive surfaces are listed among the lights") {
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   const auto lines =
-      session_of("select light 3\nwait 0.3\nmouse.move 1200 552\nmouse.down\nmouse.up\nwait 0.4\n" +
-                 ("screenshot " + file("picker.png") + "\n") + drag(1230, 632, 8, 8) +
+      session_of("select light 3\nwait 0.3\nmouse.move 1200 582\nmouse.down\nmouse.up\nwait 0.4\n" +
+                 ("screenshot " + file("picker.png") + "\n") + drag(1230, 662, 8, 8) +
                  "key escape\nwait 0.3\nwindow.section Camera false\nmaterial.set 1 strength=2\nselect "
                  "material 1\nwait 0.4\n"
                  "screenshot " +
@@ -181,6 +182,7 @@ TEST_CASE("a colour is picked; emissive surfaces are listed among the lights") {
     for (const char* name : {"picker.png", "surface.png"})
       std::filesystem::copy_file(file(name), std::string(keep) + "/" + name,
                                  std::filesystem::copy_options::overwrite_existing);
+  INFO(fmt::format("{}", fmt::join(lines, "\n")));
   REQUIRE(lines.size() == 5);
   CHECK_THAT(lines[1], Catch::StartsWith("light.set 3 color="));
   CHECK(lines[4] == "select material 1");

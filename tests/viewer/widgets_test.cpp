@@ -456,7 +456,7 @@ TEST_CASE("closing asks if there is something to save") {
   CHECK_FALSE(walk.ui().requests.status);
   // It cannot be saved: the window stays, with the reason.
   walk.act("window.close");
-  use(walk, "##save");
+  use(walk, "##save_scene");
   const auto begin = std::chrono::steady_clock::now();
   while (walk.ui().closing != ui::Ui::Closing::no) {
     REQUIRE(std::chrono::steady_clock::now() - begin < std::chrono::seconds(20));
