@@ -4,8 +4,8 @@
 #include <fstream>
 
 #include "base/file.h"
-#include "commands/script.h"
 #include "commands/saved_test.h"
+#include "commands/script.h"
 #include "support/folder.h"
 #include "workspace_bench.h"
 
