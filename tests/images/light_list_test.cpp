@@ -97,7 +97,8 @@ TEST_CASE("a lamp is added and removed at every stage of the building of a cache
     bed.r.step();
     bed.r.set_light_list(one);
     const film::Image image = test::finish(bed.r);
-    // Records may lie elsewhere than in a cache from scratch, and paths part elsewhere: the light is the same.
+    // Records may lie elsewhere than in a cache from scratch, and paths part elsewhere: the light is the
+    // same.
     for (int c = 0; c < film::k_components; ++c)
       CHECK(test::mean(image.components[c]) ==
             Approx(test::mean(expected.components[c])).epsilon(0.1).margin(1e-4));
