@@ -132,7 +132,8 @@ struct Bsdf {
 #endif
 #if LUCERNA_IRIDESCENCE
   float film, film_ior, film_thickness;
-  vec3 metal, metal_f0;  // weight of the conductor, and its f0
+  float metal;           // weight of the conductor
+  vec3 metal_f0;
   float dielectric;      // weight of the dielectric
 #endif
 #if LUCERNA_GLASS
@@ -195,12 +196,12 @@ vec2 specular_average(float roughness, bool delta) {
 }
 #endif
 #if LUCERNA_SOLID_GLASS || LUCERNA_SHEEN
-float glass_cell(uint first, TablePlace p) {
+float table_cell(uint first, TablePlace p) {
   vec4 e = texelFetch(bsdf_table, int(first) + p.cell);
   vec2 row = mix(e.xy, e.zw, p.at.y);
   return mix(row.x, row.y, p.at.x);
 }
-float glass_row(uint first, TablePlace p) {
+float table_row(uint first, TablePlace p) {
   vec4 e = texelFetch(bsdf_table, int(first + k_table_cells) + p.row);
   return mix(e.x, e.y, p.at.y);
 }
@@ -210,20 +211,20 @@ GLASS_VALUE glass_albedo(Bsdf b, uint table, float mu, float roughness) {
   TablePlace p = table_place(mu, roughness);
   uint first = k_table_first_glass + (table - 1u) * k_table_glass_texels;
 #if LUCERNA_GLASS_SPECULAR
-  return glass_cell(first, p) + b.face_0 * glass_cell(first + k_table_glass_block, p) +
-         (b.face_1 - 1.0) * glass_cell(first + 2u * k_table_glass_block, p);
+  return table_cell(first, p) + b.face_0 * table_cell(first + k_table_glass_block, p) +
+         (b.face_1 - 1.0) * table_cell(first + 2u * k_table_glass_block, p);
 #else
-  return glass_cell(first, p);
+  return table_cell(first, p);
 #endif
 }
 GLASS_VALUE glass_average(Bsdf b, uint table, float roughness) {
   TablePlace p = table_place(0.0, roughness);
   uint first = k_table_first_glass + (table - 1u) * k_table_glass_texels;
 #if LUCERNA_GLASS_SPECULAR
-  return glass_row(first, p) + b.face_0 * glass_row(first + k_table_glass_block, p) +
-         (b.face_1 - 1.0) * glass_row(first + 2u * k_table_glass_block, p);
+  return table_row(first, p) + b.face_0 * table_row(first + k_table_glass_block, p) +
+         (b.face_1 - 1.0) * table_row(first + 2u * k_table_glass_block, p);
 #else
-  return glass_row(first, p);
+  return table_row(first, p);
 #endif
 }
 #endif
@@ -256,7 +257,7 @@ vec2 base_average(Bsdf b) {
 
 #if LUCERNA_SPECULAR
 // (1 - E(wi)) of the dielectric's reflection, E with its complement.
-vec3 coat_transmittance(Bsdf b, float mu) {
+vec3 dielectric_transmittance(Bsdf b, float mu) {
   vec2 t = base_albedo(b, mu);
   vec3 reflected = b.d_f0 * t.x + b.d_f90 * t.y;
 #if LUCERNA_IRIDESCENCE
@@ -291,7 +292,7 @@ float clearcoat_below(Bsdf b, vec3 w) {
 #endif
 #if LUCERNA_SHEEN
 float sheen_albedo(float mu, float roughness) {
-  return glass_cell(k_table_schlick_texels, table_place(mu, max(roughness, k_least_sheen_roughness)));
+  return table_cell(k_table_schlick_texels, table_place(mu, max(roughness, k_least_sheen_roughness)));
 }
 float sheen_below(Bsdf b, float mu) { return 1.0 - max3(b.sheen) * min(sheen_albedo(mu, b.sheen_roughness), 1.0); }
 #endif
@@ -314,7 +315,7 @@ vec3 coupled_average(Bsdf b) {
   vec4 at = vec4(0.06943184, 0.33000948, 0.66999052, 0.93056816), weight = vec4(0.17392742, 0.32607258, 0.32607258, 0.17392742);
   vec3 sum = vec3(0.0);
   for (int i = 0; i < 4; ++i) {
-    vec3 c = coat_transmittance(b, at[i]);
+    vec3 c = dielectric_transmittance(b, at[i]);
 #if LUCERNA_CLEARCOAT
     c *= 1.0 - clearcoat_albedo(b, at[i]);
 #endif
@@ -372,14 +373,13 @@ Bsdf make_bsdf(SurfaceParameters s, vec3 wo) {
   b.film = s.film;
   b.film_ior = s.film_ior;
   b.film_thickness = s.film_thickness;
-  b.metal = vec3(s.metallic);
+  b.metal = s.metallic;
   b.metal_f0 = s.base;
   b.dielectric = dielectric;
 #endif
-  vec3 coat = coat_transmittance(b, mu);
-  vec3 coat_average = max(vec3(1e-6), 1.0 - b.d_f0 * t.z - b.d_f90 * t.w - b.d_f_ms * (1.0 - e1_average));
+  vec3 below = dielectric_transmittance(b, mu);
+  vec3 below_average = max(vec3(1e-6), 1.0 - b.d_f0 * t.z - b.d_f90 * t.w - b.d_f_ms * (1.0 - e1_average));
 #if LUCERNA_LAYERS
-  b.below = 1.0;
   b.p_coat = 0.0;
   b.p_sheen = 0.0;
 #if LUCERNA_CLEARCOAT
@@ -399,7 +399,7 @@ Bsdf make_bsdf(SurfaceParameters s, vec3 wo) {
 #endif
 #endif
   b.below = layers_below(b, wo);
-  coat *= b.below;
+  below *= b.below;
 #endif
 #if LUCERNA_LAYERS || LUCERNA_IRIDESCENCE
   bool layered = false;
@@ -412,18 +412,18 @@ Bsdf make_bsdf(SurfaceParameters s, vec3 wo) {
 #if LUCERNA_IRIDESCENCE
   layered = layered || s.film > 0.0;
 #endif
-  if (layered) coat_average = max(vec3(1e-6), coupled_average(b));
+  if (layered) below_average = max(vec3(1e-6), coupled_average(b));
 #endif
-  b.diffuse *= coat / coat_average;
-  b.transmitted *= coat / coat_average;
+  b.diffuse *= below / below_average;
+  b.transmitted *= below / below_average;
   b.p_specular = luminance(b.f0 * t.x + b.f90 * t.y);
 #if LUCERNA_IRIDESCENCE
   if (b.film > 0.0) b.p_specular = luminance(specular_fresnel(b, mu)) * e1;
 #endif
   b.p_specular_ms = b.delta ? 0.0 : luminance(ms) * missing;
-  // Total reflectance of the lobe, not only its prefactor: the coupling averages to coat_average.
-  b.diffuse_albedo = b.diffuse * coat_average;
-  b.transmitted_albedo = b.transmitted * coat_average;
+  // Total reflectance of the lobe, not only its prefactor: the coupling averages to below_average.
+  b.diffuse_albedo = b.diffuse * below_average;
+  b.transmitted_albedo = b.transmitted * below_average;
 #else
   b.diffuse_albedo = b.diffuse;
   b.transmitted_albedo = b.transmitted;
@@ -585,7 +585,7 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
   v.pdf = (same_side ? b.p_diffuse : b.p_transmitted) * lambert;
   v.glossy = vec3(0.0);
 #if LUCERNA_SPECULAR
-  diffuse *= coat_transmittance(b, cos_i);
+  diffuse *= dielectric_transmittance(b, cos_i);
 #endif
   v.diffuse = diffuse * lambert;
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
@@ -680,7 +680,7 @@ vec3 bsdf_diffuse(Bsdf b, vec3 wi) {
   float cos_i = abs(wi.z);
   vec3 diffuse = wi.z > 0.0 ? b.diffuse : b.transmitted;
 #if LUCERNA_SPECULAR
-  diffuse *= coat_transmittance(b, cos_i);
+  diffuse *= dielectric_transmittance(b, cos_i);
 #endif
 #if LUCERNA_LAYERS
   diffuse *= layers_below(b, wi);

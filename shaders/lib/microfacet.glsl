@@ -27,16 +27,6 @@ float ggx_visible_pdf(vec3 wo, vec3 h, float alpha) {
   return ggx_g1(wo.z, alpha) * max(0.0, dot(wo, h)) * ggx_d(h, alpha) / wo.z;
 }
 
-// Visible normals through spherical caps (Dupuy and Benyoub 2023).
-vec3 ggx_sample_visible(vec3 wo, float alpha, vec2 u) {
-  vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
-  float phi = 2.0 * k_pi * u.x;
-  float z = (1.0 - u.y) * (1.0 + v.z) - v.z;
-  float s = sqrt(clamp(1.0 - z * z, 0.0, 1.0));
-  vec3 h = vec3(s * cos(phi), s * sin(phi), z) + v;
-  return normalize(vec3(alpha * h.xy, max(h.z, 1e-20)));
-}
-
 // Brushed surfaces (Heitz 2014, section 5.4): alpha along x and along y.
 float ggx_d(vec3 h, vec2 alpha) {
   vec2 s = h.xy / alpha;
@@ -47,6 +37,8 @@ float ggx_lambda(vec3 v, vec2 alpha) {
   vec2 s = v.xy * alpha;
   return 0.5 * (sqrt(1.0 + dot(s, s) / max(v.z * v.z, 1e-30)) - 1.0);
 }
+// Visible normals through spherical caps (Dupuy and Benyoub 2023).
+// Visible normals through spherical caps (Dupuy and Benyoub 2023).
 vec3 ggx_sample_visible(vec3 wo, vec2 alpha, vec2 u) {
   vec3 v = normalize(vec3(alpha * wo.xy, wo.z));
   float phi = 2.0 * k_pi * u.x;
@@ -55,6 +47,7 @@ vec3 ggx_sample_visible(vec3 wo, vec2 alpha, vec2 u) {
   vec3 h = vec3(s * cos(phi), s * sin(phi), z) + v;
   return normalize(vec3(alpha * h.xy, max(h.z, 1e-20)));
 }
+vec3 ggx_sample_visible(vec3 wo, float alpha, vec2 u) { return ggx_sample_visible(wo, vec2(alpha), u); }
 
 // Unpolarized reflectance of a dielectric boundary; eta = n_transmitted / n_incident; 1 at total internal reflection.
 float fresnel_dielectric(float cos_i, float eta) {
