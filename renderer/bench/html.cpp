@@ -17,27 +17,6 @@ std::string three(double x) {
 
 }  // namespace
 
-std::string escape(const std::string& text) {
-  std::string out;
-  for (const char c : text) switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  return out;
-}
-
 std::string seconds_text(double s) {
   if (s < 99.95) return s < 0.01 ? fmt::format("{:.1f} ms", 1e3 * s) : three(s) + " s";
   const auto whole = (long long)(std::llround(s));

@@ -4,8 +4,6 @@
 
 namespace lucerna::bench {
 
-/// & < > " as entities.
-std::string escape(const std::string& text);
 /// "0.42 s", "4.12 s", "41.2 s", "2 min 10 s", "3 h 05 min".
 std::string seconds_text(double seconds);
 /// 0.0523 as "5.23 %", three figures.

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/error.h"
+#include "base/markup.h"
 #include "bench/html.h"
 #include "bench/page_parts.h"
 #include "bench/page_plots.h"
@@ -23,12 +24,12 @@ std::string heading(const Json& report) {
   std::string html = fmt::format(
       "<h1>What accuracy costs in time</h1>\n<p class=\"dim\" style=\"max-width:none\">lucerna bench, matrix "
       "“{}” · {} · {} · version {}</p>\n",
-      escape(text_of(report.at("matrix"), "name")), escape(text_of(report, "date")),
-      escape(report.contains("device") ? text_of(report.at("device"), "name") : ""),
-      escape(text_of(report, "version")));
+      escape_markup(text_of(report.at("matrix"), "name")), escape_markup(text_of(report, "date")),
+      escape_markup(report.contains("device") ? text_of(report.at("device"), "name") : ""),
+      escape_markup(text_of(report, "version")));
   html += incomplete(report);
   const Json& m = report.at("matrix");
-  const std::string plain = escape(text_of(m.at("settings").at(0), "name"));
+  const std::string plain = escape_markup(text_of(m.at("settings").at(0), "name"));
   html += fmt::format(
       "<p class=\"lead\">{} scene{} {} rendered with {} setting{} of the renderer, each {}, and held "
       "against a picture that was rendered much longer. <b>Error</b> is the distance from that picture: the "
@@ -49,7 +50,7 @@ std::string relative_times(const Json& report) {
   for (const Json& scene : report.at("scenes"))
     for (const Json& s : scene.at("settings"))
       if (!s.contains("relmse_time_to") || !s.contains("relmse_end")) return "";
-  const std::string first = escape(text_of(report.at("matrix").at("settings").at(0), "name"));
+  const std::string first = escape_markup(text_of(report.at("matrix").at("settings").at(0), "name"));
   std::string html = fmt::format(
       "<h3>Every pixel by its own brightness, relative mean squared error</h3>\n<p class=\"dim\">The mean "
       "over the pixels and colours of (t − r₁)(t − r₂) / (r² + 0.01), t the picture, r₁ and r₂ the halves of "
@@ -71,8 +72,8 @@ std::string relative_times(const Json& report) {
       const auto plain = [](double x) { return fmt::format("{:.3g}", x); };
       html +=
           fmt::format("<tr{}><td class=\"l scene\">{}</td><td class=\"l\">{}{}</td><td>{}</td><td>{}</td>",
-                      row, *row ? escape(text_of(scene, "name")) : "",
-                      key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")),
+                      row, *row ? escape_markup(text_of(scene, "name")) : "",
+                      key_of(index_of(report, text_of(s, "name"))), escape_markup(text_of(s, "name")),
                       seconds_text(end.at("seconds").get<double>()), with_range(end.at("relmse"), plain));
       html += !end.contains("first")
                   ? "<td></td><td></td>"
@@ -98,7 +99,7 @@ std::string seen_times(const Json& report) {
   for (const Json& scene : report.at("scenes"))
     for (const Json& s : scene.at("settings"))
       if (!s.contains("seen_time_to")) return "";
-  return "<h3>The error as it is seen</h3>\n<p class=\"dim\">" + escape(k_about_seen) + "</p>\n" +
+  return "<h3>The error as it is seen</h3>\n<p class=\"dim\">" + escape_markup(k_about_seen) + "</p>\n" +
          time_table(report, "seen_time");
 }
 
@@ -124,7 +125,7 @@ std::string index_table(const Json& report) {
       "the difficult tiles stands in the table above.</p>\n<div class=\"wrap\"><table><tr><th "
       "class=\"l\">setting</th><th class=\"l\">mean over scenes</th>";
   for (const Json& scene : report.at("scenes"))
-    html += fmt::format("<th>{}</th><th>factor</th>", escape(text_of(scene, "name")));
+    html += fmt::format("<th>{}</th><th>factor</th>", escape_markup(text_of(scene, "name")));
   html += "</tr>\n";
   for (const Json& entry : report.at("index")) {
     const std::string setting = text_of(entry, "setting");
@@ -133,7 +134,7 @@ std::string index_table(const Json& report) {
     html += fmt::format(
         "<tr><td class=\"l\">{}{}</td><td class=\"index\"><span class=\"bar\" "
         "style=\"width:{:.0f}px;background:{}\"></span>{:.0f}</td>",
-        key_of(k), escape(setting), std::max(1.0, 1.6 * value), setting_colour(k), value);
+        key_of(k), escape_markup(setting), std::max(1.0, 1.6 * value), setting_colour(k), value);
     for (const Json& scene : report.at("scenes")) {
       const Json* found = nullptr;
       for (const Json& s : scene.at("settings"))
@@ -186,10 +187,10 @@ std::string cells_table(const Json& report, const Json& scene) {
           "<tr><td class=\"l\">{}{}</td><td "
           "class=\"l\">{}</td><td>{}</td><td>{:.4g}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{}</"
           "td><td>{}</td><td>{}</td>",
-          key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")),
-          escape(text_of(c, "budget")), with_range(c.at("wall_s"), seconds_text), median_of(c.at("samples")),
-          count_text(median_of(c.at("rays"))), count_text(median_of(c.at("rays")) / seconds),
-          percent_text(median_of(c.at("estimated"))),
+          key_of(index_of(report, text_of(s, "name"))), escape_markup(text_of(s, "name")),
+          escape_markup(text_of(c, "budget")), with_range(c.at("wall_s"), seconds_text),
+          median_of(c.at("samples")), count_text(median_of(c.at("rays"))),
+          count_text(median_of(c.at("rays")) / seconds), percent_text(median_of(c.at("estimated"))),
           c.contains("tiles_median") ? percent_text(median_of(c.at("tiles_median"))) : "–",
           percent_text(median_of(c.at("tiles_decile"))),
           c.value("in_reference_noise", false) ? "in the reference’s noise"
@@ -214,7 +215,7 @@ std::string short_times(const Json& report, const Json& scene) {
   html += "</tr>\n";
   for (const Json& s : scene.at("settings")) {
     html += fmt::format("<tr><td class=\"l\">{}{}</td>", key_of(index_of(report, text_of(s, "name"))),
-                        escape(text_of(s, "name")));
+                        escape_markup(text_of(s, "name")));
     if (s.contains("error_at"))
       for (const Json& e : s.at("error_at"))
         html += "<td>" + with_range(e.at("error"), percent_text) + "</td>";
@@ -236,7 +237,7 @@ std::string component_table(const Json& report, const Json& scene) {
   for (const Json& s : scene.at("settings")) {
     const Json& c = s.at("cells").back();
     html += fmt::format("<tr><td class=\"l\">{}{}</td>", key_of(index_of(report, text_of(s, "name"))),
-                        escape(text_of(s, "name")));
+                        escape_markup(text_of(s, "name")));
     const double all = median_of(c.at("device_s"));
     for (const char* name : k_names) {
       const Json& layer = c.at("components").at(name);
@@ -254,8 +255,8 @@ std::string component_table(const Json& report, const Json& scene) {
 }
 
 std::string scene_part(const Json& report, const Json& scene, const fs::path& folder) {
-  return fmt::format("<h2>{} <small class=\"dim\">{} pixels</small></h2>\n", escape(text_of(scene, "name")),
-                     escape(text_of(scene, "size"))) +
+  return fmt::format("<h2>{} <small class=\"dim\">{} pixels</small></h2>\n",
+                     escape_markup(text_of(scene, "name")), escape_markup(text_of(scene, "size"))) +
          plots(report, scene) + pictures(scene, folder, k_of_mean) + cells_table(report, scene) +
          short_times(report, scene) + component_table(report, scene);
 }
@@ -269,8 +270,8 @@ std::string forecast_table(const Json& report) {
       rows += fmt::format(
           "<tr><td class=\"l scene\">{}</td><td class=\"l\">{}{}</td><td>{}</td><td>{}</td><td>{}</td><td>{} "
           "of {}</td></tr>\n",
-          escape(text_of(scene, "name")), key_of(index_of(report, text_of(s, "name"))),
-          escape(text_of(s, "name")), percent_text(f.at("at").get<double>()),
+          escape_markup(text_of(scene, "name")), key_of(index_of(report, text_of(s, "name"))),
+          escape_markup(text_of(s, "name")), percent_text(f.at("at").get<double>()),
           with_range(f.at("rays"), ratio_text), with_range(f.at("seconds"), ratio_text),
           f.at("in_band").get<int>(), f.at("of").get<int>());
     }
@@ -294,7 +295,7 @@ std::string measurement(const Json& report) {
       "error</th><th>nine tiles in ten</th><th>performance</th><th>rays a second</th><th>reference’s own "
       "noise</th><th>its samples</th><th>it took</th></tr>\n";
   for (const Json& scene : report.at("scenes")) {
-    html += fmt::format("<tr><td class=\"l scene\">{}</td>", escape(text_of(scene, "name")));
+    html += fmt::format("<tr><td class=\"l scene\">{}</td>", escape_markup(text_of(scene, "name")));
     for (const char* key : {"time", "tiles_time", "index", "rate"}) {
       const bool known = scene.contains("noise") && scene.at("noise").contains(key);
       html += known ? fmt::format("<td>{}</td>", ratio_text(scene.at("noise").at(key).get<double>()))

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "base/markup.h"
 #include "bench/html.h"
 #include "bench/page.h"
 #include "bench/thumbnails.h"
@@ -39,7 +40,7 @@ std::string page_head(const std::string& title) {
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\"/><title>lucerna bench: "
       "{}</title><style>{}</style></head><body><main>\n",
-      escape(title), k_style);
+      escape_markup(title), k_style);
 }
 
 std::string incomplete(const Json& report) {
@@ -55,7 +56,7 @@ std::string findings_list(const Json& report) {
   const auto found = findings(report);
   if (found.empty()) return "";
   std::string html = "<ul class=\"found\">";
-  for (const std::string& line : found) html += "<li>" + escape(line) + "</li>\n";
+  for (const std::string& line : found) html += "<li>" + escape_markup(line) + "</li>\n";
   return html + "</ul>\n";
 }
 
@@ -74,8 +75,8 @@ std::string settings_table(const Json& report) {
     html += fmt::format(
         "<tr><td class=\"l\">{}{}</td><td class=\"l wide\">{}</td><td class=\"l "
         "wide\"><code>{}</code></td></tr>\n",
-        key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")), escape(text_of(s, "about")),
-        set.empty() ? "–" : escape(set));
+        key_of(index_of(report, text_of(s, "name"))), escape_markup(text_of(s, "name")),
+        escape_markup(text_of(s, "about")), set.empty() ? "–" : escape_markup(set));
   }
   return html + "</table>\n";
 }
@@ -111,8 +112,8 @@ std::string time_table(const Json& report, const std::string& measure) {
     bool first = true;
     for (const Json& s : scene.at("settings")) {
       html += fmt::format("<tr{}><td class=\"l scene\">{}</td><td class=\"l\">{}{}</td>",
-                          first ? " class=\"first\"" : "", first ? escape(text_of(scene, "name")) : "",
-                          key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")));
+                          first ? " class=\"first\"" : "", first ? escape_markup(text_of(scene, "name")) : "",
+                          key_of(index_of(report, text_of(s, "name"))), escape_markup(text_of(s, "name")));
       for (const Json& e : s.at(measure + "_to")) {
         const std::string kind = text_of(e, "kind");
         if (!e.contains("seconds")) {
@@ -162,7 +163,7 @@ std::string pictures(const Json& scene, const fs::path& folder, const ErrorPictu
         image_tag(*error, scale, w, h, "error of " + name + ", " + what,
                   fmt::format("error of {}, {}: black 0, pale {}", name, what, percent_text(scale)),
                   folder / (stem + of.suffix + ".error.png")),
-        escape(what), percent_text(of.error(cell)), seconds_text(median_of(cell.at("wall_s"))));
+        escape_markup(what), percent_text(of.error(cell)), seconds_text(median_of(cell.at("wall_s"))));
   }
   if (html.empty()) return "";
   return fmt::format(
@@ -175,7 +176,7 @@ std::string pictures(const Json& scene, const fs::path& folder, const ErrorPictu
 std::string machine_facts(const Json& report) {
   std::string html = "<dl>";
   const auto line = [&](const char* name, const std::string& value) {
-    if (!value.empty()) html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, escape(value));
+    if (!value.empty()) html += fmt::format("<dt>{}</dt><dd>{}</dd>\n", name, escape_markup(value));
   };
   if (report.contains("machine")) {
     const Json& m = report.at("machine");
@@ -193,7 +194,8 @@ std::string machine_facts(const Json& report) {
   line("date", text_of(report, "date"));
   if (report.contains("wall_s")) line("the bench took", seconds_text(report.at("wall_s").get<double>()));
   if (!text_of(report, "command").empty())
-    html += fmt::format("<dt>command</dt><dd><code>{}</code></dd>\n", escape(text_of(report, "command")));
+    html +=
+        fmt::format("<dt>command</dt><dd><code>{}</code></dd>\n", escape_markup(text_of(report, "command")));
   return html + "</dl>\n";
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/markup.h"
 #include "bench/html.h"
 #include "bench/page_parts.h"
 
@@ -16,7 +17,7 @@ using Json = nlohmann::ordered_json;
 std::string lead(const Json& report) {
   const Json& m = report.at("matrix");
   const int repeats = m.at("repeats").get<int>();
-  const std::string first = escape(text_of(m.at("settings").at(0), "name"));
+  const std::string first = escape_markup(text_of(m.at("settings").at(0), "name"));
   return fmt::format(
       "<h1>How soon rooms are right</h1>\n<p class=\"dim\" style=\"max-width:none\">lucerna bench, matrix "
       "“{}” · {} · {} · version {}</p>\n{}<p class=\"lead\">Every render is a process of its own, as "
@@ -24,10 +25,11 @@ std::string lead(const Json& report) {
       "compiling are not. Settings take turns, every second round backwards{}.</p>\n<p><b>Error as seen.</b> "
       "{}</p>\n<p><b>Factors</b> are by how much less variance × time is than that of <b>{}</b>, the first "
       "setting: of two renders of equal time the quotient of their squared errors. {}</p>\n",
-      escape(text_of(m, "name")), escape(text_of(report, "date")),
-      escape(report.contains("device") ? text_of(report.at("device"), "name") : ""),
-      escape(text_of(report, "version")), incomplete(report),
-      repeats > 1 ? fmt::format(", {} rounds with a seed each", repeats) : "", escape(k_about_seen), first,
+      escape_markup(text_of(m, "name")), escape_markup(text_of(report, "date")),
+      escape_markup(report.contains("device") ? text_of(report.at("device"), "name") : ""),
+      escape_markup(text_of(report, "version")), incomplete(report),
+      repeats > 1 ? fmt::format(", {} rounds with a seed each", repeats) : "", escape_markup(k_about_seen),
+      first,
       repeats > 1 ? "Below it is the interval that holds the true factor nine times in ten, by how repeats "
                     "scatter; factors whose interval holds 1 are dim."
                   : "Of one repeat each, how far they can be trusted is not known.");
@@ -50,7 +52,7 @@ std::string means(const Json& report) {
   std::string html =
       "<h2>All scenes</h2>\n<p>Geometric means of the factors.</p>\n<table "
       "style=\"width:auto\"><tr><th class=\"l\">setting</th><th class=\"l\">against</th>";
-  for (const std::string& budget : budgets) html += fmt::format("<th>{}</th>", escape(budget));
+  for (const std::string& budget : budgets) html += fmt::format("<th>{}</th>", escape_markup(budget));
   html += "<th>scenes</th></tr>\n";
   const Json& settings = report.at("matrix").at("settings");
   for (const char* key : {"seen_ratios", "seen_besides"})
@@ -67,9 +69,9 @@ std::string means(const Json& report) {
       }
       if (scenes > 0)
         html += fmt::format("<tr><td class=\"l\">{}{}</td><td class=\"l\">{}</td>{}<td>{:.0f}</td></tr>\n",
-                            key_of(index_of(report, name)), escape(name),
-                            escape(key == std::string("seen_ratios") ? text_of(settings.at(0), "name")
-                                                                     : text_of(s, "beside")),
+                            key_of(index_of(report, name)), escape_markup(name),
+                            escape_markup(key == std::string("seen_ratios") ? text_of(settings.at(0), "name")
+                                                                            : text_of(s, "beside")),
                             row, scenes);
     }
   return html + "</table>\n";
@@ -96,15 +98,15 @@ std::string errors_table(const Json& report) {
       "<h2>Error as seen after a time</h2>\n<p>Median of the repeats, the range below it.</p>\n<div "
       "class=\"wrap\"><table><tr><th class=\"l\">scene</th><th class=\"l\">setting</th>";
   for (const std::string& budget : budgets)
-    html += fmt::format("<th>{}</th><th>squared</th><th>factor</th>{}", escape(budget),
+    html += fmt::format("<th>{}</th><th>squared</th><th>factor</th>{}", escape_markup(budget),
                         beside ? "<th>over the<br/>one beside</th>" : "");
   html += "</tr>\n";
   for (const Json& scene : report.at("scenes")) {
     const char* row = " class=\"first\"";
     for (const Json& s : scene.at("settings")) {
       html += fmt::format("<tr{}><td class=\"l scene\">{}</td><td class=\"l\">{}{}</td>", row,
-                          *row ? escape(text_of(scene, "name")) : "",
-                          key_of(index_of(report, text_of(s, "name"))), escape(text_of(s, "name")));
+                          *row ? escape_markup(text_of(scene, "name")) : "",
+                          key_of(index_of(report, text_of(s, "name"))), escape_markup(text_of(s, "name")));
       row = "";
       for (const std::string& budget : budgets) {
         const Json* cell = cell_of(s, budget);
@@ -143,16 +145,17 @@ std::string references_table(const Json& report) {
       html += fmt::format(
           "<tr><td class=\"l scene\">{}</td><td>{}</td><td>{}</td><td>{}</td><td>± "
           "{:.2g}</td><td>{}</td></tr>\n",
-          escape(text_of(scene, "name")), escape(text_of(scene, "size")), r.at("samples").get<int>(),
-          seconds_text(r.at("seconds").get<double>()), r.at("seen_noise").get<double>(),
+          escape_markup(text_of(scene, "name")), escape_markup(text_of(scene, "size")),
+          r.at("samples").get<int>(), seconds_text(r.at("seconds").get<double>()),
+          r.at("seen_noise").get<double>(),
           known ? ratio_text(scene.at("noise").at("seen_index").get<double>()) : "not known");
     }
   return html + "</table>\n";
 }
 
 std::string scene_part(const Json& report, const Json& scene, const fs::path& folder) {
-  return fmt::format("<h2>{} <small class=\"dim\">{} pixels</small></h2>\n", escape(text_of(scene, "name")),
-                     escape(text_of(scene, "size"))) +
+  return fmt::format("<h2>{} <small class=\"dim\">{} pixels</small></h2>\n",
+                     escape_markup(text_of(scene, "name")), escape_markup(text_of(scene, "size"))) +
          seen_plot(report, scene) + pictures(scene, folder, k_as_seen);
 }
 

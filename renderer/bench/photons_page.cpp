@@ -1,6 +1,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "base/markup.h"
 #include "bench/html.h"
 #include "bench/page_plots.h"
 #include "bench/photon_errors.h"
@@ -157,7 +158,7 @@ std::string as_html(const Table& t) {
   for (size_t k = 0; k < t.size(); ++k) {
     html += "<tr>";
     for (const std::string& cell : t[k])
-      html += k == 0 ? "<th>" + escape(cell) + "</th>" : "<td>" + escape(cell) + "</td>";
+      html += k == 0 ? "<th>" + escape_markup(cell) + "</th>" : "<td>" + escape_markup(cell) + "</td>";
     html += "</tr>\n";
   }
   return html + "</table></div>\n";
@@ -234,15 +235,17 @@ std::string photons_page(const Json& report) {
         "content=\"width=device-width, initial-scale=1\"/><title>lucerna bench: photons</title><style>{}"
         "</style></head><body><main>\n<h1>What photons cost, and how their errors fall</h1>\n<p "
         "class=\"dim\">{}, {}; Lucerna {}, {}</p>\n<ul class=\"found\">\n",
-        k_style, escape(text_of(report.at("machine"), "cpu")), escape(text_of(report.at("device"), "name")),
-        escape(text_of(report, "version")), escape(text_of(report, "date")));
-    for (const std::string& found : photon_findings(report)) html += "<li>" + escape(found) + "</li>\n";
+        k_style, escape_markup(text_of(report.at("machine"), "cpu")),
+        escape_markup(text_of(report.at("device"), "name")), escape_markup(text_of(report, "version")),
+        escape_markup(text_of(report, "date")));
+    for (const std::string& found : photon_findings(report))
+      html += "<li>" + escape_markup(found) + "</li>\n";
     html += "</ul>\n";
     if (report.contains("slopes")) {
-      html += "<h2>Errors over rounds and radii</h2>\n<p>" + escape(k_about_slopes) + "</p>\n";
+      html += "<h2>Errors over rounds and radii</h2>\n<p>" + escape_markup(k_about_slopes) + "</p>\n";
       for (const Json& s : report.at("slopes"))
-        html += fmt::format("<h3>{}, {}</h3>\n<p class=\"dim\">{}</p>\n", escape(text_of(s, "scene")),
-                            escape(text_of(s, "series")), escape(about_series(s))) +
+        html += fmt::format("<h3>{}, {}</h3>\n<p class=\"dim\">{}</p>\n", escape_markup(text_of(s, "scene")),
+                            escape_markup(text_of(s, "series")), escape_markup(about_series(s))) +
                 "<div class=\"plots\"><figure>" + plot_of(s) + "</figure><div>" + as_html(slope_points(s)) +
                 "</div></div>" + as_html(slopes_table(s));
     }
@@ -266,7 +269,7 @@ std::string photons_page(const Json& report) {
           "<h2>Where nothing bundles light</h2>\n<p>{}: photons for caustics against path tracing, in turns, "
           "{} pairs of {} samples, {} of CPU time each: {:+.2f} % ({:+.2f} to {:+.2f}, the median's 95 % "
           "interval); {:.0f} light paths sent.</p>\n",
-          escape(text_of(f, "scene")), f.at("pairs").get<int>(), f.at("samples").get<int>(),
+          escape_markup(text_of(f, "scene")), f.at("pairs").get<int>(), f.at("samples").get<int>(),
           seconds_text(f.at("path_cpu_s").get<double>()), 100 * f.at("extra").get<double>(),
           100 * f.at("low").get<double>(), 100 * f.at("high").get<double>(),
           f.at("light_paths").get<double>());
@@ -277,9 +280,10 @@ std::string photons_page(const Json& report) {
         "<dt>processor</dt><dd>{}, {} cores</dd>\n<dt>device</dt><dd>{}, {}</dd>\n<dt>load "
         "before</dt><dd>{:.2f}"
         "</dd>\n<dt>the bench took</dt><dd>{}</dd>\n<dt>command</dt><dd><code>{}</code></dd></dl>\n",
-        escape(text_of(m, "cpu")), m.at("cores").get<int>(), escape(text_of(report.at("device"), "name")),
-        escape(text_of(report.at("device"), "driver")), m.at("load").get<double>(),
-        seconds_text(report.at("wall_s").get<double>()), escape(text_of(report, "command")));
+        escape_markup(text_of(m, "cpu")), m.at("cores").get<int>(),
+        escape_markup(text_of(report.at("device"), "name")),
+        escape_markup(text_of(report.at("device"), "driver")), m.at("load").get<double>(),
+        seconds_text(report.at("wall_s").get<double>()), escape_markup(text_of(report, "command")));
     return html + "</main></body></html>\n";
   } catch (const nlohmann::json::exception& e) {
     throw_error("report", "not as a bench writes it: {}", e.what());

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/markup.h"
 #include "bench/html.h"
 
 namespace lucerna::bench {
@@ -136,7 +137,7 @@ std::string make_plot(const std::vector<PlotLine>& lines, const std::vector<doub
   std::string svg = fmt::format(
       "<svg viewBox=\"0 0 {} {}\" role=\"img\" aria-label=\"{}\">\n<rect x=\"{}\" y=\"{}\" width=\"{}\" "
       "height=\"{}\" fill=\"#191919\"/>\n",
-      k_width, k_height, escape(title), x.from, y.to, x.to - x.from, y.from - y.to);
+      k_width, k_height, escape_markup(title), x.from, y.to, x.to - x.from, y.from - y.to);
   for (const double t : axis_ticks(x, 26))
     svg += fmt::format(
         "<path d=\"M{0:.1f} {1} V{2}\" stroke=\"#2b2b2b\"/><text x=\"{0:.1f}\" y=\"{3}\" fill=\"#a09f9d\" "
@@ -154,7 +155,7 @@ std::string make_plot(const std::vector<PlotLine>& lines, const std::vector<doub
   svg += fmt::format(
       "<text x=\"{}\" y=\"{}\" fill=\"#a09f9d\" text-anchor=\"end\">{}</text>\n"
       "<text x=\"{}\" y=\"{}\" fill=\"#e2e1df\">{}</text>\n",
-      x.to, k_height - 8, across_text(across), k_left, k_top - 12, escape(error_axis));
+      x.to, k_height - 8, across_text(across), k_left, k_top - 12, escape_markup(error_axis));
 
   std::vector<double> ends;
   std::vector<size_t> labelled;
@@ -175,20 +176,20 @@ std::string make_plot(const std::vector<PlotLine>& lines, const std::vector<doub
       svg += fmt::format(
           "<path d=\"{}\" fill=\"none\" stroke=\"{}\" stroke-width=\"1.75\" stroke-linejoin=\"round\">"
           "<title>{}</title></path>\n",
-          path_of(line, x, y), line.colour, escape(line.name));
+          path_of(line, x, y), line.colour, escape_markup(line.name));
     for (const PlotLine::Dot& d : line.dots)
       svg += fmt::format(
           "<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"3.5\" fill=\"#191919\" stroke=\"{}\" "
           "stroke-width=\"1.75\">"
           "<title>{}</title></circle>\n",
-          x.at(d.across), y.at(d.error), line.colour, escape(d.title));
+          x.at(d.across), y.at(d.error), line.colour, escape_markup(d.title));
     // From the end of the line to its name.
     const double from = x.at(line.points.empty() ? line.dots.back().across : line.points.back().across);
     svg += fmt::format(
         "<path d=\"M{:.1f} {:.1f} L{:.1f} {:.1f}\" stroke=\"{}\" stroke-opacity=\"0.35\" "
         "stroke-dasharray=\"2 3\"/><text x=\"{:.1f}\" y=\"{:.1f}\" fill=\"{}\">{}</text>\n",
         from + 4, ends[k], x.to + 4, at[k], line.colour, x.to + 8, at[k] + 4, line.colour,
-        escape(line.name.size() > 14 ? line.name.substr(0, 13) + "…" : line.name));
+        escape_markup(line.name.size() > 14 ? line.name.substr(0, 13) + "…" : line.name));
   }
   return svg + "</svg>";
 }

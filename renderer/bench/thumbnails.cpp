@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "base/file.h"
+#include "base/markup.h"
 #include "bench/folder.h"
 #include "bench/html.h"
 #include "film/io/image_file.h"
@@ -29,7 +30,7 @@ std::string tag_of(const std::string& png, uint32_t width, uint32_t height, cons
                    const std::string& title) {
   return fmt::format(
       "<img width=\"{}\" height=\"{}\" alt=\"{}\" title=\"{}\" src=\"data:image/png;base64,{}\"/>", width,
-      height, escape(alt), escape(title), base64(png));
+      height, escape_markup(alt), escape_markup(title), base64(png));
 }
 
 }  // namespace

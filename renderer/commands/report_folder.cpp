@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/markup.h"
 
 namespace lucerna::commands {
 namespace {
@@ -27,28 +28,11 @@ figure { margin: 0 } figcaption { color: #a09f9d } img { width: 100%; image-rend
 </style></head><body>
 )";
 
-std::string html(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    if (c == '&')
-      out += "&amp;";
-    else if (c == '<')
-      out += "&lt;";
-    else if (c == '>')
-      out += "&gt;";
-    else if (c == '"')
-      out += "&quot;";
-    else
-      out += c;
-  }
-  return out;
-}
-
 std::string figure(const std::string& file, const char* caption) {
   if (file.empty()) return fmt::format("<figure><figcaption>{}: none</figcaption></figure>", caption);
   return fmt::format(
       "<figure><a href=\"{0}\"><img src=\"{0}\" alt=\"{1}\"></a><figcaption>{1}</figcaption></figure>",
-      html(file), caption);
+      escape_markup(file), caption);
 }
 
 const char* name_of(Outcome outcome) {
@@ -59,19 +43,21 @@ const char* name_of(Outcome outcome) {
 
 std::string report_page(const std::vector<ScriptResult>& results) {
   std::string text = k_head;
-  text += "<h1>" + html(summary(results)) + "</h1>\n";
+  text += "<h1>" + escape_markup(summary(results)) + "</h1>\n";
   for (const ScriptResult& r : results) {
-    text += fmt::format("<h2>{} <span class=\"{}\">{}</span></h2>\n<table>\n", html(r.script),
+    text += fmt::format("<h2>{} <span class=\"{}\">{}</span></h2>\n<table>\n", escape_markup(r.script),
                         r.passed() ? "passed" : "failed", r.passed() ? "passed" : "failed");
     for (const ScriptCase& c : r.cases) {
       text += fmt::format(
           "<tr><td class=\"{0}\">{0}</td><td><code>{1}</code><br>{2} <span class=\"dim\">{3}, {4:.2f} "
           "s</span>",
-          name_of(c.outcome), html(c.line), html(c.message), html(c.where), c.seconds);
+          name_of(c.outcome), escape_markup(c.line), escape_markup(c.message), escape_markup(c.where),
+          c.seconds);
       for (const DifferentPicture& p : c.pictures) {
         text += "<div class=\"pictures\">" + figure(p.reference, "reference") + figure(p.now, "now") +
                 figure(p.difference, "difference") + "</div>";
-        if (!p.accept.empty()) text += "To accept the new picture: <code>" + html(p.accept) + "</code>";
+        if (!p.accept.empty())
+          text += "To accept the new picture: <code>" + escape_markup(p.accept) + "</code>";
       }
       text += "</td></tr>\n";
     }

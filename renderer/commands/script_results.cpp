@@ -4,33 +4,17 @@
 
 #include <algorithm>
 
+#include "base/markup.h"
+
 namespace lucerna::commands {
 namespace {
 
 using Outcome = ScriptCase::Outcome;
 
-/// Text as XML: entities, and without characters that XML 1.0 cannot hold.
-std::string xml(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        out += "&amp;";
-        break;
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        if (static_cast<unsigned char>(c) >= 0x20 || c == '\n' || c == '\t') out += c;
-    }
-  }
-  return out;
+/// Text as XML, without characters that XML 1.0 cannot hold.
+std::string xml(std::string text) {
+  std::erase_if(text, [](char c) { return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\t'; });
+  return escape_markup(text);
 }
 
 std::string counted(size_t n, const char* what) { return n > 0 ? fmt::format(", {} {}", n, what) : ""; }
