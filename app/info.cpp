@@ -4,8 +4,10 @@
 #include "app/size.h"
 #include "app/verbs.h"
 #include "base/json_text.h"
+#include "base/log.h"
 #include "plan/facts_text.h"
 #include "scene/io/load.h"
+#include "session/effect_measurement.h"
 #include "session/renderer.h"
 
 namespace lucerna::app {
@@ -21,20 +23,40 @@ struct Piloted {
   uint32_t width = 0, height = 0;
 };
 
-Piloted run_pilot(const InfoArguments& a) {
-  Piloted result;
-  std::tie(result.width, result.height) = parse_size(a.size);
-  session::Renderer r({.device = a.device, .scenes = a.scenes});
-  r.set_size(result.width, result.height);
-  std::vector<session::SettingChange> changes;
-  for (const char* name : paths::k_component_names)
-    changes.push_back({std::string("components.") + name, plan::k_auto, "info"});
+/// Loads the scene for the picture of the arguments; `changes`: settings before those of --set.
+void load_picture(session::Renderer& r, const InfoArguments& a, std::vector<session::SettingChange> changes) {
+  const auto [width, height] = parse_size(a.size);
+  r.set_size(width, height);
   for (const std::string& change : a.set) {
     const auto [key, value] = split_change(change, "--set");
     changes.push_back({key, value, "--set"});
   }
   r.load(a.scene, {}, changes);
   if (!a.camera.empty()) r.choose_camera(a.camera);
+}
+
+session::EffectCosts measure_costs(const InfoArguments& a) {
+  const session::RendererOptions options{.device = a.device, .scenes = a.scenes};
+  session::Renderer r(options);
+  load_picture(r, a, {});
+  session::EffectMeasurement measurement(r, options);
+  std::string activity;
+  while (!measurement.done()) {
+    if (measurement.activity() != std::exchange(activity, measurement.activity()))
+      log::info("{} ({:.0f} %)", activity, 100 * measurement.progress());
+    measurement.step({});
+  }
+  return measurement.take();
+}
+
+Piloted run_pilot(const InfoArguments& a) {
+  Piloted result;
+  std::tie(result.width, result.height) = parse_size(a.size);
+  session::Renderer r({.device = a.device, .scenes = a.scenes});
+  std::vector<session::SettingChange> changes;
+  for (const char* name : paths::k_component_names)
+    changes.push_back({std::string("components.") + name, plan::k_auto, "info"});
+  load_picture(r, a, std::move(changes));
   while (r.choosing() && r.step()) {
   }
   if (r.findings()) result.findings = *r.findings();
@@ -94,14 +116,17 @@ int info(const InfoArguments& a) {
   const plan::SceneFacts facts = plan::facts_of(scene);
   std::optional<Piloted> pilot;
   if (a.pilot) pilot = run_pilot(a);
+  std::optional<session::EffectCosts> costs;
+  if (a.cost) costs = measure_costs(a);
   if (a.json) {
     Json all = scene::describe(scene);
     all["effects"] = plan::effects_json(facts);
     if (pilot) all["pilot"] = pilot_json(*pilot);
+    if (costs) all["costs"] = session::costs_json(*costs);
     std::printf("%s\n", json_text(all, 2).c_str());
   } else {
-    std::printf("%s%s%s", scene::describe_text(scene).c_str(), plan::effects_text(facts).c_str(),
-                pilot ? pilot_text(*pilot).c_str() : "");
+    std::printf("%s%s%s%s", scene::describe_text(scene).c_str(), plan::effects_text(facts).c_str(),
+                costs ? session::costs_text(*costs).c_str() : "", pilot ? pilot_text(*pilot).c_str() : "");
   }
   return 0;
 }

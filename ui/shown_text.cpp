@@ -28,7 +28,7 @@ std::vector<std::string> shown_texts(const session::Snapshot& s) {
 
 std::string usable_text(const session::Snapshot& s) {
   if (!s.shown_error) return "";
-  if (session::usable(*s.shown_error)) return ": usable";
+  if (session::usable(*s.shown_error)) return s.coarse ? ": usable, still coarse" : ": usable";
   const double excess = std::max(s.shown_error->median / session::k_usable_error.median,
                                  s.shown_error->worst_tenth / session::k_usable_error.worst_tenth);
   // During preparation the picture has little of the time.

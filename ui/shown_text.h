@@ -15,7 +15,8 @@ bool shows_former(const session::Snapshot& snapshot);
 /// during preparation "12 % off, 42 % from the preview". Shorter texts follow for less
 /// room. Empty: the picture is its samples, whose noise the Accuracy panel plots.
 std::vector<std::string> shown_texts(const session::Snapshot& snapshot);
-/// ": usable"; ", usable in about 3 s", as errors fall with the square root of the time after preparation;
+/// ": usable"; ": usable, still coarse" before the first sample at full resolution; ", usable in about 3 s",
+/// as errors fall with the square root of the time after preparation;
 /// ", not usable yet" during preparation; "" without an error.
 std::string usable_text(const session::Snapshot& snapshot);
 /// Why the picture stays black or as it was before an edit: rendering is paused without a sample. ""

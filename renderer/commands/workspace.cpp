@@ -38,6 +38,7 @@ Workspace::Workspace(session::Session& s, WorkspaceEvents e)
   add_session_test_commands(*this);
   add_wait_commands(*this);
   add_inspect_commands(*this);
+  add_effect_commands(registry, open);
   add_solver_commands(registry, open, files);
   add_values(*this);
 }

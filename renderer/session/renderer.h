@@ -62,6 +62,8 @@ class Renderer {
   ~Renderer();
 
   gpu::Device& device() { return *device_; }
+  /// For another renderer on it (RendererOptions::on), used by the same thread.
+  std::shared_ptr<gpu::Device> shared_device() const { return device_; }
   /// Loads a file and makes it ready to render. On failure throws Error and the former scene stays.
   /// `changes`: settings that override the scene's.
   void load(const std::filesystem::path& file, const Progress& progress = {},

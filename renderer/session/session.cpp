@@ -41,6 +41,7 @@ void Session::load(const std::filesystem::path& file) {
       throw Abandoned();
     }
     ++s->scene_id;
+    s->end_effects(nullptr);
     s->restarted();
     s->give_up_saves("another scene was loaded");
     const auto count = [](uint64_t n, const char* what) {
@@ -195,6 +196,22 @@ std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at, Sc
   const auto run = [s = impl_.get(), at, promise](Renderer&) { s->measures.push_back({at, promise}); };
   impl_->post({.run = run, .subject = "the exposure", .scene = scene});
   return result;
+}
+
+void Session::measure_effects(SceneId scene) {
+  const auto run = [s = impl_.get()](Renderer& r) {
+    s->effects = std::make_unique<EffectMeasurement>(
+        r, RendererOptions{.shaders = s->options.shaders, .scenes = s->options.scenes});
+    s->next.measures_effects = true;
+  };
+  impl_->post({.run = run, .subject = "the effects", .scene = scene});
+}
+
+void Session::stop_measuring_effects() {
+  const auto run = [s = impl_.get()](Renderer&) {
+    if (s->effects) s->end_effects(s->next.effect_costs);
+  };
+  impl_->post({.run = run, .subject = "the effects"});
 }
 
 std::shared_future<film::FilmImage> Session::layers(SceneId scene) {

@@ -32,6 +32,8 @@ inline bool usable(const film::ShownError& e) {
   return e.median < k_usable_error.median && e.worst_tenth < k_usable_error.worst_tenth;
 }
 
+struct EffectCosts;
+
 struct ComponentStatus {
   std::string solver = "path";  ///< who computes it: "path", "cache+photons", "off", ...
   std::string reason;           ///< why, if the setting is auto
@@ -82,6 +84,9 @@ struct Snapshot {
   std::optional<film::ShownError> shown_error;
   /// Why light groups are not separate, so that a mix relights the picture; "" if they are separate.
   std::string lights_together;
+  /// Result of the latest measure_effects() for this scene; null: none.
+  std::shared_ptr<const EffectCosts> effect_costs;
+  bool measures_effects = false;  ///< it is at work; `activity` and `progress` say how far
   bool paused = false, finished = false;
   bool resting = false;  ///< nothing is left to do until the next command: finished or paused, and drawn
   /// Current preparation (solvers::Report::preparing), or "".
@@ -173,6 +178,10 @@ class Session {
   void inspect(std::optional<vec2> at, SceneId scene = k_any_scene);
   /// Renderer::measure, as soon as there is an image; get() throws on failure. Nothing is logged.
   std::shared_future<film::Brightness> measure(std::optional<vec2> at, SceneId scene = k_any_scene);
+  /// Measures what each effect of the scene costs and contributes (EffectMeasurement), while the picture
+  /// waits. Errors are logged, as is the result, which snapshots contain from then on.
+  void measure_effects(SceneId scene = k_any_scene);
+  void stop_measuring_effects();
   /// The layers of the present picture as floats (Renderer::film_image_with_halves); get() throws Error if it
   /// has no sample. Nothing is logged.
   std::shared_future<film::FilmImage> layers(SceneId scene = k_any_scene);

@@ -107,6 +107,27 @@ void Session::Impl::advance(Renderer& renderer, bool work) {
   }
 }
 
+void Session::Impl::measure_effects() {
+  effects->step([&] { return pending.load() || quit; });
+  if (!effects->done()) {
+    if (since_publish.seconds() < k_publish_seconds) return;
+    since_publish.restart();
+    publish_activity(effects->activity(), float(effects->progress()));
+    return;
+  }
+  auto result = std::make_shared<const EffectCosts>(effects->take());
+  log::info("{}", costs_line(*result));
+  end_effects(std::move(result));
+}
+
+void Session::Impl::end_effects(std::shared_ptr<const EffectCosts> result) {
+  effects.reset();
+  next.effect_costs = std::move(result);
+  next.measures_effects = false;
+  next.activity.clear(), next.progress = -1;
+  dirty = true;
+}
+
 /// `numbers`: including values read back from the film.
 void Session::Impl::publish_picture(Renderer& renderer, bool numbers) {
   if (numbers) since_numbers.restart();
@@ -144,7 +165,7 @@ void Session::Impl::run() {
           return quit || !queue.empty();
         }))
       continue;
-    const bool work = renderer && works(*renderer) && !(mixing && dirty);
+    const bool work = renderer && (effects || works(*renderer)) && !(mixing && dirty);
     if (renderer && !work) renderer->rest();
     if (!work && !dirty && !mixing) {
       wake.wait(lock, [&] { return quit || !queue.empty(); });
@@ -158,7 +179,9 @@ void Session::Impl::run() {
           renderer->settle_mix();
           publish_picture(*renderer, false);
         }
-        advance(*renderer, work);
+        if (effects) measure_effects();
+        // Edits are shown meanwhile, by preview samples.
+        if (!effects || dirty || coarse_wanted) advance(*renderer, work && !effects);
       } else {
         publish();
         dirty = false;
@@ -167,6 +190,11 @@ void Session::Impl::run() {
       log::error("{}", e.what());
       next.activity.clear();
       next.progress = -1;
+      if (effects) {
+        end_effects(next.effect_costs);
+        lock.lock();
+        continue;
+      }
       next.paused = paused = true;
       // A picture of the former scene must not be shown for this one.
       if (next.scene_id != scene_id && renderer)

@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "base/timer.h"
 #include "film/io/stochastic.h"
+#include "session/effect_measurement.h"
 #include "session/renderer.h"
 #include "session/session.h"
 #include "solvers/registry.h"
@@ -58,7 +59,8 @@ struct Session::Impl {
     std::optional<vec2> at;
     std::shared_ptr<std::promise<film::Brightness>> promise;
   };
-  std::vector<Measure> measures;  // waiting for a picture
+  std::vector<Measure> measures;               // waiting for a picture
+  std::unique_ptr<EffectMeasurement> effects;  // while it is at work
 
   bool works(Renderer& r) const {
     return r.ready() && !paused && (!r.done() || r.filter_due()) && !r.waits();
@@ -224,7 +226,7 @@ struct Session::Impl {
     next.lights_together = r.relight().why_not;
     next.paused = paused;
     next.finished = r.done();
-    next.resting = !works(r) && !r.overlay_waits() && !r.mix_pending();
+    next.resting = !works(r) && !effects && !r.overlay_waits() && !r.mix_pending();
     next.seconds = r.seconds();
     next.prepared_seconds = r.prepared_seconds();
     next.reports = r.reports();
@@ -271,6 +273,10 @@ struct Session::Impl {
   /// Traces a preview sample or, with `work`, a work item of the picture; publishes it if it is time.
   void advance(Renderer& renderer, bool work);
   void publish_picture(Renderer& renderer, bool numbers);
+  /// Does a part of the measurement of effects.
+  void measure_effects();
+  /// Ends it, with its result or without.
+  void end_effects(std::shared_ptr<const EffectCosts> result);
   /// Writes pending saves before the thread ends; `lock` is held before, not after.
   void end(Renderer* renderer, std::unique_lock<std::mutex>& lock);
   void run();

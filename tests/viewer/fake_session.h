@@ -15,6 +15,7 @@
 
 #include "base/log.h"
 #include "base/timer.h"
+#include "session/effect_costs.h"
 #include "session/session.h"
 #include "solvers/irradiance_cache/report.h"
 
@@ -128,6 +129,7 @@ struct Session::Impl {
   bool paused = false;
   std::string reference;
   std::optional<vec2> looked_at;
+  std::shared_ptr<const EffectCosts> effect_costs;
   // The build of the cache since the last pause: six stages, then it is complete.
   uint32_t stages = 0;
   bool cache_runs = false;
@@ -207,6 +209,7 @@ struct Session::Impl {
     if (scene && width > 0 && fake::more)
       if (const auto reported = fake::more(settings, looked_at))
         s->reports.push_back(std::make_shared<solvers::Report>(*reported));
+    s->effect_costs = effect_costs;
     s->mrays_per_second = 3.42, s->rays = 1234567ull * samples;
     s->device_mb = 212, s->host_mb = 1480;
     const double shares[] = {0.618, 0.241, 0.126, 0.015}, ms[] = {412, 380, 1210, 96};
@@ -533,6 +536,18 @@ void Session::clear_reference() {
 void Session::inspect(std::optional<vec2> at, SceneId scene) {
   impl_->post([this, at] { impl_->looked_at = at, impl_->publish(); }, scene);
 }
+void Session::measure_effects(SceneId scene) {
+  impl_->post(
+      [this] {
+        EffectCosts costs{.width = impl_->width, .height = impl_->height, .sample_ms = 400};
+        costs.effects = {{.key = "tertiary", .label = "Deeper interreflection", .ms = 120, .ms_error = 4},
+                         {.key = "primary", .label = "Emitters and direct light", .ms = 80, .ms_error = 4}};
+        impl_->effect_costs = std::make_shared<const EffectCosts>(costs);
+        impl_->publish();
+      },
+      scene);
+}
+void Session::stop_measuring_effects() {}
 Saved Session::save(const std::filesystem::path& file, bool) {
   auto promise = std::make_shared<std::promise<void>>();
   impl_->post([file, promise] {
