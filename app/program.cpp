@@ -14,6 +14,7 @@
 #include "base/huge_pages.h"
 #include "base/log.h"
 #include "bench/matrix.h"
+#include "commands/lens.h"
 #include "commands/script.h"
 #include "plan/settings.h"
 #include "scene/range.h"
@@ -163,6 +164,12 @@ void Program::add_render() {
           "metres to the lens's plane of focus, along the view axis; by default the scene's, or else "
           "to the surface in the middle of the picture")
       ->check(finite() & CLI::Range(scene::k_least_focus, scene::k_max_coordinate));
+  render_
+      ->add_option(
+          "--projection", r.projection,
+          "of the camera, instead of the scene's: perspective; panorama, all directions by longitude "
+          "and latitude (best twice as wide as high); fisheye, 180 degrees in a circle")
+      ->check(CLI::IsMember(commands::projection_names()));
   render_->add_flag(
       "--upright", r.upright,
       "level the camera and shift the lens so that the middle of the picture stays: vertical lines "
@@ -225,9 +232,14 @@ void Program::add_small_verbs() {
   info_->add_flag("--pilot", i.pilot,
                   "trace a few samples: light, noise and the solver that components.X=auto chooses for each "
                   "component, with its reason, and a forecast");
-  info_->add_option("--size", i.size, "--pilot: size of the picture, WIDTHxHEIGHT")->capture_default_str();
-  info_->add_option("--camera", i.camera, "--pilot: name of a camera of the scene, or its number from 1");
-  info_->add_option("--set", i.set, "--pilot: KEY=VALUE")->allow_extra_args(false);
+  info_->add_flag("--cost", i.cost,
+                  "trace small pictures without each of the effects: what it costs per sample, the light and "
+                  "the noise that are in it, and how much of it is seen; about a minute");
+  info_->add_option("--size", i.size, "--pilot, --cost: size of the picture, WIDTHxHEIGHT")
+      ->capture_default_str();
+  info_->add_option("--camera", i.camera,
+                    "--pilot, --cost: name of a camera of the scene, or its number from 1");
+  info_->add_option("--set", i.set, "--pilot, --cost: KEY=VALUE")->allow_extra_args(false);
   info_->add_option("--device", i.device, k_device_help);
   add_scene_options(info_);
   convert_ = app_.add_subcommand(

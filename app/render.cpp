@@ -16,6 +16,7 @@
 #include "base/log.h"
 #include "base/timer.h"
 #include "commands/camera_control.h"
+#include "commands/lens.h"
 #include "session/pick.h"
 #include "session/renderer.h"
 
@@ -135,16 +136,21 @@ void set_limits(session::Renderer& r, const RenderArguments& a,
 /// The command line's lens and shift for the camera.
 void set_lens(session::Renderer& r, const RenderArguments& a) {
   scene::Camera camera = r.camera();
+  if (!a.projection.empty()) {
+    if (camera.orthographic)
+      throw Error("--projection", "the camera is orthographic; --camera chooses another one");
+    commands::set_projection(camera, a.projection);
+  }
   if (!a.shift.empty()) camera.shift = vec2(a.shift[0], a.shift[1]);
   if (a.upright) {
     commands::Viewpoint view{.camera = camera};
     if (!commands::upright(view, float(r.film().width()) / float(r.film().height())))
-      throw Error("--upright", "the camera is orthographic, or looks too steeply up or down");
+      throw Error("--upright", "the camera is not a perspective one, or looks too steeply up or down");
     camera = view.camera;
   }
-  if (!a.shift.empty() || a.upright) r.set_camera(camera);
+  if (!a.projection.empty() || !a.shift.empty() || a.upright) r.set_camera(camera);
   if (!a.f_number && !a.focus && !a.blades) return;
-  if (camera.orthographic) throw Error("--f-number", "the camera is orthographic, without depth of field");
+  if (!camera.perspective()) throw Error("--f-number", "only a perspective camera has depth of field");
   if (a.f_number) camera.lens.f_number = float(*a.f_number);
   if (camera.lens.f_number == 0)
     throw Error(a.focus ? "--focus" : "--blades", "the camera has no lens; --f-number gives it one");

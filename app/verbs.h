@@ -24,6 +24,7 @@ struct RenderArguments {
   int64_t seed = -1;
   std::optional<double> f_number, focus;  ///< of the camera's lens
   std::optional<int64_t> blades;
+  std::string projection;  ///< "": the scene's
   bool upright = false;
   std::vector<double> shift;     ///< right, up; empty: the scene's
   std::vector<std::string> set;  ///< key=value
@@ -36,6 +37,7 @@ int render(const RenderArguments& arguments);
 struct InfoArguments {
   std::string scene;
   bool json = false;
+  bool cost = false;   ///< measures the effects' costs; needs a device
   bool pilot = false;  ///< runs the pilot that chooses solvers; needs a device. Below: for its picture
   std::string size = "1280x720", camera, device;
   std::vector<std::string> set;

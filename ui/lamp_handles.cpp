@@ -9,6 +9,7 @@
 #include "commands/workspace.h"
 #include "emitters.h"
 #include "mark_layout.h"
+#include "scene/projection.h"
 #include "session/pick.h"
 #include "widgets.h"
 
@@ -62,17 +63,9 @@ std::vector<LampHandle> without_overlap(const MarkedScene& marked, const Area& s
 }  // namespace
 
 bool project(const scene::Camera& camera, const Area& shown, const vec3& point, ImVec2& at) {
-  const vec3 d = point - commands::eye_of(camera);
-  const float depth = glm::dot(d, commands::forward_of(camera));
-  if (!camera.orthographic && depth <= 1e-6f) return false;
-  const float half = camera.orthographic ? camera.ymag : depth * std::tan(0.5f * camera.yfov);
-  const float scale = 0.5f * shown.height() / half;
-  // Of the view axis, which a lens shift moves away from the middle.
-  const vec2 axis(0.5f * (shown.lo.x + shown.hi.x) - camera.shift.x * shown.width(),
-                  0.5f * (shown.lo.y + shown.hi.y) + camera.shift.y * shown.height());
-  at = {axis.x + scale * glm::dot(d, commands::right_of(camera)),
-        axis.y - scale * glm::dot(d, commands::up_of(camera))};
-  return true;
+  const std::optional<vec2> place = scene::place_in_picture(camera, point, shown.width() / shown.height());
+  if (place) at = {shown.lo.x + place->x * shown.width(), shown.lo.y + place->y * shown.height()};
+  return place.has_value();
 }
 
 std::vector<LampHandle> lamp_handles(const MarkedScene& marked, const Area& shown) {

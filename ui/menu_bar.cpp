@@ -325,7 +325,7 @@ void camera_menu(Ui& ui) {
   if (entry("Walk along the floor", "H", "W A S D walk at eye height instead of flying.", ui.camera.walking,
             view))
     ui.act("camera.walking", !ui.camera.walking);
-  const bool lens = view && !ui.camera.view->camera.orthographic;
+  const bool lens = view && ui.camera.view->camera.perspective();
   if (entry("Focus by a click", nullptr, "The next click in the picture puts the plane of focus there.",
             ui.scene_view.focusing, lens))
     ui.act("camera.focusing", !ui.scene_view.focusing);

@@ -121,10 +121,26 @@ void depth_of_field(Controls& controls, const scene::Lens& lens, bool focusing) 
   }
 }
 
+void projections(Controls& controls, const scene::Camera& camera) {
+  constexpr const char* k_titles[] = {"Plane", "Panorama", "Fisheye"};
+  constexpr const char* k_help[] = {
+      "Perspective: straight lines stay straight.",
+      "All directions, by longitude and latitude. Best in a picture twice as wide as high.",
+      "180 degrees in a circle: the distance from its middle is the angle from the view axis."};
+  const float width = (ImGui::CalcItemWidth() - 2 * px(4)) / 3;
+  for (size_t i = 0; i < std::size(k_titles); ++i) {
+    if (i > 0) ImGui::SameLine(0, px(4));
+    const char* name = scene::k_projection_names[i];
+    if (button(fmt::format("##projection_{}", name).c_str(), k_titles[i], size_t(camera.wide) == i, width))
+      controls.act("camera.projection", name);
+    tooltip(k_help[i]);
+  }
+}
+
 /// What few views need: shift, depth of field, section.
 void lens_and_section(Controls& controls, const commands::Navigation& camera, bool focusing) {
   if (!camera.view) return;
-  if (!camera.view->camera.orthographic) {
+  if (camera.view->camera.perspective()) {
     lens_shift(controls, camera.view->camera);
     depth_of_field(controls, camera.view->camera.lens, focusing);
   }
@@ -139,9 +155,10 @@ void cameras(Controls& controls, const commands::Navigation& camera, const std::
     if (list_row("##camera", camera.scene_camera == static_cast<int>(i),
                  display_name(list[i].name, "Camera", i), i < 9 ? fmt::format("{}", i + 1) : "", 0, 0))
       controls.act("camera.select", i + 1);
-    tooltip(fmt::format("{}: {}.{}", display_name(list[i].name, "Camera", i),
-                        list[i].orthographic ? "orthographic" : "perspective",
-                        i < 9 ? fmt::format(" Key {}.", i + 1) : ""));
+    tooltip(
+        fmt::format("{}: {}.{}", display_name(list[i].name, "Camera", i),
+                    list[i].orthographic ? "orthographic" : scene::k_projection_names[size_t(list[i].wide)],
+                    i < 9 ? fmt::format(" Key {}.", i + 1) : ""));
     ImGui::PopID();
   }
   if (!camera.view) return;
@@ -153,7 +170,7 @@ void cameras(Controls& controls, const commands::Navigation& camera, const std::
                {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m"}))
       controls.act("camera.height", height);
     tooltip("Height of an orthographic camera's view.");
-  } else {
+  } else if (view.camera.perspective()) {
     // The command takes the angle, which has the same meaning in a window of any shape.
     float lens = commands::focal_length_mm(view.camera.yfov, camera.aspect);
     if (slider("##lens", "Lens", lens, {.lo = 8, .hi = 200, .log = true, .decimals = 1, .unit = "mm"}))
@@ -161,6 +178,7 @@ void cameras(Controls& controls, const commands::Navigation& camera, const std::
     tooltip(fmt::format("Focal length for a frame 36 mm wide; the vertical field of view is {:.1f}\xC2\xB0.",
                         view.camera.yfov * 180 / k_pi));
   }
+  if (!view.camera.orthographic) projections(controls, view.camera);
   float speed = camera.speed;
   if (slider("##speed", "Fly speed", speed,
              {.lo = 0.01f, .hi = 1000, .log = true, .decimals = 2, .unit = "m/s"}))

@@ -12,6 +12,7 @@
 #include "commands/light_edit.h"
 #include "lamp_handles.h"
 #include "pixel_card.h"
+#include "scene/projection.h"
 #include "state.h"
 #include "widgets.h"
 
@@ -119,6 +120,7 @@ void draw_brackets(const Ui& ui, const Area& shown) {
       if (!project(ui.open.snapshot->camera, shown, vec3(instance.to_world * vec4(a, 1)), p) ||
           !project(ui.open.snapshot->camera, shown, vec3(instance.to_world * vec4(b, 1)), q))
         continue;
+      if (std::abs(p.x - q.x) > 0.5f * shown.width()) continue;  // across the seam of a panorama
       list->AddLine(p, q, IM_COL32(0, 0, 0, 120), px(3));
       list->AddLine(p, q, colour::accent, std::max(1.0f, px(1)));
     }
@@ -153,8 +155,9 @@ bool has_environment_image(const Ui& ui) {
 /// Rotates the sky with the pointer: points at infinity stay under it.
 void turn_sky(Ui& ui, float pixels, float width) {
   const scene::Camera& camera = ui.camera.view->camera;
+  const float half_width = scene::half_extent(camera, ui.camera.aspect).x;
   const float across =
-      camera.orthographic ? k_pi : 2 * std::atan(std::tan(0.5f * camera.yfov) * ui.camera.aspect);
+      camera.orthographic ? k_pi : 2 * (camera.perspective() ? std::atan(half_width) : half_width);
   const float degrees = pixels * across / std::max(1.0f, width) * 180 / k_pi;
   // To the right is clockwise seen from above: along the compass, against the image's rotation.
   if (has_environment_image(ui))

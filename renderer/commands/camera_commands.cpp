@@ -30,6 +30,7 @@ Parameter height() { return real("height", "of what an orthographic camera sees"
 
 void set_fov(scene::Camera& camera, double degrees) {
   if (camera.orthographic) throw Error("", "the camera is orthographic; camera.height sets what it sees");
+  camera.wide = scene::Wide::none;
   camera.yfov = static_cast<float>(degrees / k_degrees);
 }
 
@@ -142,6 +143,11 @@ void Motions::add_motions() {
 void Motions::add_lenses() {
   add("camera.fov", "Sets the field of view of a perspective camera.", {fov()},
       [](Viewpoint& v, const Arguments& a) { set_fov(v.camera, a.real("fov")); });
+  add("camera.projection",
+      "Sets what a camera that is not orthographic shows: a plane before it, all directions by longitude and "
+      "latitude (best in a picture twice as wide as high), or 180 degrees in a circle.",
+      {{.name = "projection", .type = Type::choice, .choices = projection_names()}},
+      [](Viewpoint& v, const Arguments& a) { set_projection(v.camera, a.text("projection")); });
   add("camera.height", "Sets what an orthographic camera sees.", {height()},
       [](Viewpoint& v, const Arguments& a) { set_height(v.camera, a.number("height")); });
   add("camera.lens", "Sets the field of view by a focal length, for a frame 36 mm wide.",
@@ -162,6 +168,7 @@ void place_by_words(Viewpoint& v, const Arguments& a, const OpenScene& open, flo
   }
   if (a.has("height")) {
     if (!std::exchange(v.camera.orthographic, true)) v.camera.ymag = 1, v.camera.xmag = aspect;
+    v.camera.wide = scene::Wide::none;
     set_height(v.camera, a.number("height"));
   }
   set_lens(v.camera, a);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "scene/projection.h"
 #include "scene/range.h"
 
 namespace lucerna::commands {
@@ -78,8 +79,7 @@ void look(Viewpoint& view, const vec2& angles) {
 }
 
 void pan(Viewpoint& view, const vec2& pixels, float picture_height) {
-  const float half_height =
-      view.camera.orthographic ? view.camera.ymag : view.distance * std::tan(0.5f * view.camera.yfov);
+  const float half_height = half_height_at(view.camera, view.distance);
   const float metres = 2 * half_height / std::max(picture_height, 1.0f);
   fly(view, {-pixels.x * metres, pixels.y * metres, 0});
 }
@@ -149,7 +149,7 @@ bool upright(Viewpoint& view, float aspect) {
   const vec3 middle =
       axis + 2.0f * (camera.shift.x * half.x * right_of(camera) + camera.shift.y * half.y * up_of(camera));
   const float flat = std::hypot(axis.x, axis.z);
-  if (camera.orthographic || !(flat > std::cos(k_most))) return false;
+  if (!camera.perspective() || !(flat > std::cos(k_most))) return false;
   const vec3 level(axis.x / flat, 0, axis.z / flat), right(-level.z, 0, level.x);
   const float ahead = glm::dot(middle, level);
   if (!(ahead > std::cos(k_most) * glm::length(middle))) return false;
@@ -180,15 +180,19 @@ vec3 advance(Flight& flight, const vec3& wish, float speed, float seconds) {
   return metres;
 }
 
+float half_height_at(const scene::Camera& camera, float depth) {
+  return scene::half_extent(camera, 1).y * (camera.orthographic ? 1 : depth);
+}
+
 float focal_length_mm(float yfov, float aspect) { return 18.0f / (std::tan(0.5f * yfov) * aspect); }
 float yfov_from_focal_length(float millimetres, float aspect) {
   return 2 * std::atan(18.0f / (millimetres * aspect));
 }
 
 bool same_view(const scene::Camera& a, const scene::Camera& b) {
-  return a.to_world == b.to_world && a.orthographic == b.orthographic && a.yfov == b.yfov &&
-         a.xmag == b.xmag && a.ymag == b.ymag && a.aspect == b.aspect && a.lens == b.lens &&
-         a.shift == b.shift && a.section == b.section;
+  return a.to_world == b.to_world && a.orthographic == b.orthographic && a.wide == b.wide &&
+         a.yfov == b.yfov && a.xmag == b.xmag && a.ymag == b.ymag && a.aspect == b.aspect &&
+         a.lens == b.lens && a.shift == b.shift && a.section == b.section;
 }
 
 }  // namespace lucerna::commands

@@ -60,6 +60,8 @@ vec3 advance(Flight& flight, const vec3& wish, float speed, float seconds);
 
 /// Horizontal focal length, in millimetres on a 36 mm wide frame, of a perspective camera at that aspect; and
 /// back.
+/// Half the height of what the picture shows at that depth [m].
+float half_height_at(const scene::Camera& camera, float depth);
 float focal_length_mm(float yfov, float aspect);
 float yfov_from_focal_length(float millimetres, float aspect);
 

@@ -10,11 +10,14 @@ namespace lucerna::commands {
 
 class OpenScene;
 
-/// Optional parameters f_number, focus [m], blades, rotation [degrees], pinhole, shift_right, shift_up,
-/// section_normal, section_offset [m].
+/// Optional parameters f_number, focus [m], blades, rotation [degrees], pinhole, projection, shift_right,
+/// shift_up, section_normal, section_offset [m].
 std::vector<Parameter> lens_parameters();
 /// Sets what the arguments name; the rest stays. Throws Error: 1 or 2 blades, a pinhole with an f-number.
 void set_lens(scene::Camera& camera, const Arguments& arguments);
+/// By scene::k_projection_names. Throws Error: the camera is orthographic.
+void set_projection(scene::Camera& camera, const std::string& name);
+std::vector<std::string> projection_names();
 /// If a lens has no plane of focus: puts it at the surface in the middle of the picture, else at the pivot.
 void focus_somewhere(const OpenScene& open, Viewpoint& view, float aspect);
 /// The lens as these words of a line, with a blank before each.

@@ -24,6 +24,9 @@ std::optional<float> depth_at(const scene::Scene& scene, const scene::Camera& ca
 
 void needs_perspective(const scene::Camera& camera, const char* what) {
   if (camera.orthographic) throw Error("", fmt::format("the camera is orthographic, without {}", what));
+  if (!camera.perspective())
+    throw Error("", fmt::format("the camera is a {}, without {}",
+                                scene::k_projection_names[size_t(camera.wide)], what));
 }
 
 }  // namespace
@@ -48,6 +51,11 @@ std::vector<Parameter> lens_parameters() {
        .type = Type::boolean,
        .help = "true: no lens, everything is sharp",
        .optional = true},
+      {.name = "projection",
+       .type = Type::choice,
+       .help = "of a camera that is not orthographic",
+       .choices = projection_names(),
+       .optional = true},
       real("shift_right", "of the lens", -scene::k_max_shift, scene::k_max_shift, "picture widths"),
       real("shift_up", "of the lens", -scene::k_max_shift, scene::k_max_shift, "picture heights"),
       {.name = "section_normal",
@@ -57,6 +65,17 @@ std::vector<Parameter> lens_parameters() {
        .hi = 1e9,
        .optional = true},
       real("section_offset", "of that plane from the scene's origin, along its normal", -1e9, 1e9, "m")};
+}
+
+std::vector<std::string> projection_names() {
+  return {std::begin(scene::k_projection_names), std::end(scene::k_projection_names)};
+}
+
+void set_projection(scene::Camera& camera, const std::string& name) {
+  if (camera.orthographic)
+    throw Error("", "the camera is orthographic; camera.place with fov makes it another");
+  const std::vector<std::string> names = projection_names();
+  camera.wide = scene::Wide(std::find(names.begin(), names.end(), name) - names.begin());
 }
 
 void set_lens(scene::Camera& camera, const Arguments& a) {
@@ -71,6 +90,7 @@ void set_lens(scene::Camera& camera, const Arguments& a) {
   if (a.has("blades")) lens.blades = uint32_t(a.integer("blades"));
   if (a.has("rotation")) lens.rotation = k_degree * a.number("rotation");
   if (pinhole) lens.f_number = 0;
+  if (a.has("projection")) set_projection(camera, a.text("projection"));
   if (a.has("shift_right")) camera.shift.x = a.number("shift_right");
   if (a.has("shift_up")) camera.shift.y = a.number("shift_up");
   if (a.has("section_offset")) camera.section.offset = a.number("section_offset");
@@ -97,6 +117,7 @@ std::string lens_words(const scene::Camera& camera) {
   text += " " + named("section_normal", camera.section.normal).text;
   if (camera.section.cuts()) text += " " + named("section_offset", camera.section.offset).text;
   if (camera.orthographic) return text;
+  text += " " + named("projection", scene::k_projection_names[size_t(camera.wide)]).text;
   if (lens.f_number == 0) return text + " pinhole=true";
   text += " " + named("f_number", lens.f_number).text + " " + named("focus", lens.focus_distance).text;
   text += " " + named("blades", lens.blades).text;

@@ -25,8 +25,9 @@ vec3 direction_from(const Bearing& bearing) {
 
 vec3 dragged(const scene::Camera& camera, const vec3& from, const vec2& pixels, float picture_height,
              bool upright) {
-  const float depth = glm::dot(from - eye_of(camera), forward_of(camera));
-  const float half = camera.orthographic ? camera.ymag : std::max(depth, 0.0f) * std::tan(0.5f * camera.yfov);
+  const vec3 away = from - eye_of(camera);
+  const float depth = camera.perspective() ? glm::dot(away, forward_of(camera)) : glm::length(away);
+  const float half = half_height_at(camera, std::max(depth, 0.0f));
   const vec2 metres = pixels * (2 * half / std::max(picture_height, 1.0f));
   const vec3 up = up_of(camera);
   if (!upright) return from + metres.x * right_of(camera) - metres.y * up;

@@ -32,7 +32,7 @@ uint32_t shown_components(const View& view) {
 
 bool PreviewCamera::operator==(const PreviewCamera& o) const {
   return axes.origin == o.axes.origin && axes.right == o.axes.right && axes.up == o.axes.up &&
-         axes.forward == o.axes.forward && orthographic == o.orthographic && section == o.section;
+         axes.forward == o.axes.forward && projection == o.projection && section == o.section;
 }
 
 Preview::Preview(gpu::Device& device, gpu::ShaderCompiler& compiler)
@@ -178,11 +178,11 @@ void Preview::fetch(gpu::Stream& stream, const PreviewCamera& now, const gpu::Bu
   resources_.set("seen_surfaces", seen);
   resources_.set("Packed", to.light);
   resources_.set("PackedSurfaces", to.surfaces);
-  stream.dispatch(fetch_, resources_,
-                  PreviewFetchPush{width_, height_, width, height,
-                                   uint32_t(history_.camera.orthographic) | now.orthographic << 1, keep,
-                                   history_.camera.axes, now.axes},
-                  groups(std::max(uint64_t{width} * height, uint64_t{1})));
+  stream.dispatch(
+      fetch_, resources_,
+      PreviewFetchPush{width_, height_, width, height, history_.camera.projection | now.projection << 4, keep,
+                       history_.camera.axes, now.axes},
+      groups(std::max(uint64_t{width} * height, uint64_t{1})));
 }
 
 /// The previous picture from the present camera. It always comes from the picture as it was shown, not from a
@@ -196,8 +196,7 @@ const Preview::Pixels& Preview::history(gpu::Stream& stream, const PreviewCamera
     make_pixels(moved_);
     fetch(stream, now, *seen, width_, height_, moved_, false);
   } else {
-    move(stream, PreviewReprojectPush{width_, height_, 0,
-                                      uint32_t(history_.camera.orthographic) | now.orthographic << 1,
+    move(stream, PreviewReprojectPush{width_, height_, 0, history_.camera.projection | now.projection << 4,
                                       history_.camera.axes, now.axes});
   }
   stream.run();
@@ -412,7 +411,7 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
                                  .down = down,
                                  // The last pass mixes even and odd cells.
                                  .step = pass + 1 == k_filter_passes && base == 2 ? 1 : base << pass,
-                                 .orthographic = camera.orthographic,
+                                 .projection = camera.projection,
                                  .history = history_.known,
                                  .blocks_across = blocks.x,
                                  .blocks_down = blocks.y,

@@ -30,8 +30,8 @@ enum class Sampled { none, some, all };
 /// The camera of a picture.
 struct PreviewCamera {
   shared::PreviewCamera axes{};
-  bool orthographic = false;
-  vec4 section{0};  ///< plane that cuts the view: normal, offset
+  uint32_t projection = 0;  ///< shared::k_projection_*
+  vec4 section{0};          ///< plane that cuts the view: normal, offset
   bool operator==(const PreviewCamera& o) const;
 };
 

@@ -12,7 +12,7 @@ Sight::Sight(gpu::Device& device, gpu::ShaderCompiler& compiler, gpu::Defines de
 void Sight::begin(const Frame& frame, uint32_t texels) {
   begun_ = false;
   width_ = frame.width, height_ = frame.height;
-  parallel_ = frame.orthographic != 0;
+  parallel_ = frame.projection == k_projection_orthographic;
   for (stride_ = 1;; ++stride_) {
     across_ = (width_ + stride_ - 1) / stride_, down_ = (height_ + stride_ - 1) / stride_;
     if (uint64_t{across_} * down_ <= k_most_points) break;

@@ -319,7 +319,8 @@ List of_cameras(const Context& c) {
   return list;
 }
 bool is_parallel(const scene::Camera& c) { return c.orthographic; }
-bool has_lens(const scene::Camera& c) { return !c.orthographic && c.lens.f_number > 0; }
+bool has_lens(const scene::Camera& c) { return c.perspective() && c.lens.f_number > 0; }
+bool is_wide(const scene::Camera& c) { return c.wide != scene::Wide::none; }
 bool is_shifted(const scene::Camera& c) { return c.shift != vec2(0); }
 bool is_cut(const scene::Camera& c) { return c.section.cuts(); }
 
@@ -327,6 +328,7 @@ std::vector<Row> camera_rows() {
   const auto group = EffectGroup::camera;
   const char* none = "no camera has it";
   return {{"orthographic", "Parallel projection", group, "rays of the camera", none, of_cameras<is_parallel>},
+          {"wide", "Panorama or fisheye", group, "rays of the camera", none, of_cameras<is_wide>},
           {"depth_of_field", "Depth of field", group, "code for a lens in the camera's kernels", none,
            of_cameras<has_lens>},
           {"lens_shift", "Lens shift", group, "rays of the camera", none, of_cameras<is_shifted>},

@@ -37,6 +37,8 @@ void check_range(const Camera& c) {
   const glm::mat3 axes(c.to_world);
   if (!finite(axes[0]) || !finite(axes[1]) || !finite(axes[2]) || !std::isnormal(glm::determinant(axes)))
     throw_error(where, "its axes are not finite or not independent");
+  if (c.orthographic && c.wide != Wide::none)
+    throw_error(where, "a {} is not orthographic", k_projection_names[size_t(c.wide)]);
   if (c.orthographic) {
     const bool holds = c.xmag > 0 && c.ymag > 0 && std::max(c.xmag, c.ymag) <= k_max_coordinate;
     if (!holds)

@@ -181,19 +181,28 @@ struct Section {
 
 inline constexpr float k_film_width = 0.036f;  ///< metres
 
+/// Projections that show directions by their angles: a panorama shows all of them, the longitude to the right
+/// and the latitude up (latitude-longitude); a fisheye those up to 90 degrees from the axis, the angle as the
+/// distance from the middle (equidistant).
+enum class Wide : uint32_t { none, panorama, fisheye };
+/// Names of projections, by Wide.
+inline constexpr const char* k_projection_names[] = {"perspective", "panorama", "fisheye"};
+
 /// Looks down its -Z, +Y up. Perspective: yfov in radians, of the picture's height. Orthographic: half
 /// heights.
 struct Camera {
   std::string name;
   mat4 to_world{1};
   bool orthographic = false;
+  Wide wide = Wide::none;  ///< other than none: not orthographic; yfov, shift and lens are not used
   float yfov = 0.8f;
   float xmag = 1, ymag = 1;  ///< orthographic half sizes, metres
   float aspect = 0;          ///< width / height; 0: that of the picture
-  Lens lens{};               ///< not used by orthographic cameras
+  Lens lens{};               ///< of perspective cameras
   /// Lens shift: moves the picture's middle from the view axis, right in its widths and up in its heights.
   vec2 shift{0};
   Section section{};  ///< in the world
+  bool perspective() const { return !orthographic && wide == Wide::none; }
 };
 
 enum class LightKind : uint32_t { point, spot, directional };

@@ -8,8 +8,8 @@ void FocusView::draw(const overlay::Canvas& canvas, const shared::Frame& frame) 
   solvers::Report report{.solver = "focus"};
   solvers::Legend legend{.title = "Depth of field"};
   if (frame.lens_radius == 0) {
-    legend.note = frame.orthographic != 0
-                      ? "An orthographic camera has no depth of field."
+    legend.note = frame.projection != shared::k_projection_perspective
+                      ? "Only a perspective camera has depth of field."
                       : "The camera is a pinhole: everything is sharp. Depth of field gives it a lens.";
   } else {
     painter_.draw(canvas, frame);

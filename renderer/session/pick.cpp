@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "scene/projection.h"
+
 namespace lucerna::session {
 namespace {
 
@@ -61,14 +63,9 @@ std::optional<vec2> picked_uv(const scene::Scene& scene, const Picked& picked) {
 }
 
 PickRay pick_ray(const scene::Camera& camera, float x, float y, float aspect) {
-  const mat4& m = camera.to_world;
-  const vec3 right = glm::normalize(vec3(m[0])), up = glm::normalize(vec3(m[1]));
-  const vec3 forward = -glm::normalize(vec3(m[2]));
-  const float half = camera.orthographic ? camera.ymag : std::tan(0.5f * camera.yfov);
-  const vec3 offset =
-      (2 * (x + camera.shift.x) - 1) * half * aspect * right + (1 - 2 * (y - camera.shift.y)) * half * up;
-  PickRay ray{vec3(m[3]), glm::normalize(forward + offset)};
-  if (camera.orthographic) ray = {vec3(m[3]) + offset, forward};
+  const std::optional<scene::ViewRay> view = scene::view_ray(camera, x, y, aspect);
+  if (!view) return {vec3(camera.to_world[3]), vec3(0)};
+  const PickRay ray{view->origin, view->direction};
   const scene::Section& section = camera.section;
   const float before = section.offset - glm::dot(ray.origin, section.normal);
   if (!section.cuts() || before <= 0) return ray;

@@ -13,7 +13,7 @@ constexpr uint32_t k_most_turns = 6;
 
 film::PreviewCamera preview_camera(const shared::Frame& f) {
   return {{f.camera_origin, f.camera_right, f.camera_up, f.camera_forward},
-          f.orthographic != 0,
+          f.projection,
           vec4(f.section_normal, f.section_offset)};
 }
 

@@ -62,12 +62,11 @@ std::vector<double> light_weights(std::span<const std::vector<uint32_t>> groups,
 
 bool same_view(const shared::Frame& a, const shared::Frame& b) {
   return a.camera_origin == b.camera_origin && a.camera_right == b.camera_right &&
-         a.camera_up == b.camera_up && a.camera_forward == b.camera_forward &&
-         a.orthographic == b.orthographic && a.lens_radius == b.lens_radius &&
-         a.focus_distance == b.focus_distance && a.lens_blades == b.lens_blades &&
-         a.lens_rotation == b.lens_rotation && a.section_normal == b.section_normal &&
-         a.section_offset == b.section_offset && a.width == b.width && a.height == b.height &&
-         a.seed == b.seed;
+         a.camera_up == b.camera_up && a.camera_forward == b.camera_forward && a.projection == b.projection &&
+         a.lens_radius == b.lens_radius && a.focus_distance == b.focus_distance &&
+         a.lens_blades == b.lens_blades && a.lens_rotation == b.lens_rotation &&
+         a.section_normal == b.section_normal && a.section_offset == b.section_offset && a.width == b.width &&
+         a.height == b.height && a.seed == b.seed;
 }
 
 }  // namespace lucerna::transport

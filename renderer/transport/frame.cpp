@@ -4,13 +4,14 @@
 #include <cassert>
 #include <cmath>
 
+#include "scene/projection.h"
 #include "shaders/shared/transport.h"
 #include "upload/media.h"
 
 namespace lucerna::transport {
 
 float lens_radius(const scene::Camera& camera, float half_width) {
-  if (camera.orthographic || camera.lens.f_number == 0) return 0;
+  if (!camera.perspective() || camera.lens.f_number == 0) return 0;
   const float focal_length = 0.5f * scene::k_film_width / half_width;
   return 0.5f * focal_length / camera.lens.f_number;
 }
@@ -20,20 +21,22 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   shared::Frame f{};
   const mat4& m = camera.to_world;
   const vec3 right = glm::normalize(vec3(m[0])), up = glm::normalize(vec3(m[1]));
-  const float half_h = camera.orthographic ? camera.ymag : std::tan(0.5f * camera.yfov);
-  const float half_w = half_h * float(options.width) / float(options.height);
+  const vec2 half = scene::half_extent(camera, float(options.width) / float(options.height));
   f.camera_origin = vec3(m[3]);
-  f.camera_right = right * half_w;
-  f.camera_up = up * half_h;
+  f.camera_right = right * half.x;
+  f.camera_up = up * half.y;
   f.camera_axis = -glm::normalize(vec3(m[2]));
   f.camera_forward = f.camera_axis;
-  if (camera.shift != vec2(0)) {
+  if (camera.wide == scene::Wide::none && camera.shift != vec2(0)) {
     const vec3 aside = 2.0f * (camera.shift.x * f.camera_right + camera.shift.y * f.camera_up);
     (camera.orthographic ? f.camera_origin : f.camera_forward) += aside;
   }
-  f.orthographic = camera.orthographic;
+  f.projection = camera.orthographic                    ? shared::k_projection_orthographic
+                 : camera.wide == scene::Wide::panorama ? shared::k_projection_panorama
+                 : camera.wide == scene::Wide::fisheye  ? shared::k_projection_fisheye
+                                                        : shared::k_projection_perspective;
   f.section_normal = camera.section.normal, f.section_offset = camera.section.offset;
-  f.lens_radius = lens_radius(camera, half_w);
+  f.lens_radius = lens_radius(camera, half.x);
   f.focus_distance = camera.lens.focus_distance;
   f.lens_blades = camera.lens.blades;
   f.lens_rotation = camera.lens.rotation;

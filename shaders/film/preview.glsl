@@ -2,6 +2,7 @@
 #ifndef LUCERNA_FILM_PREVIEW
 #define LUCERNA_FILM_PREVIEW
 #include "lib/math.glsl"
+#include "lib/projection.glsl"
 #include "shaders/shared/lanes.h"
 #include "shaders/shared/preview.h"
 
@@ -82,16 +83,27 @@ vec3 preview_axis(PreviewCamera camera) {
   vec3 across = normalize(cross(camera.right, camera.up));
   return dot(across, camera.forward) < 0.0 ? -across : across;
 }
-// The point at that position and depth, from the camera's origin; `parallel`: orthographic.
-vec3 preview_point(PreviewCamera camera, bool parallel, vec2 position, float depth) {
+// The point at that position and depth, from the camera's origin.
+vec3 preview_point(PreviewCamera camera, uint projection, vec2 position, float depth) {
   vec3 ray = position.x * camera.right + position.y * camera.up;
-  return parallel ? ray + depth * camera.forward : depth * (ray + camera.forward);
+  if (is_wide(projection)) {
+    float right = length(camera.right), up = length(camera.up);
+    return depth * wide_direction(projection, position * vec2(right, up), camera.right / right, camera.up / up, camera.forward);
+  }
+  return is_parallel(projection) ? ray + depth * camera.forward : depth * (ray + camera.forward);
 }
 // Where a point from the camera's origin is in a picture [pixels], if its depth is above 0.
-vec2 preview_projection(PreviewCamera camera, bool parallel, vec3 point, vec2 size, out float depth) {
+vec2 preview_projection(PreviewCamera camera, uint projection, vec3 point, vec2 size, out float depth) {
+  if (is_wide(projection)) {
+    depth = length(point);
+    float right = length(camera.right), up = length(camera.up);
+    vec2 angles = wide_angles(projection, point / max(depth, 1e-30), camera.right / right, camera.up / up, camera.forward);
+    if (!wide_covers(projection, angles)) depth = 0.0;
+    return (angles / vec2(right, up) * vec2(0.5, -0.5) + 0.5) * size;
+  }
   vec3 axis = preview_axis(camera);
   depth = dot(point, axis);
-  float ratio = parallel ? 1.0 : 1.0 / depth;
+  float ratio = is_parallel(projection) ? 1.0 : 1.0 / depth;
   point = ratio * point - (camera.forward - axis);
   vec2 q = vec2(dot(point, camera.right) / dot(camera.right, camera.right), dot(point, camera.up) / dot(camera.up, camera.up));
   return (q * vec2(0.5, -0.5) + 0.5) * size;

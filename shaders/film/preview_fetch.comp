@@ -27,7 +27,7 @@ void add(PreviewSurface here, vec3 point, float far, ivec2 at, float weight) {
   // A film's picture does not say which surfaces emit.
   was.emits = here.emits;
   vec2 p = preview_position(uvec2(at), vec2(size));
-  vec3 offset = preview_point(push.before, (push.orthographic & 1u) != 0u, p, was.depth) - point;
+  vec3 offset = preview_point(push.before, push.projections & 15u, p, was.depth) - point;
   float w = weight * preview_alike(here, was, offset, k_off * far);
   if (w < k_negligible) return;
   PreviewLight l = preview_light(from_texels, pixel);
@@ -41,13 +41,13 @@ void add(PreviewSurface here, vec3 point, float far, ivec2 at, float weight) {
 void main() {
   uint index = global_index();
   if (index >= push.across * push.down) return;
-  bool parallel_before = (push.orthographic & 1u) != 0u, parallel_now = (push.orthographic & 2u) != 0u;
+  uint projection_before = push.projections & 15u, projection_now = push.projections >> 4;
   vec4 texel = texelFetch(seen_surfaces, int(index));
   PreviewSurface here = preview_surface(texel);
   vec2 p = preview_position(uvec2(index % push.across, index / push.across), vec2(push.across, push.down));
   float far = here.depth > 0.0 ? here.depth : k_preview_far, depth;
-  vec3 point = push.now.origin - push.before.origin + preview_point(push.now, parallel_now, p, far);
-  vec2 size = vec2(push.width, push.height), there = preview_projection(push.before, parallel_before, point, size, depth) - 0.5;
+  vec3 point = push.now.origin - push.before.origin + preview_point(push.now, projection_now, p, far);
+  vec2 size = vec2(push.width, push.height), there = preview_projection(push.before, projection_before, point, size, depth) - 0.5;
   for (uint c = 0u; c < k_component_count; ++c) light.of[c] = vec4(0.0);
   bool visible = here.depth >= 0.0 && depth > 0.0 && all(greaterThan(there, vec2(-1.0))) && all(lessThan(there, size));
   ivec2 base = ivec2(floor(there));

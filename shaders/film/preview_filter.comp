@@ -35,7 +35,11 @@ vec3 ray_at(vec2 cell) {
   return p.x * push.right + p.y * push.up;
 }
 vec3 point_at(vec3 ray, float depth) {
-  return push.orthographic != 0u ? ray + depth * push.forward : depth * (ray + push.forward);
+  if (is_wide(push.projection)) {
+    vec3 x = normalize(push.right), y = normalize(push.up);
+    return depth * wide_direction(push.projection, vec2(dot(ray, x), dot(ray, y)), x, y, push.forward);
+  }
+  return is_parallel(push.projection) ? ray + depth * push.forward : depth * (ray + push.forward);
 }
 
 void main() {
@@ -47,7 +51,7 @@ void main() {
   vec4 own_luminance = preview_luminances(own), own_noise = preview_errors(own);
   vec3 ray = ray_at(vec2(xy)), point = point_at(ray, max(here.depth, 0.0));
   // Width of a cell at that depth, with a margin for curved surfaces.
-  float scale = (push.orthographic != 0u ? 1.0 : max(here.depth, 0.0)) *
+  float scale = (is_parallel(push.projection) ? 1.0 : max(here.depth, 0.0)) *
                     (2.0 * length(push.right) / float(push.across) * float(push.step)) * 0.3 + 5e-4 * max(here.depth, 0.0) + 1e-6;
   vec3 sum[k_component_count];
   for (uint c = 0u; c < k_component_count; ++c) sum[c] = vec3(0.0);

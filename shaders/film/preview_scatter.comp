@@ -16,15 +16,15 @@ vec2 moved(uint pixel, out float depth, out float width) {
   if (from <= k_preview_about) from = k_preview_about - from;
   vec2 size = vec2(push.width, push.height), p = preview_position(uvec2(pixel % push.width, pixel / push.width), size);
   float far = from > 0.0 ? from : k_preview_far;
-  bool parallel = (push.orthographic & 1u) != 0u, parallel_now = (push.orthographic & 2u) != 0u;
-  vec3 point = push.before.origin - push.now.origin + preview_point(push.before, parallel, p, far);
-  vec2 there = preview_projection(push.now, parallel_now, point, size, depth);
+  uint projection = push.projections & 15u, projection_now = push.projections >> 4;
+  vec3 point = push.before.origin - push.now.origin + preview_point(push.before, projection, p, far);
+  vec2 there = preview_projection(push.now, projection_now, point, size, depth);
   width = 1.0;
   if (depth <= 0.0 || from < 0.0) {
     depth = 0.0;
     return vec2(0.0);
   }
-  float extent = length(push.before.up) * (parallel ? 1.0 : far), extent_now = length(push.now.up) * (parallel_now ? 1.0 : depth);
+  float extent = length(push.before.up) * (is_parallel(projection) ? 1.0 : far), extent_now = length(push.now.up) * (is_parallel(projection_now) ? 1.0 : depth);
   width = clamp(extent / extent_now, 1.0, k_widest);
   return there;
 }

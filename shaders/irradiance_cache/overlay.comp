@@ -25,7 +25,7 @@ void main() {
   vec4 over = vec4(0.0);  // premultiplied
   vec2 here = vec2(pixel % push.width, pixel / push.width) + 0.5;
   mat2x3 steps = pixel_steps(seen, push.width, push.height);
-  vec3 away = frame.orthographic != 0u ? frame.camera_forward : normalize(seen.position - frame.camera_origin);
+  vec3 away = camera_towards(seen.position);
   float pixel_width = pixel_size(seen.depth, push.height);
   float facing_share = abs(dot(seen.normal, away));
   OctreeRange range = cache_range(a.diffuse ? a.position : seen.position, a.diffuse || seen.solid);

@@ -13,7 +13,7 @@ void main() {
   if (slot >= push.count) return;
   vec4 place = texelFetch(candidate_texels, int(slot * k_candidate_texels));
   vec4 facing = texelFetch(candidate_texels, int(slot * k_candidate_texels + 1u));
-  float depth = max(dot(place.xyz - frame.camera_origin, frame.camera_axis), 0.0);
+  float depth = max(camera_depth(place.xyz - frame.camera_origin), 0.0);
   uint at = (push.first + slot) * k_surface_texels;
   uint origin_code = uint(abs(place.w)), media = (max(origin_code, 1u) - 1u) / k_candidate_media;
   bool met = origin_code > 0u && (origin_code - 1u) % k_candidate_media == k_origin_screen, fits = place.w > 0.0 && media < k_surface_media;

@@ -6,6 +6,7 @@
 #include "shaders/shared/ray.h"
 #include "shaders/shared/transport.h"
 #include "lib/math.glsl"
+#include "lib/projection.glsl"
 
 layout(scalar) readonly buffer FrameBlock { Frame frame; };
 
@@ -35,12 +36,35 @@ bool automaton_goes_on(uint state) {
 uint automaton_account(uint state) { return (frame.automaton[state] >> 29) & 3u; }
 #endif
 
-// Offset of a point of the picture [pixels] from the camera's axis, and the direction of the ray through it.
-vec3 camera_shift(vec2 xy) {
-  vec2 ndc = xy / vec2(frame.width, frame.height) * 2.0 - 1.0;
+// Offset of a point of the picture (0..1 to the right and down) from the middle, along camera_right and camera_up.
+vec3 shift_at(vec2 place) {
+  vec2 ndc = place * 2.0 - 1.0;
   return ndc.x * frame.camera_right - ndc.y * frame.camera_up;
 }
-vec3 camera_direction(vec3 shift) { return normalize(frame.camera_forward + (frame.orthographic != 0u ? vec3(0.0) : shift)); }
+// Likewise, of a place in pixels.
+vec3 camera_shift(vec2 xy) { return shift_at(xy / vec2(frame.width, frame.height)); }
+// Angles of a wide picture at that offset.
+vec2 camera_angles(vec3 shift) { return vec2(dot(shift, normalize(frame.camera_right)), dot(shift, normalize(frame.camera_up))); }
+// Angles of a unit direction in a wide picture.
+vec2 angles_towards(vec3 direction) {
+  return wide_angles(frame.projection, direction, normalize(frame.camera_right), normalize(frame.camera_up), frame.camera_axis);
+}
+// Start and direction of the ray through that point. The ray's length counts in camera_depth().
+vec3 camera_start(vec3 shift) { return frame.camera_origin + (is_parallel(frame.projection) ? shift : vec3(0.0)); }
+vec3 camera_view(vec3 shift) {
+  if (is_wide(frame.projection))
+    return wide_direction(frame.projection, camera_angles(shift), normalize(frame.camera_right), normalize(frame.camera_up), frame.camera_axis);
+  return frame.camera_forward + (is_parallel(frame.projection) ? vec3(0.0) : shift);
+}
+vec3 camera_direction(vec3 shift) { return normalize(camera_view(shift)); }
+// False outside a fisheye's circle.
+bool camera_covers(vec3 shift) { return !is_wide(frame.projection) || wide_covers(frame.projection, camera_angles(shift)); }
+// Depth of a point, from its offset from the eye: along the axis, in wide pictures the distance.
+float camera_depth(vec3 away) { return is_wide(frame.projection) ? length(away) : dot(away, frame.camera_axis); }
+// Direction from the camera to a point.
+vec3 camera_towards(vec3 position) {
+  return is_parallel(frame.projection) ? frame.camera_forward : normalize(position - frame.camera_origin);
+}
 
 // Distance along a camera ray to the plane that cuts the view, if the ray starts before it, else 0; infinite if it never passes
 // the plane: then it sees nothing.

@@ -27,9 +27,27 @@ struct Seen {
   vec3 towards;     // to the eye, unit
   float distance;
   uint pixel;       // in the band that is summed
-  float per_cosine; // d / (z^3 A), or 1 / A
+  float per_cosine; // d / (z^3 A), 1 / A, or 1 / (d^2 solid angle)
   bool inside;      // the pixel is in the band
 };
+
+// `off`: from the eye, at the distance d.
+Seen wide_camera_sees(vec3 off, float d) {
+  vec2 angles = angles_towards(off / max(d, 1e-30)), half_angles = vec2(length(frame.camera_right), length(frame.camera_up));
+  vec2 at = floor((angles / half_angles * vec2(0.5, -0.5) + 0.5) * vec2(frame.width, frame.height));
+  // Of the pixel: its part of the picture in squared angles, as a solid angle.
+  float pixel_area = 4.0 * half_angles.x * half_angles.y / (float(frame.width) * float(frame.height));
+  float solid_angle = pixel_area * wide_stretch(frame.projection, angles);
+  Seen s;
+  s.inside = d > 0.0 && solid_angle > 0.0 && wide_covers(frame.projection, angles) && at.x >= 0.0 && at.y >= 0.0 &&
+             at.x < float(frame.width) && at.y < float(frame.height);
+  s.pixel = s.inside ? uint(at.y) * frame.width + uint(at.x) - splat_frame.first : 0u;
+  s.inside = s.inside && s.pixel < splat_frame.pixels;
+  s.towards = -off / max(d, 1e-30);
+  s.distance = d;
+  s.per_cosine = s.inside ? 1.0 / (d * d * solid_angle) : 0.0;
+  return s;
+}
 
 // `eye`: from the camera's origin.
 Seen camera_sees(vec3 x, vec3 eye) {
@@ -38,7 +56,8 @@ Seen camera_sees(vec3 x, vec3 eye) {
   off -= eye;
 #endif
   float z = dot(off, frame.camera_axis), d = length(off);
-  bool parallel = frame.orthographic != 0u;
+  if (is_wide(frame.projection)) return wide_camera_sees(off, d);
+  bool parallel = is_parallel(frame.projection);
   vec3 aside = frame.camera_forward - frame.camera_axis;
   float right2 = dot(frame.camera_right, frame.camera_right), up2 = dot(frame.camera_up, frame.camera_up);
   float scale = parallel ? 1.0 : 1.0 / max(z, 1e-30);

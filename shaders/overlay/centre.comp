@@ -12,9 +12,9 @@ void main() {
   uvec2 xy = min(at, uvec2(frame.width, frame.height) - 1u);
   vec3 shift = camera_shift(vec2(xy) + 0.5);
   Ray ray;
-  ray.origin = frame.camera_origin + (frame.orthographic != 0u ? shift : vec3(0.0));
+  ray.origin = camera_start(shift);
   ray.direction = camera_direction(shift);
-  ray.tmax = k_infinity;
+  ray.tmax = camera_covers(shift) ? k_infinity : -1.0;
   float cut = section_distance(ray.origin, ray.direction);
   if (cut >= k_infinity)
     ray.tmax = -1.0, cut = 0.0;

@@ -31,7 +31,7 @@ void main() {
   vec3 a = to_picture(from, push.width, push.height), b = to_picture(to, push.width, push.height);
   size = pixel_size(a.z, push.height);
   // Narrow discs fade: on surfaces seen at a grazing angle many lie one behind the other.
-  vec3 away = frame.orthographic != 0u ? frame.camera_forward : normalize(d.position - frame.camera_origin);
+  vec3 away = camera_towards(d.position);
   float wide = radius / size * abs(dot(normal, away));
   float strength = clamp((wide - k_least_width) / (k_full_width - k_least_width), 0.0, 1.0);
   draw_stroke(a, b, Stroke(d.half_width, d.edge_width, strength * d.strength, d.rank, number), 0u, 1u);

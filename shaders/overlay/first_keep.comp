@@ -11,6 +11,6 @@ void main() {
   uint slot = global_index();
   if (slot >= push.count) return;
   vec4 place = features[2u * slot];
-  float depth = max(dot(place.xyz - frame.camera_origin, frame.camera_axis), 0.0);
+  float depth = max(camera_depth(place.xyz - frame.camera_origin), 0.0);
   surfaces[push.first + slot] = vec4(features[2u * slot + 1u].xyz, place.w > 0.0 ? depth : 0.0);
 }

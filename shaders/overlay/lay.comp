@@ -18,9 +18,7 @@ float grey_of(uvec2 xy, uvec2 coarse_film) {
   vec4 albedo = texelFetch(coarse_albedo, int(pixel));
   vec3 normal = texelFetch(coarse_normal, int(pixel)).xyz;
   if (albedo.w < 0.5 * float(coarse_count[pixel]) || dot(normal, normal) == 0.0) return k_background;
-  vec2 ndc = (vec2(xy) + 0.5) / vec2(coarse_film) * 2.0 - 1.0;
-  vec3 shift = ndc.x * frame.camera_right - ndc.y * frame.camera_up;
-  vec3 view = normalize(frame.orthographic != 0u ? frame.camera_forward : frame.camera_forward + shift);
+  vec3 view = camera_direction(shift_at((vec2(xy) + 0.5) / vec2(coarse_film)));
   float light = sqrt(clamp(dot(albedo.xyz / albedo.w, vec3(0.2126, 0.7152, 0.0722)), 0.0, 1.0));
   return mix(k_edge_on, k_facing, abs(dot(normalize(normal), view))) * mix(0.5, 1.0, light);
 }
@@ -41,7 +39,7 @@ float grey_at(uvec2 xy) {
 // Grey of a surface traced for the sheet.
 float grey_of(Seen s) {
   if (!s.solid) return k_background;
-  vec3 view = normalize(frame.orthographic != 0u ? frame.camera_forward : s.position - frame.camera_origin);
+  vec3 view = camera_towards(s.position);
   return 0.8 * mix(k_edge_on, k_facing, abs(dot(s.normal, view)));
 }
 

@@ -12,7 +12,7 @@ void main() {
   if (slot >= push.count) return;
   vec4 place = features[2u * slot], normal = features[2u * slot + 1u];
   uint at = (push.first + slot) * k_surface_texels;
-  float depth = max(dot(place.xyz - frame.camera_origin, frame.camera_axis), 0.0);
+  float depth = max(camera_depth(place.xyz - frame.camera_origin), 0.0);
   surfaces[at] = place.w > 0.0 ? vec4(place.xyz, depth) : vec4(0.0, 0.0, 0.0, k_surface_none);
   surfaces[at + 1u] = normal;
 }

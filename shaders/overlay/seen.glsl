@@ -18,24 +18,18 @@ struct Seen {
   vec3 position, normal;
 };
 
-vec3 shift_at(vec2 at) {
-  vec2 ndc = at * 2.0 - 1.0;
-  return ndc.x * frame.camera_right - ndc.y * frame.camera_up;
-}
-
 // Sets depth and position for a point of the picture, 0..1 to the right and down.
 void place_seen(inout Seen s, vec2 at, float depth) {
   vec3 shift = shift_at(at);
   s.depth = depth;
-  s.position = frame.orthographic != 0u ? frame.camera_origin + shift + depth * frame.camera_forward
-                                        : frame.camera_origin + depth * (frame.camera_forward + shift);
+  s.position = camera_start(shift) + depth * camera_view(shift);
 }
 
 // Depth at the point `to` of the picture of the plane with this normal and this depth at the point `from`.
 float depth_on_plane(vec3 normal, vec2 from, float depth, vec2 to) {
   vec3 a = shift_at(from), b = shift_at(to);
-  if (frame.orthographic != 0u) return depth + dot(normal, a - b) / dot(normal, frame.camera_forward);
-  return depth * dot(normal, frame.camera_forward + a) / dot(normal, frame.camera_forward + b);
+  if (is_parallel(frame.projection)) return depth + dot(normal, a - b) / dot(normal, frame.camera_forward);
+  return depth * dot(normal, camera_view(a)) / dot(normal, camera_view(b));
 }
 
 // Index of the film's pixel below a pixel of the sheet.
@@ -52,7 +46,7 @@ Seen seen_at(uint pixel, uint width, uint height) {
     vec4 surface = texelFetch(sheet_surfaces, int(pixel));
     s.solid = surface.w > 0.0;
     place_seen(s, (vec2(sheet_xy) + 0.5) / vec2(width, height), surface.w);
-    s.size = 2.0 * length(frame.camera_up) / float(height) * (frame.orthographic != 0u ? 1.0 : s.depth);
+    s.size = 2.0 * length(frame.camera_up) / float(height) * (is_parallel(frame.projection) ? 1.0 : s.depth);
     s.normal = s.solid ? surface.xyz : -frame.camera_axis;
     return s;
   }
@@ -72,31 +66,42 @@ Seen seen_at(uint pixel, uint width, uint height) {
   float depth = sums.w / max(hits, 1.0), moved = depth_on_plane(s.normal, known, depth, at);
   place_seen(s, at, moved > 0.8 * depth && moved < 1.25 * depth ? moved : depth);
   s.size = 2.0 * length(frame.camera_up) / float(sampled ? film.y : coarse_film.y) *
-           (frame.orthographic != 0u ? 1.0 : s.depth);
+           (is_parallel(frame.projection) ? 1.0 : s.depth);
   return s;
 }
 
 // Steps on the plane of a surface from a pixel's centre to those of its right and lower neighbours [m].
 mat2x3 pixel_steps(Seen s, uint width, uint height) {
-  bool parallel = frame.orthographic != 0u;
+  bool parallel = is_parallel(frame.projection);
   vec3 along = parallel ? frame.camera_forward : (s.position - frame.camera_origin) / max(s.depth, 1e-20);
   float facing = dot(s.normal, along), least = 0.02 * length(along);
   facing = facing < 0.0 ? min(facing, -least) : max(facing, least);  // limited for surfaces at grazing angles
   float scale = parallel ? 1.0 : s.depth;
   vec3 right = 2.0 / float(width) * frame.camera_right, down = -2.0 / float(height) * frame.camera_up;
+  if (is_wide(frame.projection)) {
+    vec2 at = angles_towards(normalize(along));
+    vec3 x = normalize(frame.camera_right), y = normalize(frame.camera_up);
+    right = wide_direction(frame.projection, at + vec2(length(right), 0.0), x, y, frame.camera_axis) - along;
+    down = wide_direction(frame.projection, at - vec2(0.0, length(down)), x, y, frame.camera_axis) - along;
+  }
   return mat2x3(scale * (right - dot(s.normal, right) / facing * along), scale * (down - dot(s.normal, down) / facing * along));
 }
 
 // Depth at parameter t (0..1) between two points of the picture, on the line between them in the scene.
 float depth_between(float a, float b, float t) {
-  return frame.orthographic != 0u ? mix(a, b, t) : 1.0 / mix(1.0 / a, 1.0 / b, t);
+  return is_parallel(frame.projection) ? mix(a, b, t) : 1.0 / mix(1.0 / a, 1.0 / b, t);
 }
 
 // Projection: pixels from the upper left corner, and depth; 0 or less behind the eye, where the pixels are invalid.
 vec3 to_picture(vec3 position, uint width, uint height) {
   vec3 away = position - frame.camera_origin;
-  float depth = dot(away, frame.camera_axis);
-  float scale = frame.orthographic != 0u ? 1.0 : 1.0 / max(depth, 1e-20);
+  float depth = camera_depth(away);
+  if (is_wide(frame.projection)) {
+    vec2 angles = angles_towards(away / max(depth, 1e-20));
+    vec2 place = angles / vec2(length(frame.camera_right), -length(frame.camera_up));
+    return vec3((0.5 * place + 0.5) * vec2(width, height), wide_covers(frame.projection, angles) ? depth : 0.0);
+  }
+  float scale = is_parallel(frame.projection) ? 1.0 : 1.0 / max(depth, 1e-20);
   // Within the plane at distance 1, from the middle of the picture.
   away = scale * away - (frame.camera_forward - frame.camera_axis);
   vec2 ndc = vec2(dot(away, frame.camera_right) / dot(frame.camera_right, frame.camera_right),
@@ -106,6 +111,6 @@ vec3 to_picture(vec3 position, uint width, uint height) {
 
 // Width of a pixel at a depth [m], in a picture of that height.
 float pixel_size(float depth, uint height) {
-  return 2.0 * length(frame.camera_up) / float(height) * (frame.orthographic != 0u ? 1.0 : depth);
+  return 2.0 * length(frame.camera_up) / float(height) * (is_parallel(frame.projection) ? 1.0 : depth);
 }
 #endif

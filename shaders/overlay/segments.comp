@@ -17,6 +17,15 @@ void main() {
   uint number = push.first + index;
   if (piece == 0u) inks[number] = vec4(s.color, s.alpha);
   slack = s.slack;
+  if (is_wide(frame.projection)) {
+    // A line is bent there: each invocation draws its part of the length straight.
+    vec2 part = vec2(piece, piece + 1u) / float(push.pieces);
+    vec3 a = to_picture(mix(s.from, s.to, part.x), push.width, push.height),
+         b = to_picture(mix(s.from, s.to, part.y), push.width, push.height);
+    bool seam = abs(a.x - b.x) > 0.5 * float(push.width);  // of a panorama
+    if (!seam) draw_stroke(a, b, Stroke(s.half_width, s.edge_width, s.strength, s.rank, number), 0u, 1u);
+    return;
+  }
   float from = dot(s.from - frame.camera_origin, frame.camera_axis);
   float to = dot(s.to - frame.camera_origin, frame.camera_axis), near = k_near * max(from, to);
   vec3 a = from < near ? mix(s.from, s.to, (near - from) / (to - from)) : s.from;

@@ -53,7 +53,7 @@ struct PreviewHalvePush {
 struct PreviewFilterPush {
   uint across, down;
   uint step;             ///< between the weighted cells; in the first pass at least the width of a preview sample's pixel
-  uint orthographic;
+  uint projection;       ///< k_projection_*
   uint history;          ///< 0: there is no previous picture
   uint blocks_across, blocks_down;  ///< as in PreviewResolvePush
   vec3 right, up, forward;
@@ -71,14 +71,14 @@ struct PreviewChangePush {
 struct PreviewReprojectPush {
   uint width, height;
   uint pass;             ///< of preview_scatter.comp. 0: depths, 1: nearest pixel
-  uint orthographic;     ///< bit 0: before, bit 1: now
+  uint projections;      ///< bits 0-3: k_projection_* before, bits 4-7: now
   PreviewCamera before, now;
 };
 
 struct PreviewFetchPush {
   uint width, height;    ///< of the previous picture
   uint across, down;     ///< of the surfaces
-  uint orthographic;     ///< as in PreviewReprojectPush
+  uint projections;      ///< as in PreviewReprojectPush
   uint keep;             ///< not 0: surfaces without known light stay known
   PreviewCamera before, now;
 };

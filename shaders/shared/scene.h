@@ -116,13 +116,16 @@ LUCERNA_CONST uint k_media_around = 0x80000000u;  ///< visited if the position l
 LUCERNA_CONST uint k_media_stacks = 1u << 20;
 
 /// Parameters of the frame for all kernels. Lengths in metres, angles in radians.
+/// Projections of the camera (lib/projection.glsl).
+LUCERNA_CONST uint k_projection_perspective = 0u, k_projection_orthographic = 1u, k_projection_panorama = 2u, k_projection_fisheye = 3u;
+
 struct Frame {
   vec3 camera_origin;
   uint width;
-  vec3 camera_right;       ///< half the picture's width at distance 1 (perspective), or half width (orthographic)
+  vec3 camera_right;       ///< half the picture's width at distance 1 (perspective), half width (orthographic), or half angle
   uint height;
   vec3 camera_up;          ///< likewise, half the height
-  uint orthographic;
+  uint projection;         ///< k_projection_*
   vec3 camera_forward;     ///< to the middle of the picture; its part along camera_axis is 1 (lens shift)
   uint seed;
   vec3 camera_axis;        ///< unit, across camera_right and camera_up; depths are along it

@@ -27,17 +27,16 @@ void main() {
   uint sample_index = block.first_sample + slot / push.pixel_count;
   Sampler s = make_sampler(pixel, frame.width, sample_index, frame.seed);
   vec2 place = (vec2(xy) + sample_2d(s, k_pad_pixel)) / vec2(frame.width, frame.height);
-  vec2 ndc = place * 2.0 - 1.0;
-  vec3 shift = ndc.x * frame.camera_right - ndc.y * frame.camera_up;
+  vec3 shift = shift_at(place);
   Ray ray;
-  ray.origin = frame.camera_origin + (frame.orthographic != 0u ? shift : vec3(0.0));
-  ray.direction = normalize(frame.camera_forward + (frame.orthographic != 0u ? vec3(0.0) : shift));
+  ray.origin = camera_start(shift);
+  ray.direction = camera_direction(shift);
 #if LUCERNA_THIN_LENS
   vec3 from = lens_point(sample_2d(s, k_pad_lens));
   ray.origin += from;
   ray.direction = normalize(frame.camera_forward + shift - from / frame.focus_distance);
 #endif
-  ray.tmax = inside ? k_infinity : -1.0;
+  ray.tmax = inside && camera_covers(shift) ? k_infinity : -1.0;
 #if LUCERNA_SECTION
   // The ray starts on the plane. Without a way through it, it ends at once, without a hit.
   float cut = section_distance(ray.origin, ray.direction);

@@ -41,7 +41,7 @@ void load_vertex(uint slot, out Ray ray, out Hit hit, out PathState path) {
 void write_features(uint slot, Surface surface) {
   vec3 n = surface.front ? surface.normal_s : -surface.normal_s;
   features[2u * slot] = vec4(surface.parameters.base, 1.0);
-  features[2u * slot + 1u] = vec4(n, dot(surface.position - frame.camera_origin, frame.camera_axis));
+  features[2u * slot + 1u] = vec4(n, camera_depth(surface.position - frame.camera_origin));
 }
 
 // Emission of the surface that a path hits.

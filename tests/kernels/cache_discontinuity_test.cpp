@@ -31,7 +31,7 @@ struct View {
     f.camera_right = vec3(half() * float(width) / float(height), 0, 0);
     f.camera_up = vec3(0, half(), 0);
     f.camera_forward = f.camera_axis = vec3(0, 0, -1);
-    f.orthographic = parallel;
+    f.projection = parallel ? shared::k_projection_orthographic : shared::k_projection_perspective;
     return f;
   }
   static float half() { return 0.5f; }

@@ -44,7 +44,7 @@ struct Bed {
     frame.camera_up = vec3(0, scale, 0);
     frame.camera_axis = vec3(0, 0, -1);
     frame.camera_forward = frame.camera_axis + aside.x * frame.camera_right + aside.y * frame.camera_up;
-    frame.orthographic = orthographic;
+    frame.projection = orthographic ? shared::k_projection_orthographic : shared::k_projection_perspective;
     wavefront.set_frame(frame, 15);
     shared::Frame sheet_frame = frame;
     sheet_frame.width = enlarged * width, sheet_frame.height = enlarged * height;
@@ -74,7 +74,8 @@ struct Bed {
   vec3 at(float x, float y, float depth) const {
     const vec2 ndc = 2.0f * vec2(x, y) / vec2(film.width(), film.height()) - 1.0f;
     const vec3 shift = ndc.x * frame.camera_right - ndc.y * frame.camera_up;
-    return frame.orthographic ? shift + depth * frame.camera_forward : depth * (frame.camera_forward + shift);
+    return frame.projection == shared::k_projection_orthographic ? shift + depth * frame.camera_forward
+                                                                 : depth * (frame.camera_forward + shift);
   }
 
   /// The picture of one colour with the drawing on it.

@@ -125,6 +125,17 @@ TEST_CASE("an upright camera is level, with the middle of the picture where it w
   CHECK_THAT(b.failure("camera.section 0,0,2 0,0,0"), Contains("normal: its length is 0"));
   b.run("camera.place 1,1.7,6 1,9,5.5 0,1,0 shift_right=0 shift_up=0");
   CHECK_THAT(b.failure("camera.upright"), Contains("too steeply"));
+  b.run("camera.projection panorama");
+  CHECK(b.work.camera.view->camera.wide == scene::Wide::panorama);
+  CHECK_THAT(b.failure("camera.f_number 2"), Contains("the camera is a panorama, without depth of field"));
+  b.run("camera.bookmark around");
+  b.run("undo");
+  CHECK(b.work.camera.view->camera.perspective());
+  b.run("camera.go around");
+  CHECK(b.work.camera.view->camera.wide == scene::Wide::panorama);
+  b.run("camera.fov 50");
+  CHECK(b.work.camera.view->camera.perspective());
+  CHECK_THAT(b.failure("camera.projection cube"), Contains("expected one of perspective, panorama"));
   for (const char* line : {"camera.shift nan 0", "camera.shift 0 21", "camera.shift 0"}) {
     INFO(line);
     CHECK_FALSE(b.failure(line).empty());

@@ -285,6 +285,7 @@ TEST_CASE("cameras are added, and replaced by name") {
   corner.to_world[3] = vec4(3, 1, 2, 1);
   corner.yfov = 0.5f, corner.lens = {.f_number = 2, .focus_distance = 3, .blades = 6},
   corner.shift = {0, 0.1f};
+  corner.wide = Wide::fisheye;
   corner.section = {.normal = {0, 0, 1}, .offset = -0.5f};
   Camera view = corner;
   view.name = "view", view.yfov = 0.9f;
@@ -297,6 +298,7 @@ TEST_CASE("cameras are added, and replaced by name") {
   CHECK(glm::distance(vec3(back.cameras[1].to_world[3]), vec3(3, 1, 2)) < 1e-6f);
   CHECK(back.cameras[1].lens == corner.lens);
   CHECK(back.cameras[1].shift == corner.shift);
+  CHECK(back.cameras[1].wide == Wide::fisheye);
   CHECK(back.cameras[1].section == corner.section);
 }
 

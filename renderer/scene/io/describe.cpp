@@ -125,14 +125,15 @@ std::string members(const Json& group) {
 Json describe_cameras(const Scene& scene) {
   Json list = Json::array();
   for (const Camera& camera : scene.cameras) {
-    Json item{{"name", camera.name}, {"kind", camera.orthographic ? "orthographic" : "perspective"}};
+    Json item{{"name", camera.name},
+              {"kind", camera.orthographic ? "orthographic" : k_projection_names[size_t(camera.wide)]}};
     if (camera.orthographic)
       item["half_size"] = {camera.xmag, camera.ymag};
-    else
+    else if (camera.wide == Wide::none)
       item["yfov_degrees"] = glm::degrees(camera.yfov);
     if (camera.aspect > 0) item["aspect"] = camera.aspect;
     if (camera.shift != vec2(0)) item["shift"] = {camera.shift.x, camera.shift.y};
-    if (const Lens& lens = camera.lens; !camera.orthographic && lens.f_number > 0) {
+    if (const Lens& lens = camera.lens; camera.perspective() && lens.f_number > 0) {
       item["f_number"] = lens.f_number, item["focus_distance"] = lens.focus_distance;
       item["aperture_blades"] = lens.blades;
       if (lens.blades > 0) item["aperture_rotation_degrees"] = glm::degrees(lens.rotation);

@@ -373,6 +373,13 @@ class Walker {
       lens.blades = static_cast<uint32_t>(blades);
     }
     lens.rotation = static_cast<float>(own->number("aperture_rotation", 0));
+    if (const auto projection = own->find("projection")) {
+      const std::string& name = projection->text();
+      const auto at = std::find(std::begin(k_projection_names), std::end(k_projection_names), name);
+      if (at == std::end(k_projection_names))
+        projection->fail("'{}', expected {}", name, fmt::join(k_projection_names, ", "));
+      camera.wide = Wide(at - std::begin(k_projection_names));
+    }
     camera.shift.x = static_cast<float>(own->number("shift_right", 0));
     camera.shift.y = static_cast<float>(own->number("shift_up", 0));
   }

@@ -12,7 +12,7 @@ using glm::dvec3;
 EditedJson definition(const Camera& c, const dvec3& origin, EditedJson camera) {
   for (const char* key : {"perspective", "orthographic"}) camera.erase(key);
   for (const char* key : {"f_number", "focus_distance", "aperture_blades", "aperture_rotation", "shift_right",
-                          "shift_up", "section"})
+                          "shift_up", "section", "projection"})
     remove_own(camera, key);
   camera["name"] = c.name;
   camera["type"] = c.orthographic ? "orthographic" : "perspective";
@@ -31,6 +31,7 @@ EditedJson definition(const Camera& c, const dvec3& origin, EditedJson camera) {
       if (c.lens.blades > 0) set_own(camera, "aperture_blades", c.lens.blades);
       if (c.lens.rotation != 0) set_own(camera, "aperture_rotation", number_json(c.lens.rotation));
     }
+    if (c.wide != Wide::none) set_own(camera, "projection", k_projection_names[size_t(c.wide)]);
     if (c.shift.x != 0) set_own(camera, "shift_right", number_json(c.shift.x));
     if (c.shift.y != 0) set_own(camera, "shift_up", number_json(c.shift.y));
   }

@@ -54,7 +54,7 @@ void Cache::Impl::look_from(const CacheView& view) {
   const Frame& f = view.paths_frame;
   const LeastRadius now{
       .eye = f.camera_origin,
-      .parallel = f.orthographic != 0,
+      .parallel = f.projection == shared::k_projection_orthographic,
       .of_distance = options.radius.least_pixels * 2 * glm::length(f.camera_up) / float(f.height),
       .most = options.radius.most_radius * view.scene_radius};
   if (now == tables.least) return;

@@ -19,12 +19,16 @@ Frame coarser(Frame f, uint32_t side) {
   const uint32_t across = (f.width + side - 1) / side, down = (f.height + side - 1) / side;
   const float x = float(across * side) / float(f.width), y = float(down * side) / float(f.height);
   const vec3 shift = (x - 1) * f.camera_right - (y - 1) * f.camera_up;
-  if (f.orthographic != 0)
+  const bool wide = f.projection >= k_projection_panorama;
+  f.width = across, f.height = down;
+  // Angles count from the axis, so the border cannot move alone. Pixels become a little narrower instead:
+  // errors are then estimated up to one of these pixels aside.
+  if (wide) return f;
+  if (f.projection == k_projection_orthographic)
     f.camera_origin += shift;
   else
     f.camera_forward += shift;
   f.camera_right *= x, f.camera_up *= y;
-  f.width = across, f.height = down;
   return f;
 }
 

@@ -35,7 +35,8 @@ float unit_of(const Picture& picture, double power, uint32_t paths) {
   const Frame& f = picture.frame;
   const double area = 4.0 * double(glm::length(f.camera_right)) * double(glm::length(f.camera_up)) /
                       (double(picture.width) * picture.height);
-  const double far = f.orthographic ? 1.0 : double(picture.flat.core_radius);
+  const double far =
+      f.projection == shared::k_projection_orthographic ? 1.0 : double(picture.flat.core_radius);
   const double unit = std::exp2(-34) * power / (double(paths) * area * far * far);
   return std::isfinite(unit) && unit > 1e-37 ? float(std::min(unit, 1e30)) : 1e-37f;
 }

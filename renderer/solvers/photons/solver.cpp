@@ -111,7 +111,7 @@ nlohmann::ordered_json component_names(uint32_t components) {
 
 /// Size of the scene without distant outliers, which must not change the radius.
 float most_radius(const Frame& frame) {
-  if (frame.orthographic == 0) return std::numeric_limits<float>::max();
+  if (frame.projection != shared::k_projection_orthographic) return std::numeric_limits<float>::max();
   return k_most_radius * std::min(glm::length(frame.camera_right), glm::length(frame.camera_up));
 }
 
@@ -292,8 +292,8 @@ PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, 
       float(2 * glm::length(frame.camera_right) / float(frame.width));  // at 1 m, or everywhere
   const float radius = pixel * float(radius_pixels);
   f.eye = frame.camera_origin;
-  f.slope = frame.orthographic ? 0 : std::min(radius, k_photon_most_slope);
-  f.base = frame.orthographic ? radius : 0;
+  f.slope = frame.projection == shared::k_projection_orthographic ? 0 : std::min(radius, k_photon_most_slope);
+  f.base = frame.projection == shared::k_projection_orthographic ? radius : 0;
   f.most = most_radius(frame);
   f.most_candidates = k_photon_most_candidates, f.most_visits = k_photon_most_visits;
   f.surface_nodes = picture.task.settings.boolean("photons.borders") ? surfaces_.nodes() : 0;
@@ -480,8 +480,9 @@ PhotonReport PhotonSolver::state(const Picture& picture) const {
   r.radius_pixels = r.radius_law.at(rounds_ > 0 ? last_sample_ : 0);
   r.at_floor = r.radius_pixels <= r.radius_law.floor;
   const auto pixel = double(2 * glm::length(picture.frame.camera_right) / float(picture.frame.width));
-  r.limited = r.radius_pixels * pixel >
-              double(picture.frame.orthographic ? most_radius(picture.frame) : k_photon_most_slope);
+  r.limited = r.radius_pixels * pixel > double(picture.frame.projection == shared::k_projection_orthographic
+                                                   ? most_radius(picture.frame)
+                                                   : k_photon_most_slope);
   r.view = uint32_t(s.choice("overlay.photons"));
   r.paths_shown = s.boolean("overlay.photon_paths");
   r.aim_shown = s.boolean("overlay.photon_aim");
