@@ -289,6 +289,15 @@ void material_layers(Controls& controls, uint32_t index, const scene::Material& 
       set(named("anisotropy_rotation", turn));
     tooltip("Rotates that direction.");
   }
+  if (m.transmission > 0 && m.thickness > 0) {
+    float dispersion = m.dispersion;
+    if (slider("##dispersion", "Dispersion", dispersion,
+               {.lo = 0, .hi = 2, .decimals = 2, .typed_hi = scene::k_max_dispersion}))
+      set(named("dispersion", dispersion));
+    tooltip(
+        "How much the refraction depends on the colour: 20 over the Abbe number. Crown glass .34, flint .6, "
+        "diamond .36.");
+  }
   share("##film", std::string("Thin film") + textured(m.iridescence_texture), m.iridescence, "iridescence",
         "Colours of interference, as on soap bubbles and tempered steel.");
   if (m.iridescence > 0) {

@@ -13,6 +13,7 @@ Document::Material Document::of(const scene::Material& m) {
           .sheen_roughness = m.sheen_roughness,
           .anisotropy = m.anisotropy,
           .anisotropy_rotation = m.anisotropy_rotation,
+          .dispersion = m.dispersion,
           .iridescence = m.iridescence,
           .iridescence_maximum = m.iridescence_maximum};
 }
@@ -30,6 +31,7 @@ void Document::Material::put(scene::Material& m) const {
   m.clearcoat = clearcoat, m.clearcoat_roughness = clearcoat_roughness;
   m.sheen_color = sheen_color, m.sheen_roughness = sheen_roughness;
   m.anisotropy = anisotropy, m.anisotropy_rotation = anisotropy_rotation;
+  m.dispersion = dispersion;
   m.iridescence = iridescence, m.iridescence_maximum = iridescence_maximum;
 }
 

@@ -21,6 +21,7 @@ struct Document {
     vec3 sheen_color{0};
     float sheen_roughness = 0;
     float anisotropy = 0, anisotropy_rotation = 0;
+    float dispersion = 0;
     float iridescence = 0, iridescence_maximum = 400;
     bool emits = true;  ///< false: its emission is stored, but switched off
     /// The values that the scene has.

@@ -7,6 +7,7 @@
 #include "commands/command_list.h"
 #include "commands/light_words.h"
 #include "commands/workspace.h"
+#include "scene/range.h"
 
 namespace lucerna::commands {
 namespace {
@@ -185,6 +186,12 @@ void add_material_commands(Registry& registry, OpenScene& open) {
              .hi = 360,
              .unit = "degrees",
              .optional = true},
+            {.name = "dispersion",
+             .type = Type::real,
+             .help = "of solid glass: 20 / Abbe number",
+             .lo = 0,
+             .hi = scene::k_max_dispersion,
+             .optional = true},
             {.name = "iridescence",
              .type = Type::real,
              .help = "strength of a thin film",
@@ -216,6 +223,7 @@ void add_material_commands(Registry& registry, OpenScene& open) {
              if (a.has("anisotropy")) m.anisotropy = a.number("anisotropy");
              if (a.has("anisotropy_rotation"))
                m.anisotropy_rotation = glm::radians(a.number("anisotropy_rotation"));
+             if (a.has("dispersion")) m.dispersion = a.number("dispersion");
              if (a.has("iridescence")) m.iridescence = a.number("iridescence");
              if (a.has("film_thickness")) m.iridescence_maximum = a.number("film_thickness");
              if (a.has("emission")) m.emission = a.vector("emission");

@@ -101,6 +101,8 @@ bool absorbs(const Material& m) {
          m.attenuation_color != vec3(1);
 }
 void drop_absorption(Material& m) { m.attenuation_distance = k_infinity; }
+bool is_dispersive(const Material& m) { return is_solid_glass(m) && m.dispersion > 0; }
+void drop_dispersion(Material& m) { m.dispersion = 0; }
 bool is_translucent(const Material& m) { return m.diffuse_transmission > 0; }
 void drop_translucency(Material& m) { m.diffuse_transmission = 0; }
 bool has_clearcoat(const Material& m) { return m.clearcoat > 0 && !m.unlit; }
@@ -239,6 +241,8 @@ std::vector<Row> surface_rows() {
        of_materials<is_frosted>},
       {"absorption", "Absorption in solids", group, "media of paths", "no solid absorbs",
        of_materials<absorbs>, of_each<drop_absorption>},
+      {"dispersion", "Dispersion in solids", group, "wavelengths of paths", "no solid has it",
+       of_materials<is_dispersive>, of_each<drop_dispersion>},
       {"diffuse_transmission", "Translucent sheets", group, "diffuse lobe to the other side",
        "no surface has it", of_materials<is_translucent>, of_each<drop_translucency>},
       {"clearcoat", "Clear coats", group, "specular lobe over the material", "no surface has it",

@@ -76,7 +76,7 @@ uint64_t materials(const Scene& scene, Images& images) {
                  normal_texture, normal_scale, emission, emission_texture, alpha_mode, alpha_cutoff,
                  double_sided, unlit, ior, specular, specular_texture, specular_color, specular_color_texture,
                  transmission, transmission_texture, thickness, attenuation_color, attenuation_distance,
-                 diffuse_transmission, diffuse_transmission_texture, diffuse_transmission_color,
+                 dispersion, diffuse_transmission, diffuse_transmission_texture, diffuse_transmission_color,
                  diffuse_transmission_color_texture, clearcoat, clearcoat_texture, clearcoat_roughness,
                  clearcoat_roughness_texture, clearcoat_normal_texture, clearcoat_normal_scale, sheen_color,
                  sheen_color_texture, sheen_roughness, sheen_roughness_texture, anisotropy,
@@ -84,7 +84,7 @@ uint64_t materials(const Scene& scene, Images& images) {
                  iridescence_minimum, iridescence_maximum, iridescence_thickness_texture, group] = m;
     add_all(hash, base_color, metallic, roughness, normal_scale, emission, alpha_mode, alpha_cutoff,
             double_sided, unlit, ior, specular, specular_color, transmission, thickness, attenuation_color,
-            attenuation_distance, diffuse_transmission, diffuse_transmission_color, clearcoat,
+            attenuation_distance, dispersion, diffuse_transmission, diffuse_transmission_color, clearcoat,
             clearcoat_roughness, clearcoat_normal_scale, sheen_color, sheen_roughness, anisotropy,
             anisotropy_rotation, iridescence, iridescence_ior, iridescence_minimum, iridescence_maximum);
     for (const TextureSlot& slot : k_texture_slots) images.add(hash, m.*slot.use);

@@ -96,6 +96,8 @@ void check_range(const Material& m) {
   if (!within(m.anisotropy, 0, 1) || !std::isfinite(m.anisotropy_rotation))
     throw_error(where, "its anisotropy {:.4g} is not between 0 and 1, or its rotation is not finite",
                 m.anisotropy);
+  if (!within(m.dispersion, 0, k_max_dispersion))
+    throw_error(where, "its dispersion is {:.4g}, expected 0 to {}", m.dispersion, k_max_dispersion);
   if (!within(m.iridescence, 0, 1) || !within(m.iridescence_ior, 1, k_max_strength) ||
       !within(m.iridescence_minimum, 0, k_max_strength) || !within(m.iridescence_maximum, 0, k_max_strength))
     throw_error(where, "its thin film has a strength, index or thickness out of range");

@@ -19,6 +19,7 @@ inline constexpr float k_least_focus = 1e-4f;
 inline constexpr uint32_t k_max_blades = 32;
 /// Largest lens shift, in sizes of the picture.
 inline constexpr float k_max_shift = 20;
+inline constexpr float k_max_dispersion = 20;  ///< Material::dispersion: an Abbe number of 1
 
 /// True if all coordinates are finite and at most k_max_coordinate.
 bool in_range(const vec3& position);

@@ -75,7 +75,8 @@ struct Material {
   float thickness = 0;  ///< KHR_materials_volume; > 0: a solid that refracts and absorbs; 0: a thin wall
   vec3 attenuation_color{1};
   float attenuation_distance = k_infinity;  ///< metres
-  float diffuse_transmission = 0;           ///< KHR_materials_diffuse_transmission
+  float dispersion = 0;            ///< KHR_materials_dispersion, of solids: 20 / Abbe number; 0: none
+  float diffuse_transmission = 0;  ///< KHR_materials_diffuse_transmission
   TextureUse diffuse_transmission_texture;  ///< a
   vec3 diffuse_transmission_color{1};
   TextureUse diffuse_transmission_color_texture;  ///< rgb

@@ -96,6 +96,7 @@ gpu::Defines defines_of(const HitClass& hits, const gpu::Defines& all) {
   keep("LUCERNA_TEX_SHEEN", needs(k_feature_sheen_texture));
   keep("LUCERNA_ANISOTROPY", needs(k_feature_anisotropy));
   keep("LUCERNA_TEX_ANISOTROPY", needs(k_feature_anisotropy_texture));
+  keep("LUCERNA_DISPERSION", needs(k_feature_dispersion));
   keep("LUCERNA_IRIDESCENCE", needs(k_feature_iridescence));
   keep("LUCERNA_TEX_IRIDESCENCE", needs(k_feature_iridescence_texture));
   return d;

@@ -175,6 +175,7 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_TEX_SHEEN", e.tex_sheen);
   set("LUCERNA_ANISOTROPY", e.anisotropy);
   set("LUCERNA_TEX_ANISOTROPY", e.tex_anisotropy);
+  set("LUCERNA_DISPERSION", e.dispersion);
   set("LUCERNA_IRIDESCENCE", e.iridescence);
   set("LUCERNA_TEX_IRIDESCENCE", e.tex_iridescence);
   set("LUCERNA_UV_TRANSFORMS", e.uv_transforms);

@@ -91,7 +91,7 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
   Effects& e = flat.effects;
   e.specular = e.solid_glass = e.thin_glass = e.diffuse_transmission = false;
   e.volumes = e.unlit = e.alpha = e.glass_specular = false;
-  e.clearcoat = e.sheen = e.anisotropy = e.iridescence = false;
+  e.clearcoat = e.sheen = e.anisotropy = e.iridescence = e.dispersion = false;
   e.plain_emitters = true;
   const MaterialKinds kinds = material_kinds(scene.materials);
   flat.materials.resize(scene.materials.size() * k_material_texels);
@@ -126,7 +126,7 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
     out[k_material_volume] = vec4(absorption, row);
     out[k_material_diffuse_t] = vec4(m.diffuse_transmission_color, m.diffuse_transmission);
     out[k_material_detail] = vec4(m.normal_scale, m.alpha_cutoff, 0, as_float(kinds.of_material[i]));
-    out[k_material_coat] = vec4(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale, 0);
+    out[k_material_coat] = vec4(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale, m.dispersion);
     out[k_material_sheen] = vec4(m.sheen_color, m.sheen_roughness);
     out[k_material_grain] =
         vec4(m.anisotropy, std::cos(m.anisotropy_rotation), std::sin(m.anisotropy_rotation), 0);
@@ -136,6 +136,7 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
     e.sheen |= any(m.sheen_color);
     e.anisotropy |= m.anisotropy > 0;
     e.iridescence |= m.iridescence > 0;
+    e.dispersion |= solid && m.dispersion > 0;
     const bool lets_all_through = m.transmission >= 1 && !m.transmission_texture;
     e.specular |= !m.unlit && (m.metallic > 0 || (m.specular > 0 && !lets_all_through) || is_layered(m));
     e.solid_glass |= solid;

@@ -45,6 +45,7 @@ uint32_t features_of(const scene::Material& m) {
   has(k_feature_sheen_texture, sheen && (m.sheen_color_texture || m.sheen_roughness_texture));
   has(k_feature_anisotropy, m.anisotropy > 0);
   has(k_feature_anisotropy_texture, m.anisotropy > 0 && m.anisotropy_texture);
+  has(k_feature_dispersion, glass && m.thickness > 0 && m.dispersion > 0);
   has(k_feature_iridescence, m.iridescence > 0);
   has(k_feature_iridescence_texture,
       m.iridescence > 0 && (m.iridescence_texture || m.iridescence_thickness_texture));

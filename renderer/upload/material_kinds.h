@@ -38,7 +38,8 @@ enum MaterialFeature : uint32_t {
   k_feature_anisotropy_texture = 1u << 22,
   k_feature_iridescence = 1u << 23,
   k_feature_iridescence_texture = 1u << 24,  ///< of strength or thickness
-  k_all_features = (1u << 25) - 1u,
+  k_feature_dispersion = 1u << 25,
+  k_all_features = (1u << 26) - 1u,
 };
 
 /// Whether it has a coat, sheen, brushing or a thin film: their code needs that of the specular lobe.

@@ -18,7 +18,7 @@ uint vertices_of(uint slot) {
   // Scattering events (PathState.bits) and surfaces passed since the last one, plus the last vertex.
   uint bits = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 1u))).z;
   uint nulls = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 2u))).z;
-  return 1u + ((bits & ~k_path_branched) >> k_path_events_shift) + nulls;
+  return 1u + (bits >> k_path_events_shift & k_path_events_mask) + nulls;
 }
 #endif
 

@@ -76,6 +76,6 @@ float section_distance(vec3 origin, vec3 direction) {
 }
 
 uint path_automaton(PathState p) { return p.bits & k_path_state_mask; }
-uint path_depth(PathState p) { return (p.bits & ~k_path_branched) >> k_path_events_shift; }
+uint path_depth(PathState p) { return p.bits >> k_path_events_shift & k_path_events_mask; }
 
 #endif

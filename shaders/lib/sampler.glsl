@@ -21,6 +21,8 @@ const uint k_pad_light_detail = 4u;  // which texel of the environment
 const uint k_pad_record = 0x8000u;
 // From here on no pads but the streams of null events.
 const uint k_pad_null = 0x10000u;
+// Of the whole path: its wavelength (lib/dispersion.glsl).
+const uint k_pad_wavelength = 0x20000u;
 
 //
 // Coherent sampling (LUCERNA_COHERENT: log2 of the side of a tile in pixels): all pixels of a tile share the sequences, so

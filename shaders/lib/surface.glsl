@@ -32,6 +32,10 @@ struct Surface {
 #if LUCERNA_ANISOTROPY
   vec3 grain;        // direction in which a brushed surface reflects most widely; need not be in the tangent plane; 0: none
 #endif
+#if LUCERNA_DISPERSION
+  uint wavelength;   // of light that passes (lib/dispersion.glsl); 0: all
+  vec3 spectrum;     // colour of that light
+#endif
   bool front;        // the ray came from the front
   uint material;
   uint flags;
@@ -239,6 +243,10 @@ Surface make_surface(Ray ray, Hit hit) {
 #endif
   p.solid = (s.flags & k_flag_solid) != 0u;
   p.inside = p.solid && !s.front;
+#if LUCERNA_DISPERSION
+  s.wavelength = 0u;
+  s.spectrum = vec3(1.0);
+#endif
   p.glass_row = int(texelFetch(scene_materials, m + int(k_material_volume)).w);
   s.parameters = p;
   return s;

@@ -23,7 +23,7 @@ LUCERNA_CONST uint k_material_volume = 4u;        ///< absorption rgb [1/m], gla
 LUCERNA_CONST uint k_material_diffuse_t = 5u;     ///< diffuse transmission colour rgb, factor
 LUCERNA_CONST uint k_material_detail = 6u;        ///< normal scale, alpha cutoff, medium of a solid (scene_media), bits of the
                                                   ///< kind of hits on it
-LUCERNA_CONST uint k_material_coat = 7u;          ///< clear coat: strength, roughness, normal scale, 0
+LUCERNA_CONST uint k_material_coat = 7u;          ///< clear coat: strength, roughness, normal scale; dispersion
 LUCERNA_CONST uint k_material_sheen = 8u;         ///< sheen colour rgb, roughness
 LUCERNA_CONST uint k_material_grain = 9u;         ///< anisotropy, cosine and sine of its rotation, 0
 LUCERNA_CONST uint k_material_film = 10u;         ///< iridescence, index, minimum and maximum thickness [nm]

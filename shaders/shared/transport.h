@@ -24,7 +24,8 @@ LUCERNA_CONST uint k_path_sky_not_sampled = 1u << 7;  ///< light samples at the 
 LUCERNA_CONST uint k_path_sky_known = 1u << 8;    ///< the sky's light along the ray has been looked up
 LUCERNA_CONST uint k_path_branched = 1u << 31;    ///< one of its vertices has several branches; no other vertex may branch
 LUCERNA_CONST uint k_path_state_mask = 0x3fu;
-LUCERNA_CONST uint k_path_events_shift = 9u;
+LUCERNA_CONST uint k_path_events_shift = 9u, k_path_events_mask = 0x1ffu;
+LUCERNA_CONST uint k_path_wavelength_shift = 18u;  ///< 12 bits (lib/dispersion.glsl)
 
 /// With a maximum depth below this, stored light is read only if it was stored for paths of that many events; otherwise
 /// paths compute it. From here on the few additional events of stored light are neglected.
@@ -38,7 +39,8 @@ struct PathState {
                        ///< by luminance; 0: no eye path finds it
   uint pixel;          ///< index into the film (y * width + x)
   uint sample_index;   ///< sample of the pixel
-  uint bits;           ///< 0-5 automaton state, 6-8 and 31 k_path_*, 9-30 scattering events so far
+  uint bits;           ///< 0-5 automaton state, 6-8 and 31 k_path_*, 9-17 scattering events so far,
+                       ///< 18-29 wavelength; 0: all
   uint media;          ///< media around the ray, a stack (lib/media.glsl); 0: none
   float travelled;     ///< metres since the last scattering event, over null events
   float eta_scale;     ///< product of (eta_i/eta_t)^2 in the throughput from refraction. Light paths: density

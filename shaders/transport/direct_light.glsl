@@ -172,6 +172,9 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
 #endif
   vec3 wi = l.direction * to_world;
   BsdfValue f = bsdf_eval(bsdf, wo, wi);
+#if LUCERNA_DISPERSION
+  if (wi.z < 0.0) f.glossy *= surface.spectrum;
+#endif
   bool reflected = dot(l.direction, side) > 0.0;
   bool sides_agree = reflected == (wi.z > 0.0);
 #if LUCERNA_LIGHT_SURFACE

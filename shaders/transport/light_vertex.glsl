@@ -6,6 +6,9 @@
 #include "lib/wavefront.glsl"
 #include "lib/sampler.glsl"
 #include "lib/surface.glsl"
+#if LUCERNA_DISPERSION
+#include "lib/dispersion.glsl"
+#endif
 
 struct LightVertex {
   float coverage;  // alpha: the share of light that meets the surface, whether or not this path is scattered
@@ -45,6 +48,9 @@ void reflect_as_seen(LightVertex v, vec3 from, vec3 towards, float density, floa
 LightVertex light_vertex(inout PathState path, Ray ray, Hit hit, Sampler random) {
   LightVertex v;
   v.surface = make_surface(ray, hit);
+#if LUCERNA_DISPERSION
+  disperse(v.surface, path, random);
+#endif
 #if LUCERNA_VOLUMES
   path.throughput *= media_transmittance(path.media, hit.t);
 #endif
@@ -126,6 +132,12 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     vec3 weight = b.weight * (adjoint_correction(v.surface.normal_g, normal, ray.direction, direction) / b.eta2);
     if ((leans || tilted) && sides_agree && !b.transmitted && b.event != k_event_specular)
       reflect_as_seen(v, -ray.direction, direction, b.pdf, lobe.y, weight, b.event);
+    uint wavelength = 0u;
+#if LUCERNA_DISPERSION
+    bool passes = b.transmitted && b.event != k_event_diffuse;
+    if (passes) weight *= v.surface.spectrum;
+    wavelength = wavelength_bits(v.surface, path, passes);
+#endif
     uint next = automaton_after(path_automaton(path), b.event);
     vec3 throughput = path.throughput * weight;
     bool finite = is_finite(throughput);
@@ -143,7 +155,7 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     path.pdf /= max(q, 1e-30);
     if (depth == 1u && b.event != k_event_specular)
       path.pdf += max((path.eta_scale < 0.0 ? 1.0 : travelled * travelled) / max(b.pdf * abs(path.eta_scale), 1e-37), 1e-30);
-    path.bits = next | (depth + 1u) << k_path_events_shift;
+    path.bits = next | (depth + 1u) << k_path_events_shift | wavelength;
     path.travelled = 0.0;
     path.nulls = 0u;
 #if LUCERNA_VOLUMES

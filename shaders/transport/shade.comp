@@ -9,6 +9,9 @@
 #include "lib/sampler.glsl"
 #include "lib/surface.glsl"
 #include "lib/lights.glsl"
+#if LUCERNA_DISPERSION
+#include "lib/dispersion.glsl"
+#endif
 #include "transport/vertex_hooks.glsl"
 #include "transport/direct_light.glsl"
 
@@ -71,6 +74,12 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
   bool sides_agree = (dot(direction, v.side) > 0.0) == !b.transmitted;
   uint next = hooks_state(v, hooks, b, automaton_after(v.state, b.event));
   vec3 throughput = path.throughput * b.weight;
+  uint wavelength = 0u;
+#if LUCERNA_DISPERSION
+  bool passes = b.transmitted && b.event != k_event_diffuse;
+  if (passes) throughput *= v.surface.spectrum;
+  wavelength = wavelength_bits(v.surface, path, passes);
+#endif
   bool finite = is_finite(throughput);
   bool go_on = sides_agree && (!finite || max3(throughput) > 0.0) && automaton_live(next);
   if (go_on && !finite) atomicAdd(counters[k_counter_dropped], 1u);
@@ -99,7 +108,7 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
   }
   path.throughput = throughput;
   path.pdf = b.pdf;
-  path.bits = next | sky | (v.depth + 1u) << k_path_events_shift | (path.bits & k_path_branched);
+  path.bits = next | sky | (v.depth + 1u) << k_path_events_shift | wavelength | (path.bits & k_path_branched);
   path.travelled = 0.0;
   path.nulls = 0u;
 #if LUCERNA_VOLUMES
@@ -163,6 +172,9 @@ void main() {
 #if LUCERNA_HITS_SURFACES
   if (hit.prim != k_no_hit) {
     Surface surface = make_surface(ray, hit);
+#if LUCERNA_DISPERSION
+    disperse(surface, path, random);
+#endif
 #if LUCERNA_VOLUMES
     path.throughput *= media_transmittance(path.media, hit.t);
 #endif

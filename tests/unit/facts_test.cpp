@@ -117,7 +117,7 @@ TEST_CASE("without an effect, a scene no longer calls for it, and keeps all othe
     if (slot.use != &scene::Material::transmission_texture) (m.*slot.use).texture = 0;
   scene::Material& glass = full.materials[1];
   glass.transmission = 1, glass.thickness = 1, glass.attenuation_distance = 1, glass.roughness = 0.3f;
-  glass.attenuation_color = vec3(0.5f), glass.alpha_mode = scene::AlphaMode::blend;
+  glass.dispersion = 0.3f, glass.attenuation_color = vec3(0.5f), glass.alpha_mode = scene::AlphaMode::blend;
   glass.transmission_texture.texture = 0;
   full.lights.resize(3);
   full.lights[1].kind = scene::LightKind::spot, full.lights[2].kind = scene::LightKind::directional;

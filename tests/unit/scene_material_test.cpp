@@ -133,6 +133,7 @@ TEST_CASE("extensions of materials") {
   CHECK(m.iridescence_ior == 1.5f);
   CHECK(m.iridescence_minimum == 100);
   CHECK(m.iridescence_maximum == 550);
+  CHECK(load_material(extension("KHR_materials_dispersion", {{"dispersion", 0.25}})).dispersion == 0.25f);
   CHECK(load_material(extension("KHR_materials_unlit", json::object())).unlit);
 }
 

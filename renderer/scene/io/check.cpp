@@ -28,6 +28,7 @@ const std::set<std::string_view> k_known_extensions{"KHR_materials_emissive_stre
                                                     "KHR_materials_sheen",
                                                     "KHR_materials_anisotropy",
                                                     "KHR_materials_iridescence",
+                                                    "KHR_materials_dispersion",
                                                     "KHR_materials_variants",
                                                     "KHR_mesh_quantization",
                                                     "EXT_mesh_gpu_instancing"};

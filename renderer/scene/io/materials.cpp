@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "scene/io/images.h"
+#include "scene/range.h"
 
 namespace lucerna::scene {
 namespace {
@@ -273,6 +274,8 @@ void MaterialLoader::read_layers(const Item& extensions, Material& m, MaterialNe
     if (!m.anisotropy_texture && !m.normal_texture)
       needs.tangents->uv_set = take_slot(needs.sets, 0).value_or(0);
   }
+  if (const auto e = extensions.find("KHR_materials_dispersion"))
+    m.dispersion = factor(*e, "dispersion", 0, 0, k_max_dispersion);
   if (const auto e = extensions.find("KHR_materials_iridescence")) {
     m.iridescence = factor(*e, "iridescenceFactor", 0, 0, 1);
     m.iridescence_texture = texture_use(*e, "iridescenceTexture", Use::data, needs);

@@ -49,6 +49,8 @@ void write_layers(EditedJson& root, EditedJson& m, const Material& before, const
     e["anisotropyStrength"] = number_json(after.anisotropy);
     e["anisotropyRotation"] = number_json(after.anisotropy_rotation);
   }
+  if (differs(&Material::dispersion))
+    extension_at(root, m, "KHR_materials_dispersion")["dispersion"] = number_json(after.dispersion);
   if (differs(&Material::iridescence, &Material::iridescence_maximum)) {
     EditedJson& e = extension_at(root, m, "KHR_materials_iridescence");
     e["iridescenceFactor"] = number_json(after.iridescence);
