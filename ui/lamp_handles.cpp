@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "commands/light_edit.h"
+#include "commands/light_words.h"
 #include "commands/workspace.h"
 #include "emitters.h"
 #include "mark_layout.h"
@@ -78,7 +79,7 @@ std::vector<LampHandle> lamp_handles(const MarkedScene& marked, const Area& show
     const bool selected = marked.camera.selection == Selection{Kind::light, i};
     const scene::Light light = marked.open.light(i);
     if ((!marked.all && !selected) || light.kind == scene::LightKind::directional) continue;
-    if (selected && light.kind == scene::LightKind::spot) add(aim_of(marked, i, light));
+    if (selected && commands::can_be_aimed(light)) add(aim_of(marked, i, light));
     add({.light = i, .part = LampHandle::Part::place, .point = light.position, .at = {}});
   }
   if (marked.all)

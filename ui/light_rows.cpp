@@ -10,10 +10,12 @@
 #include "base/blackbody.h"
 #include "base/color.h"
 #include "commands/light_edit.h"
+#include "commands/light_words.h"
 #include "emitters.h"
 #include "scene/display_name.h"
 #include "scene/lamp.h"
 #include "scene/light_groups.h"
+#include "scene/range.h"
 #include "sun_rows.h"
 
 namespace lucerna::ui {
@@ -72,6 +74,57 @@ namespace {
 
 constexpr const char* k_menu = "##menu";  ///< of a row's right button
 
+/// Sizes of a selected lamp with a shape. Its power stays.
+void shape_rows(Actions& actions, size_t i, const scene::Light& light) {
+  using scene::LightKind;
+  const auto size = [&](const char* id, const char* label, const char* parameter, float value,
+                        const char* help) {
+    if (slider(id, label, value,
+               {.lo = 1e-3f,
+                .hi = 100,
+                .log = true,
+                .decimals = 3,
+                .unit = "m",
+                .bar = false,
+                .travel = 0.25f,
+                .typed_lo = scene::k_least_lamp,
+                .typed_hi = scene::k_max_lamp}))
+      actions.act("light.set", i + 1, named(parameter, value));
+    tooltip(help);
+  };
+  if (light.kind == LightKind::rectangle) {
+    size("##width", "Width", "width", light.width, "Width of the lamp. Its power stays.");
+    size("##height", "Height", "height", light.height, "Height of the lamp. Its power stays.");
+  } else {
+    if (light.kind == LightKind::tube)
+      size("##length", "Length", "length", light.width, "Length of the lamp. Its power stays.");
+    size("##radius", "Radius", "radius", light.radius, "Radius of the lamp. Its power stays.");
+  }
+  if (light.kind == LightKind::tube) {
+    vec3 axis = light.right;
+    if (slider_row("##axis", "Axis", axis, {.lo = -1, .hi = 1, .decimals = 3, .bar = false}) >= 0)
+      actions.act("light.set", i + 1, named("right", axis));
+    tooltip("Direction of the tube: x, y (up), z; any length above 0.");
+  }
+  if (light.kind == LightKind::rectangle) {
+    float roll = scene::roll_of(light.direction, light.right);
+    if (slider("##roll", "Roll", roll,
+               {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0", .typed_lo = -360, .typed_hi = 360}))
+      actions.act("light.set", i + 1, named("roll", roll));
+    tooltip("Angle about the direction of its light; at 0 the width is level.");
+  }
+  const float half = 0.5f * (ImGui::CalcItemWidth() - px(4));
+  if (button("##visible", "Seen by the camera", light.visible, half))
+    actions.act("light.set", i + 1, named("visible", !light.visible));
+  tooltip("Whether the camera sees the lamp itself. Mirrors show it in any case.");
+  if (light.kind == LightKind::rectangle || light.kind == LightKind::disk) {
+    ImGui::SameLine(0, px(4));
+    if (button("##two_sided", "Two-sided", light.two_sided, half))
+      actions.act("light.set", i + 1, named("two_sided", !light.two_sided));
+    tooltip("Whether the lamp shines to its back too.");
+  }
+}
+
 /// Properties of a selected lamp besides its strength.
 void light_details(Actions& actions, const Box& core, size_t i, const scene::Light& light) {
   colour_rows(actions, "light.set", i + 1, "color", tint_of(light.intensity));
@@ -98,7 +151,9 @@ void light_details(Actions& actions, const Box& core, size_t i, const scene::Lig
       actions.act("light.set", i + 1, named("position", position));
     tooltip("Position of the lamp: x, y (up), z in metres.");
   }
-  if (light.kind != scene::LightKind::point) {
+  if (has_shape(light.kind)) shape_rows(actions, i, light);
+  if (light.kind != scene::LightKind::point && light.kind != scene::LightKind::sphere &&
+      light.kind != scene::LightKind::tube) {
     const commands::Bearing bearing = commands::bearing_of(light.direction);
     float azimuth = bearing.azimuth, elevation = bearing.elevation;
     if (slider("##azimuth", "Azimuth", azimuth,
@@ -162,7 +217,7 @@ void light_label(Controls& controls, SceneView& view, size_t i, const scene::Lig
 
 /// Buttons below a selected light.
 void list_buttons(Controls& controls, size_t i, const scene::Light& light) {
-  const bool sun = light.kind == scene::LightKind::directional, spot = light.kind == scene::LightKind::spot;
+  const bool sun = light.kind == scene::LightKind::directional, spot = commands::can_be_aimed(light);
   const float third = (ImGui::CalcItemWidth() - px(8)) / 3;
   if (button("##duplicate", "Duplicate", false, third)) controls.act("light.duplicate", i + 1);
   tooltip("Adds a copy beside it and selects it.");
@@ -171,7 +226,7 @@ void list_buttons(Controls& controls, size_t i, const scene::Light& light) {
   if (button("##here", spot ? "Aim here" : "Move here", false, third))
     controls.act(spot ? "light.aim_at" : "light.move", i + 1);
   ImGui::EndDisabled();
-  tooltip(spot ? "Points the spot at the surface in the middle of the picture."
+  tooltip(spot ? "Points the light at the surface in the middle of the picture."
                : "Moves the lamp to the surface in the middle of the picture, some distance off.");
   ImGui::SameLine(0, px(4));
   if (button("##delete", "Delete", false, third)) controls.act("light.delete", i + 1);
@@ -185,7 +240,7 @@ void light_menu(Controls& controls, size_t i, const scene::Light& light) {
     if (ImGui::Selectable("Duplicate")) controls.act("light.duplicate", i + 1);
     if (light.kind != scene::LightKind::directional && ImGui::Selectable("Move to the middle of the picture"))
       controls.act("light.move", i + 1);
-    if (light.kind == scene::LightKind::spot && ImGui::Selectable("Aim at the middle of the picture"))
+    if (commands::can_be_aimed(light) && ImGui::Selectable("Aim at the middle of the picture"))
       controls.act("light.aim_at", i + 1);
     if (ImGui::Selectable("Delete")) controls.act("light.delete", i + 1);
     ImGui::EndPopup();
@@ -206,6 +261,19 @@ void add_buttons(Controls& controls) {
   add("##add_spot", "+ Spot", "spot", "Adds a spot that shines on the surface in the middle of the picture.");
   ImGui::SameLine(0, px(4));
   add("##add_sun", "+ Sun", "sun", "Adds a sun, 45 degrees above the horizon.");
+  add("##add_rectangle", "+ Panel", "rectangle",
+      "Adds a rectangle that shines on the surface in the middle of the picture.");
+  ImGui::SameLine(0, px(4));
+  add("##add_sphere", "+ Globe", "sphere",
+      "Adds a shining sphere at the surface in the middle of the picture, some distance off.");
+  ImGui::SameLine(0, px(4));
+  if (button("##add_more", "More", false, third)) ImGui::OpenPopup("##more");
+  tooltip("Adds a disk or a tube.");
+  if (ImGui::BeginPopup("##more")) {
+    if (ImGui::Selectable("Disk")) controls.act("light.add", "disk");
+    if (ImGui::Selectable("Tube")) controls.act("light.add", "tube");
+    ImGui::EndPopup();
+  }
   gap(4);
 }
 
@@ -216,15 +284,14 @@ void draw_light_rows(Controls& controls, const commands::Navigation& camera, Sce
   const std::vector<uint32_t> glowing = emitters(controls.open, camera);
   add_buttons(controls);
   if (lights.empty() && glowing.empty()) quiet_line("No lights");
-  static const char* kinds[] = {"point", "spot", "sun"};
   for (size_t i = 0; i < lights.size(); ++i) {
     const auto index = static_cast<uint32_t>(i);
     const scene::Light& light = lights[i];
     ImGui::PushID(static_cast<int>(i));
     const bool chosen = camera.selection == Selection{Kind::light, index};
     if (light_row(controls.actions, view, chosen, reveal, display_name(light.name, "Light", i),
-                  kinds[static_cast<size_t>(light.kind)], tint_of(light.intensity), light.enabled, "light",
-                  i))
+                  light.kind == scene::LightKind::directional ? "sun" : kind_name(light.kind),
+                  tint_of(light.intensity), light.enabled, "light", i))
       controls.act("light.set", i + 1, named("on", !light.enabled));
     light_menu(controls, i, light);
     const bool sun = light.kind == scene::LightKind::directional;
@@ -235,7 +302,7 @@ void draw_light_rows(Controls& controls, const commands::Navigation& camera, Sce
       controls.act("light.set", i + 1, named("intensity", shown));
     ImGui::EndDisabled();
     tooltip(sun ? "Irradiance on a surface that faces the light, in its strongest channel."
-                : "Radiant intensity in the strongest channel.");
+                : "Radiant intensity in front of the lamp, in its strongest channel.");
     if (chosen) {
       light_details(controls.actions, camera.core, i, light);
       if (sun) sun_details(controls, i, light);

@@ -7,6 +7,7 @@
 #include "commands/light_words.h"
 #include "commands/sky_follow.h"
 #include "commands/workspace.h"
+#include "scene/lamp.h"
 #include "scene/light_groups.h"
 
 namespace lucerna::commands {
@@ -66,14 +67,27 @@ Room room_of(Workspace& work) {
           static_cast<float>(work.open.setting_real("film.ev"))};
 }
 
+/// A kind of light in light.add, and the name of the first one.
+struct NewKind {
+  const char* word;
+  scene::LightKind kind;
+  const char* name;
+};
+constexpr NewKind k_new_kinds[] = {{"point", scene::LightKind::point, "Lamp"},
+                                   {"spot", scene::LightKind::spot, "Spot"},
+                                   {"sun", scene::LightKind::directional, "Sun"},
+                                   {"sphere", scene::LightKind::sphere, "Globe"},
+                                   {"rectangle", scene::LightKind::rectangle, "Panel"},
+                                   {"disk", scene::LightKind::disk, "Disk"},
+                                   {"tube", scene::LightKind::tube, "Tube"}};
+
 scene::Light new_light(Workspace& work, const Arguments& a) {
   scene::Light light;
-  const std::string& kind = a.text("kind");
-  light.kind = kind == "sun"    ? scene::LightKind::directional
-               : kind == "spot" ? scene::LightKind::spot
-                                : scene::LightKind::point;
+  const NewKind& kind = *std::find_if(std::begin(k_new_kinds), std::end(k_new_kinds),
+                                      [&](const NewKind& k) { return a.text("kind") == k.word; });
+  light.kind = kind.kind;
   const std::vector<scene::Light>& lights = work.open.edit().lights;
-  light.name = free_name(lights, kind == "sun" ? "Sun" : kind == "spot" ? "Spot" : "Lamp");
+  light.name = free_name(lights, kind.name);
   if (a.has("name")) check_name(lights, a.text("name")), light.name = a.text("name");
   place_new(room_of(work), light);
   apply_light_words(a, light);
@@ -82,14 +96,15 @@ scene::Light new_light(Workspace& work, const Arguments& a) {
 
 void add_light_list_commands(Workspace& work) {
   std::vector<Parameter> parameters = light_parameters();
-  parameters.insert(parameters.begin(),
-                    {{.name = "kind", .type = Type::choice, .choices = {"point", "spot", "sun"}},
-                     name_parameter("of the light; without one, it is numbered", true)});
+  std::vector<std::string> kinds;
+  for (const NewKind& kind : k_new_kinds) kinds.emplace_back(kind.word);
+  parameters.insert(parameters.begin(), {{.name = "kind", .type = Type::choice, .choices = std::move(kinds)},
+                                         name_parameter("of the light; without one, it is numbered", true)});
   work.registry.add(
       {.name = "light.add",
        .help =
            "Adds a light and selects it. A lamp appears at the surface in the middle of the picture, some "
-           "distance off, a spot aimed at it; its power suits the room and the exposure.",
+           "distance off, a spot or a shape aimed at it; its power suits the room and the exposure.",
        .parameters = std::move(parameters),
        .check = check_light_words,
        .run =
@@ -161,17 +176,18 @@ void add_light_label_commands(Registry& registry, OpenScene& open) {
 void add_light_place_commands(Workspace& work) {
   work.registry.add(
       {.name = "light.aim_at",
-       .help = "Points a spot at a point; without one, at the surface in the middle of the picture.",
+       .help = "Points a spot, rectangle or disk at a point; without one, at the surface in the middle of "
+               "the picture.",
        .parameters = {which_light(work.open), point("at", "a point of the scene")},
        .run =
            [&work](const Arguments& a) {
              scene::Light& light = work.open.edit().lights[work.open.light_index(a.text("light"))];
-             if (light.kind != scene::LightKind::spot)
+             if (!can_be_aimed(light))
                throw Error("", fmt::format("a {} cannot be aimed at a point", kind_of(light)));
              const glm::dvec3 way((a.has("at") ? a.vector("at") : looked_at(room_of(work)).point) -
                                   light.position);
-             if (!(glm::length(way) > 1e-6)) throw Error("", "at: the spot is there itself");
-             light.direction = vec3(glm::normalize(way));
+             if (!(glm::length(way) > 1e-6)) throw Error("", "at: the light is there itself");
+             turn_to(light, vec3(glm::normalize(way)));
            },
        .undoable = true});
   work.registry.add(

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "commands/light_edit.h"
+#include "scene/lamp.h"
 
 namespace lucerna::commands {
 namespace {
@@ -48,9 +49,17 @@ void place_new(const Room& room, scene::Light& light) {
   light.position = off_surface(room);
   const float distance = 0.25f * radius_of(room);
   light.intensity = vec3(irradiance * distance * distance);
-  if (light.kind != scene::LightKind::spot) return;
+  if (light.kind == scene::LightKind::point) return;
+  if (has_shape(light.kind)) {
+    const float size = 0.1f * radius_of(room);
+    light.width = (light.kind == scene::LightKind::tube ? 3.3f : 1.5f) * size, light.height = size;
+    light.radius = (light.kind == scene::LightKind::tube ? 0.1f : 0.5f) * size;
+  }
   const glm::dvec3 way(looked_at(room).point - light.position);
-  if (glm::length(way) > 0) light.direction = vec3(glm::normalize(way));
+  if (light.kind != scene::LightKind::sphere && glm::length(way) > 0)
+    light.direction = vec3(glm::normalize(way));
+  if (has_shape(light.kind)) light.right = scene::level_right(light.direction);
+  if (light.kind != scene::LightKind::spot) return;
   light.inner_cone = glm::radians(20.0f), light.outer_cone = glm::radians(35.0f);
 }
 

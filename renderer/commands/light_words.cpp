@@ -7,6 +7,7 @@
 #include "base/error.h"
 #include "commands/light_edit.h"
 #include "scene/lamp.h"
+#include "scene/range.h"
 
 namespace lucerna::commands {
 namespace {
@@ -21,6 +22,16 @@ Parameter angle(const char* name, const char* help, double lo, double hi) {
           .optional = true};
 }
 
+Parameter size(const char* name, const char* help) {
+  return {.name = name,
+          .type = Type::real,
+          .help = help,
+          .lo = double{scene::k_least_lamp},
+          .hi = double{scene::k_max_lamp},
+          .unit = "m",
+          .optional = true};
+}
+
 /// Refuses what a lamp of its kind does not have.
 void check_kind(const Arguments& a, const scene::Light& light) {
   const auto refuse = [&](const char* name, const char* why) {
@@ -30,8 +41,18 @@ void check_kind(const Arguments& a, const scene::Light& light) {
     refuse("power", "shines from infinitely far: its intensity is what counts");
     refuse("position", "is infinitely far: azimuth and elevation say where");
   }
-  if (light.kind == scene::LightKind::point)
+  using scene::LightKind;
+  if (light.kind == LightKind::point || light.kind == LightKind::sphere)
     for (const char* name : {"direction", "azimuth", "elevation"}) refuse(name, "shines in all directions");
+  if (light.kind != LightKind::rectangle)
+    for (const char* name : {"width", "height"}) refuse(name, "is no rectangle");
+  if (light.kind != LightKind::tube) refuse("length", "is no tube");
+  if (!has_shape(light.kind) || light.kind == LightKind::rectangle) refuse("radius", "has no radius");
+  if (!has_shape(light.kind)) refuse("visible", "has no shape");
+  if (light.kind != LightKind::rectangle && light.kind != LightKind::disk)
+    refuse("two_sided", "has no second side");
+  if (light.kind != LightKind::rectangle && light.kind != LightKind::tube)
+    for (const char* name : {"right", "roll"}) refuse(name, "looks the same when it is rolled");
   if (light.kind != scene::LightKind::spot)
     for (const char* name : {"cone", "inner_cone"}) refuse(name, "has no cone");
 }
@@ -44,13 +65,13 @@ void aim(const Arguments& a, scene::Light& light) {
   if (a.has("direction")) {
     const vec3 d = a.vector("direction");
     if (!(glm::length(d) > 1e-6f)) throw Error("", "direction: its length is 0");
-    light.direction = vec3(glm::normalize(glm::dvec3(d)));
+    turn_to(light, vec3(glm::normalize(glm::dvec3(d))));
   }
   if (a.has("azimuth") || a.has("elevation")) {
     Bearing bearing = bearing_of(light.direction);
     if (a.has("azimuth")) bearing.azimuth = a.number("azimuth");
     if (a.has("elevation")) bearing.elevation = a.number("elevation");
-    light.direction = direction_from(bearing);
+    turn_to(light, direction_from(bearing));
   }
   // Turned by hand: no longer where a date puts it.
   if (light.direction != before) light.sun.reset();
@@ -64,6 +85,30 @@ void aim(const Arguments& a, scene::Light& light) {
   else
     light.inner_cone = std::min(light.inner_cone, light.outer_cone);
   light.outer_cone = std::max(light.outer_cone, light.inner_cone);
+}
+
+/// Applies the requested shape.
+void shape(const Arguments& a, scene::Light& light) {
+  if (a.has("width")) light.width = a.number("width");
+  if (a.has("length")) light.width = a.number("length");
+  if (a.has("height")) light.height = a.number("height");
+  if (a.has("radius")) light.radius = a.number("radius");
+  if (a.has("two_sided")) light.two_sided = a.boolean("two_sided");
+  if (a.has("visible")) light.visible = a.boolean("visible");
+  if (a.has("right")) {
+    const vec3 right = a.vector("right");
+    if (light.kind == scene::LightKind::tube && glm::length(right) > 1e-6f) {
+      // Its axis; it shines all around.
+      const glm::dvec3 axis = glm::normalize(glm::dvec3(right));
+      const glm::dvec3 along(light.direction), across = along - axis * glm::dot(axis, along);
+      light.direction = glm::length(across) > 1e-3 ? vec3(glm::normalize(across))
+                                                   : scene::right_across(vec3(axis), vec3(0, -1, 0));
+    }
+    if (!(glm::length(glm::cross(right, light.direction)) > 1e-6f))
+      throw Error("", "right: it is 0 or along the light's direction");
+    light.right = scene::right_across(light.direction, right);
+  }
+  if (a.has("roll")) light.right = scene::rolled(light.direction, a.number("roll"));
 }
 
 /// Applies the requested strength, colour and switch.
@@ -103,16 +148,21 @@ vec3 requested_tint(const Arguments& a, const char* color, const vec3& before) {
 }
 
 const char* kind_of(const scene::Light& light) {
-  return light.kind == scene::LightKind::directional ? "sun"
-         : light.kind == scene::LightKind::spot      ? "spot lamp"
-                                                     : "point lamp";
+  static constexpr const char* k_names[] = {"point lamp",     "spot lamp", "sun",      "sphere lamp",
+                                            "rectangle lamp", "disk lamp", "tube lamp"};
+  return k_names[static_cast<size_t>(light.kind)];
+}
+
+bool can_be_aimed(const scene::Light& light) {
+  using scene::LightKind;
+  return light.kind == LightKind::spot || light.kind == LightKind::rectangle || light.kind == LightKind::disk;
 }
 
 std::vector<Parameter> light_parameters() {
   return {
       {.name = "intensity",
        .type = Type::real,
-       .help = "of the strongest channel; W/m2 for a sun",
+       .help = "of the strongest channel, in front of the lamp; W/m2 for a sun",
        .lo = 0,
        .hi = 1e9,
        .unit = "W/sr",
@@ -148,17 +198,38 @@ std::vector<Parameter> light_parameters() {
       angle("azimuth", "from where a sun or a spot shines, as a compass: 0 from -Z, 90 from +X", -360, 360),
       angle("elevation", "the same above the horizon", -90, 90),
       angle("cone", "of a spot, from its axis to where there is no light", 0.01, 90),
-      angle("inner_cone", "of a spot, from its axis to where its light begins to fade", 0, 90)};
+      angle("inner_cone", "of a spot, from its axis to where its light begins to fade", 0, 90),
+      size("radius", "of a sphere, disk or tube; the lamp keeps its power"),
+      size("width", "of a rectangle; the lamp keeps its power"),
+      size("height", "of a rectangle; the lamp keeps its power"),
+      size("length", "of a tube; the lamp keeps its power"),
+      {.name = "right",
+       .type = Type::vector,
+       .help = "direction of a rectangle's width or a tube's length; any length above 0",
+       .lo = -1e6,
+       .hi = 1e6,
+       .optional = true},
+      angle("roll", "of a rectangle or tube about its direction; 0: its width is level", -360, 360),
+      {.name = "two_sided",
+       .type = Type::boolean,
+       .help = "a rectangle or disk shines to both sides",
+       .optional = true},
+      {.name = "visible",
+       .type = Type::boolean,
+       .help = "the camera sees the shape; mirrors show it in any case",
+       .optional = true}};
 }
 
 void check_light_words(const Arguments& a) {
   exclude(a, "intensity", "power"), exclude(a, "color", "kelvin");
   exclude(a, "direction", "azimuth"), exclude(a, "direction", "elevation");
+  exclude(a, "right", "roll");
 }
 
 void apply_light_words(const Arguments& a, scene::Light& light) {
   check_kind(a, light);
   aim(a, light);
+  shape(a, light);
   shine(a, light);
 }
 

@@ -16,8 +16,10 @@ void exclude(const Arguments& a, const char* one, const char* other);
 /// `before`.
 vec3 requested_tint(const Arguments& a, const char* color, const vec3& before);
 
-/// "sun", "spot lamp" or "point lamp".
+/// "sun", "spot lamp", "point lamp", "sphere lamp", "rectangle lamp", "disk lamp" or "tube lamp".
 const char* kind_of(const scene::Light& light);
+/// True if the light has a direction that matters.
+bool can_be_aimed(const scene::Light& light);
 /// Parameters of a light's properties, all optional.
 std::vector<Parameter> light_parameters();
 /// Checks that need no light: of parameters that exclude each other.

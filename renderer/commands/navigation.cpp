@@ -9,6 +9,7 @@
 #include "base/log.h"
 #include "commands/text.h"
 #include "scene/core.h"
+#include "scene/lamp.h"
 #include "scene/range.h"
 
 namespace lucerna::commands {
@@ -168,7 +169,8 @@ Box selection_bounds(const scene::Scene* scene, const std::vector<scene::Light>&
       break;
     case Kind::light:
       if (selection.index < lights.size() && lights[selection.index].kind != scene::LightKind::directional) {
-        const float reach = 0.05f * std::max(core.radius(), 1e-3f);
+        const vec2 half = half_size(lights[selection.index]);
+        const float reach = std::max({0.05f * std::max(core.radius(), 1e-3f), 2 * half.x, 2 * half.y});
         box.grow(lights[selection.index].position - vec3(reach));
         box.grow(lights[selection.index].position + vec3(reach));
       }

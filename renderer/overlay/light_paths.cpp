@@ -26,6 +26,10 @@ void place(const upload::FlatScene& flat, uint32_t entry, AimedPair& pair) {
       break;
     case k_light_point:
     case k_light_spot:
+    case k_light_sphere:
+    case k_light_rectangle:
+    case k_light_disk:
+    case k_light_tube:
       pair.from = vec3(texels[0]);
       pair.light = flat.lamp_name(flat.entries[entry].index);
       break;
@@ -92,7 +96,7 @@ uint32_t LightPathsPainter::draw(const Canvas& canvas, const upload::FlatScene& 
   LightPathsView view{0, k_all_lights, flat.core_radius, 0};
   for (uint32_t i = 0; lamp > 0 && i < flat.entries.size(); ++i) {
     const upload::LightEntry& e = flat.entries[i];
-    const bool is_lamp = e.kind == k_light_point || e.kind == k_light_spot || e.kind == k_light_directional;
+    const bool is_lamp = e.kind != k_light_triangle && e.kind != k_light_environment;
     if (is_lamp && e.index == lamp - 1) view.light = i;
   }
   if (lamp > 0 && view.light == k_all_lights) return 0;  // switched off or missing

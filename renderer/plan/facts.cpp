@@ -174,9 +174,17 @@ List caustics(const Context& c) {
   return c.lit() && !c.materials(has_diffuse).empty() ? c.materials(focuses) : List{};
 }
 
+/// Lamps with a shape.
+List shaped_lamps(const Context& c) {
+  return c.lamps([](const scene::Light& l) { return has_shape(l.kind); });
+}
+void drop_shaped_lamps(Scene& scene) {
+  for (scene::Light& l : scene.lights) l.enabled &= !has_shape(l.kind);
+}
+
 /// Light of lamps without size by way of smooth surfaces.
 List point_caustics(const Context& c) {
-  const bool lamps = !c.lamps([](const scene::Light&) { return true; }).empty();
+  const bool lamps = !c.lamps([](const scene::Light& l) { return !has_shape(l.kind); }).empty();
   return lamps && !c.materials(has_diffuse).empty() ? c.materials(polished) : List{};
 }
 
@@ -206,6 +214,8 @@ std::vector<Row> light_rows() {
        drop_lamps<LightKind::spot>},
       {"directional", "Distant lamps", group, "light table", "none is on", of_lamps<LightKind::directional>,
        drop_lamps<LightKind::directional>},
+      {"shaped", "Lamps with a shape", group, "light table; rays may meet the lamps", "none is on",
+       shaped_lamps, drop_shaped_lamps},
       {"emission", "Emitting surfaces", group, "triangles in the light table", "no surface emits",
        of_materials<has_emission>, of_each<drop_emission>},
       {"environment", "Sky", group, "environment map and its table", "none",

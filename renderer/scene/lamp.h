@@ -4,8 +4,28 @@
 
 namespace lucerna::scene {
 
-/// Radiant power of a point or spot lamp over its intensity on the axis [sr]: the solid angle weighted by
-/// relative intensity. 0 for a directional light.
+/// Radiant power of a lamp over its intensity on the axis [sr]: the solid angle weighted by relative
+/// intensity. 0 for a directional light.
 double solid_angle(const Light& lamp);
+
+/// Half the sizes along `right` and across: of a sphere or disk its radius in both, of a tube half its length
+/// and its radius. Metres; 0 for lamps without a shape.
+vec2 half_size(const Light& lamp);
+/// Radiance of a lamp with a shape: its intensity over the area seen from its front.
+vec3 radiance_of(const Light& lamp);
+
+/// A unit vector perpendicular to that direction (unit), horizontal where there is only one such.
+vec3 level_right(const vec3& direction);
+/// The part of `right` perpendicular to the direction, unit; level_right() if there is none.
+vec3 right_across(const vec3& direction, const vec3& right);
+/// level_right(), rolled by that angle about the direction, towards up.
+vec3 rolled(const vec3& direction, float degrees);
+/// The angle, -180 to 180, by which that is `right`.
+float roll_of(const vec3& direction, const vec3& right);
+/// Gives the light that direction (unit); a shape turns along by the least rotation.
+void turn_to(Light& light, const vec3& direction);
+
+/// "point", "spot", "directional", "sphere", "rectangle", "disk" or "tube".
+const char* kind_name(LightKind kind);
 
 }  // namespace lucerna::scene

@@ -17,6 +17,8 @@ inline constexpr float k_least_f_number = 0.1f, k_max_f_number = 1000;
 /// Smallest distance of the plane of focus [m].
 inline constexpr float k_least_focus = 1e-4f;
 inline constexpr uint32_t k_max_blades = 32;
+/// Sizes of lamps with a shape [m].
+inline constexpr float k_least_lamp = 1e-4f, k_max_lamp = 1e4f;
 /// Largest lens shift, in sizes of the picture.
 inline constexpr float k_max_shift = 20;
 inline constexpr float k_max_dispersion = 20;  ///< Material::dispersion: an Abbe number of 1
@@ -31,7 +33,8 @@ bool in_range(const vec3& position);
 /// section's normal is unit or 0, its offset at most k_max_coordinate.
 void check_range(const Camera& camera);
 /// The position is in range, the direction finite and not 0; the intensity is 0 to k_max_strength, the cones
-/// are 0 <= inner <= outer <= pi/2.
+/// are 0 <= inner <= outer <= pi/2; sizes of a shape are k_least_lamp to k_max_lamp, its `right` is unit and
+/// perpendicular to the direction.
 void check_range(const Light& light);
 /// Factors and emitted radiance are finite, not negative and at most k_max_strength.
 void check_range(const Material& material);

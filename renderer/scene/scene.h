@@ -206,9 +206,13 @@ struct Camera {
   bool perspective() const { return !orthographic && wide == Wide::none; }
 };
 
-enum class LightKind : uint32_t { point, spot, directional };
+/// The kinds from sphere on are lamps with a shape.
+enum class LightKind : uint32_t { point, spot, directional, sphere, rectangle, disk, tube };
+inline bool has_shape(LightKind kind) { return kind >= LightKind::sphere; }
 
-/// KHR_lights_punctual; shines down its -Z. Not seen by the camera. `intensity`: W/sr (point, spot) or W/m^2.
+/// KHR_lights_punctual, or a lamp with a shape that emits the same radiance everywhere; shines down its -Z.
+/// Only lamps with a shape are seen; they block no light. `intensity`: W/sr (W/m^2 of directional lights), of
+/// a lamp with a shape in front of it: radiance times the area seen from there. Size does not change it.
 struct Light {
   std::string name;
   LightKind kind = LightKind::point;
@@ -222,6 +226,13 @@ struct Light {
   /// k_first_added and more for lights added by hand. k_none: not known.
   Id id = k_none;
   std::optional<SunTime> sun{};  ///< of a directional light: its direction follows from this
+  /// Of a rectangle's width or a tube's length: unit, perpendicular to the direction.
+  vec3 right{1, 0, 0};
+  float width = 0.5f;      ///< of a rectangle; length of a tube; metres
+  float height = 0.5f;     ///< of a rectangle
+  float radius = 0.05f;    ///< of a sphere, disk or tube
+  bool two_sided = false;  ///< a rectangle or disk also emits to its back
+  bool visible = true;     ///< the camera sees the shape; mirrors show it in any case
   bool operator==(const Light&) const = default;
 };
 inline constexpr Id k_first_added = 0x80000000u;

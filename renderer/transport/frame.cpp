@@ -50,6 +50,7 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.environment_light_pmf = flat.environment_light_pmf;
   f.light_count = uint32_t(flat.lights.size() / shared::k_light_texels);
   f.first_lamp = flat.first_lamp, f.lamp_count = uint32_t(flat.lamp_alias.size());
+  f.first_shape = flat.first_shape, f.shape_count = flat.shape_count;
   f.lamp_pmf = flat.lamp_pmf;
   f.max_depth = options.max_depth;
   f.roulette_depth = options.roulette_depth;
@@ -66,7 +67,7 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
         start.grow(flat.scene_centre + vec3(flat.scene_radius));
   f.camera_in_solids = upload::meets_solids(flat, start);
   if (flat.groups) f.sky_group = flat.groups->sky, f.sun_group = flat.groups->sun;
-  const bool met = flat.effects.emissive || flat.environment_radiance != vec3(0);
+  const bool met = flat.effects.emissive || flat.effects.shapes || flat.environment_radiance != vec3(0);
   const std::vector<uint32_t> table = paths::pack(automaton, options.enabled, options.routes, met);
   assert(table.size() <= shared::k_gather_state);
   std::copy(table.begin(), table.end(), f.automaton);

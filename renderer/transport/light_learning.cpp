@@ -34,6 +34,7 @@ void LightLearning::upload_clusters() {
   put(device_, cluster_texels_, "light clusters", std::exchange(clusters_.clusters, {}));
   put(device_, members_, "lights of clusters", std::exchange(clusters_.members, {}));
   put(device_, primitives_, "clusters of emissive triangles", std::exchange(clusters_.primitives, {}));
+  put(device_, shapes_, "clusters of lamps with a shape", std::exchange(clusters_.shapes, {}));
   put(device_, tiles_, "clusters of the sky", std::exchange(clusters_.tiles, {}));
   put(device_, facets_, "emissive triangles", std::exchange(clusters_.facets, {}));
 }
@@ -53,6 +54,7 @@ void LightLearning::bind(gpu::Resources& r) const {
   r.set("light_clusters", cluster_texels_);
   r.set("cluster_members", members_);
   r.set("primitive_clusters", primitives_);
+  r.set("shape_clusters", shapes_);
   r.set("sky_tiles", tiles_);
   r.set("light_facets", facets_);
   r.set("LightRecords", records_);
@@ -135,7 +137,7 @@ std::vector<float> LightLearning::row(uint32_t row) const {
 
 uint64_t LightLearning::bytes() const {
   return grid_.bytes() + rows_.bytes() + cluster_texels_.bytes() + members_.bytes() + primitives_.bytes() +
-         tiles_.bytes() + facets_.bytes() + records_.bytes() +
+         shapes_.bytes() + tiles_.bytes() + facets_.bytes() + records_.bytes() +
          (samples_.capacity() + fresh_.capacity()) * sizeof(LightRecord);
 }
 

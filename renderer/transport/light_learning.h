@@ -61,7 +61,7 @@ class LightLearning {
   gpu::Device& device_;
   upload::LightClusters clusters_;
   uint32_t most_paths_;
-  gpu::Buffer grid_, rows_, cluster_texels_, members_, primitives_, tiles_, facets_, records_;
+  gpu::Buffer grid_, rows_, cluster_texels_, members_, primitives_, shapes_, tiles_, facets_, records_;
   LearnedCells cells_;
   std::vector<shared::LightRecord> samples_, fresh_;  ///< of earlier generations, and of the current one
   std::vector<float> row_arrived_;

@@ -142,6 +142,7 @@ gpu::Defines DeviceScene::defines() const {
   const auto set = [&](const char* name, bool on) { d[name] = on ? "1" : "0"; };
   set("LUCERNA_LIGHTS", e.lights);
   set("LUCERNA_EMISSIVE", e.emissive);
+  set("LUCERNA_SHAPES", e.shapes);
   set("LUCERNA_PLAIN_EMITTERS", e.plain_emitters);
   set("LUCERNA_ENVIRONMENT_MAP", e.environment_map);
   set("LUCERNA_SEPARATE_SKY", e.separate_sky);

@@ -26,6 +26,7 @@ struct Effects {
   bool plain_emitters = true;  ///< no emissive surface has an emission texture or alpha transparency
   /// Number of lamps from which a light sample is resampled by their light at the point; 0: few lamps.
   uint32_t lamp_candidates = 0;
+  bool shapes = false;                     ///< there are lamps with a shape, on or off
   bool separate_sky = false, sun = false;  ///< FlatScene::sun_threshold; there are brighter texels
   uint32_t media = 0;                      ///< number of media, if a solid absorbs (upload/media.h)
   uint32_t light_groups = 1;               ///< number of separate groups (FlatScene::groups)
@@ -65,8 +66,9 @@ struct LightDistribution {
   std::vector<float> primitive_light_pmf;  ///< pmf / area [1/m^2]
   std::vector<vec4>
       lamp_alias;  ///< alias table of the lamps, which are consecutive entries, with the same weights
-  uint32_t first_lamp = 0;  ///< first entry of a lamp
-  float lamp_pmf = 0;       ///< probability of choosing a lamp
+  uint32_t first_lamp = 0;                    ///< first entry of a lamp
+  float lamp_pmf = 0;                         ///< probability of choosing a lamp
+  uint32_t first_shape = 0, shape_count = 0;  ///< entries of lamps with a shape, the last of the lamps
   float environment_light_pmf = 0;
   EnvironmentTables environment;
   PortalTables portals;           ///< none if the sun is separate

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cmath>
 
+#include "scene/lamp.h"
 #include "upload/environment_map.h"
 #include "upload/flatten.h"
 
@@ -30,6 +31,12 @@ LightTexels lamp_texels(const scene::Light& l, uint32_t kind) {
   const vec3 intensity = l.enabled ? l.intensity : vec3(0);
   if (l.kind == scene::LightKind::directional)
     return {vec4(vec3(0), as_float(kind)), vec4(intensity, 0), vec4(l.direction, 0), vec4(0)};
+  if (has_shape(l.kind)) {
+    const vec2 half = scene::half_size(l);
+    const uint32_t bits = (l.two_sided ? k_light_both_sides : 0u) | (l.visible ? 0u : k_light_hidden);
+    return {vec4(l.position, as_float(kind)), vec4(intensity, half.x), vec4(l.direction, half.y),
+            vec4(scene::right_across(l.direction, l.right), as_float(bits))};
+  }
   return {vec4(l.position, as_float(kind)), vec4(intensity, std::cos(l.inner_cone)),
           vec4(l.direction, std::cos(l.outer_cone)), vec4(0)};
 }

@@ -270,6 +270,19 @@ void add_lamps(const FlatScene& flat, uint32_t first, uint32_t end, LightCluster
   }
 }
 
+/// Clusters of the lamps with a shape, which rays may meet.
+void find_shapes(const FlatScene& flat, LightClusters& to) {
+  to.shapes.assign(flat.shape_count, vec4(0));
+  for (uint32_t c = to.sky; c < to.count(); ++c) {
+    const auto first = std::bit_cast<uint32_t>(to.clusters[c].x),
+               count = std::bit_cast<uint32_t>(to.clusters[c].y);
+    for (uint32_t i = first; i < first + count; ++i)
+      if (const uint32_t shape = std::bit_cast<uint32_t>(to.members[i].z) - flat.first_shape;
+          shape < flat.shape_count)
+        to.shapes[shape].x = as_float(c);
+  }
+}
+
 /// Direction of a position in the map of the sky, 0..1 to the right and down.
 vec3 sky_direction(const FlatScene& flat, double u, double v) {
   const double phi = (u - 0.5) * 2 * std::numbers::pi - flat.environment_rotation;
@@ -348,6 +361,7 @@ LightClusters make_light_clusters(const FlatScene& flat) {
     ++triangles;
   if (triangles > 0) add_triangles(flat, triangles, to);
   add_lamps(flat, triangles, uint32_t(flat.entries.size()) - (has_sky(flat) ? 1 : 0), to);
+  find_shapes(flat, to);
   find_places(flat, to);
   return to;
 }

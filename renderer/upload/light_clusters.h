@@ -25,6 +25,7 @@ struct LightClusters {
   std::vector<float> plain;  ///< by cluster: probability without learning; they sum to 1
   std::vector<vec4> clusters, members;  ///< light_clusters, cluster_members
   std::vector<uint32_t> primitives;     ///< primitive_clusters
+  std::vector<vec4> shapes;             ///< shape_clusters
   std::vector<uint8_t> tiles;           ///< sky_tiles
   std::vector<vec4> facets;             ///< light_facets
   std::vector<ClusterPlace> places;     ///< by cluster

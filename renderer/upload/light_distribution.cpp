@@ -62,7 +62,7 @@ void add_triangles(const scene::Scene& scene, const FlatScene& flat, Choice& cho
 void add_lamps(const scene::Scene& scene, double disk, Choice& choice) {
   for (uint32_t i = 0; i < scene.lights.size(); ++i) {
     const scene::Light& l = scene.lights[i];
-    if (!l.enabled || !(luminance(l.intensity) > 0)) continue;
+    if (!l.enabled || !(luminance(l.intensity) > 0) || has_shape(l.kind)) continue;
     const double y = luminance(l.intensity);
     if (l.kind == scene::LightKind::directional) {
       choice.add(k_light_directional, i, y * disk, y * disk);
@@ -72,6 +72,32 @@ void add_lamps(const scene::Scene& scene, double disk, Choice& choice) {
     } else {
       choice.add(k_light_point, i, y * (4 * k_pi), y * scene::solid_angle(l));
     }
+  }
+}
+
+/// Kind in the table of lights.
+uint32_t shape_kind(scene::LightKind kind) {
+  switch (kind) {
+    case scene::LightKind::sphere:
+      return k_light_sphere;
+    case scene::LightKind::rectangle:
+      return k_light_rectangle;
+    case scene::LightKind::disk:
+      return k_light_disk;
+    default:
+      return k_light_tube;
+  }
+}
+
+/// Lamps with a shape, after the others: their flux.
+void add_shapes(const scene::Scene& scene, Choice& choice, LightDistribution& d) {
+  d.first_shape = uint32_t(choice.entries.size());
+  for (uint32_t i = 0; i < scene.lights.size(); ++i) {
+    const scene::Light& l = scene.lights[i];
+    if (!l.enabled || !(luminance(l.intensity) > 0) || !has_shape(l.kind)) continue;
+    const double flux = luminance(l.intensity) * scene::solid_angle(l);
+    choice.add(shape_kind(l.kind), i, flux, flux);
+    ++d.shape_count;
   }
 }
 
@@ -128,6 +154,7 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   const bool emissive = !choice.entries.empty();
   const double disk = double(k_pi) * flat.core_radius * flat.core_radius;
   add_lamps(scene, disk, choice);
+  add_shapes(scene, choice, d);
   for (size_t i = 0; i < scene.lights.size(); ++i)
     d.lamp_names.push_back(scene::display_name(scene.lights[i].name, "Light", i));
   const bool lit = environment_shines(scene.environment);
@@ -168,6 +195,9 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   if (emissive) d.primitive_light_pmf = triangle_densities(flat, d);
   flat.effects.lights = !d.entries.empty();
   flat.effects.emissive = emissive;
+  flat.effects.shapes =
+      flat.effects.lights && std::any_of(scene.lights.begin(), scene.lights.end(),
+                                         [](const scene::Light& l) { return has_shape(l.kind); });
   flat.effects.environment_map = lit;
   flat.effects.separate_sky = separate_sun;
   flat.effects.sun = has_sun;

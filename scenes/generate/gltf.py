@@ -231,6 +231,21 @@ class Scene:
         self.accessors.append(a)
         return len(self.accessors) - 1
 
+    @staticmethod
+    def _unit_normals(p, n, t):
+        """Normals, with those of length 0 replaced by the mean of their triangles' (up, without any)."""
+        zero = np.linalg.norm(n, axis=1) < 0.5
+        if not zero.any():
+            return n
+        n = n.copy()
+        faces = np.cross(p[t[:, 1]] - p[t[:, 0]], p[t[:, 2]] - p[t[:, 0]])
+        sums = np.zeros_like(p)
+        for k in range(3):
+            np.add.at(sums, t[:, k], faces)
+        length = np.linalg.norm(sums, axis=1, keepdims=True)
+        n[zero] = np.where(length > 1e-12, sums / np.maximum(length, 1e-12), [0, 1, 0])[zero]
+        return n
+
     def _geometry(self, mesh, uv):
         key = (id(mesh), uv)
         if key not in self.geometry:
@@ -245,8 +260,9 @@ class Scene:
             q = p[keep]
             area = np.linalg.norm(np.cross(q[t[:, 1]] - q[t[:, 0]], q[t[:, 2]] - q[t[:, 0]]), axis=1)
             t = t[area > 1e-9]
+            n = self._unit_normals(q, n[keep], t)
             attributes = {"POSITION": self._accessor(q.astype("<f4"), "VEC3", FLOAT, 34962, True),
-                          "NORMAL": self._accessor(n[keep].astype("<f4"), "VEC3", FLOAT, 34962)}
+                          "NORMAL": self._accessor(n.astype("<f4"), "VEC3", FLOAT, 34962)}
             if uv:
                 attributes["TEXCOORD_0"] = self._accessor(mesh.uv[keep].astype("<f4"), "VEC2", FLOAT, 34962)
             small = len(keep) < 65535
@@ -344,6 +360,26 @@ class Scene:
         at, d = np.asarray(at, float), np.asarray(direction, float)
         m = self.look(at, at + d, (0, 1, 0) if abs(d[1]) < 0.999 * np.linalg.norm(d) else (0, 0, 1))
         self.nodes.append({"name": name, "matrix": _numbers(m.T, 7),
+                           "extensions": {"KHR_lights_punctual": {"light": len(self.lights) - 1}}})
+        self.used.add("KHR_lights_punctual")
+
+    def point_lamp(self, name, at, color, candela):
+        self.lights.append({"name": name, "type": "point", "color": _numbers(color, 4), "intensity": candela})
+        self.nodes.append({"name": name, "translation": _numbers(at, 5),
+                           "extensions": {"KHR_lights_punctual": {"light": len(self.lights) - 1}}})
+        self.used.add("KHR_lights_punctual")
+
+    def shaped(self, name, at, direction, color, candela, shape, up=(0, 1, 0)):
+        """A lamp with a shape, {"shape": "rectangle", "width": ...} (scenes/README.md), that shines along `direction`, its
+        width across `up`. color * candela in front of it."""
+        flat = shape["shape"] in ("rectangle", "disk")
+        light = {"name": name, "type": "spot" if flat else "point", "color": _numbers(color, 4), "intensity": candela,
+                 "extras": {"lucerna": shape}}
+        if flat:
+            light["spot"] = {"innerConeAngle": 0, "outerConeAngle": round(float(np.pi / 2), 7)}
+        self.lights.append(light)
+        at, d = np.asarray(at, float), np.asarray(direction, float)
+        self.nodes.append({"name": name, "matrix": _numbers(self.look(at, at + d, up).T, 7),
                            "extensions": {"KHR_lights_punctual": {"light": len(self.lights) - 1}}})
         self.used.add("KHR_lights_punctual")
 

@@ -198,7 +198,8 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
   float spread = 4.0 * k_pi;
   // Aimed: towards the caster, unless the light is inside its box.
   vec3 aimed_direction = e.direction;
-  bool aims = stratum > 0u && kind != k_light_triangle && aim_sample(box, a.xyz, u_direction, aimed_direction);
+  bool has_area = kind == k_light_triangle || kind >= k_light_sphere;
+  bool aims = stratum > 0u && !has_area && aim_sample(box, a.xyz, u_direction, aimed_direction);
   vec3 place = a.xyz;
   if (kind == k_light_point) e.direction = aims ? aimed_direction : e.direction;
   if (kind == k_light_spot) {
@@ -215,6 +216,26 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
     e.pdf_direction = 1.0;
     spread = 1.0 / e.pdf_place;
   }
+#if LUCERNA_SHAPES
+  if (is_shape(kind)) {
+    LampShape shape = lamp_shape(a, b, c, texelFetch(scene_lights, at + 3));
+    vec3 n, t, s;
+    place = shape_place(shape, u_place, coin_below(coin, 0.5), n);
+    make_basis(n, t, s);
+    vec3 local = sample_cosine(u_direction);
+    e.origin = place;
+    e.direction = normalize(local.x * t + local.y * s + local.z * n);
+    e.pdf_place = 1.0 / shape_area(shape);
+    e.pdf_direction = local.z * k_inv_pi;
+    if (stratum > 0u && aim_sample(box, place, u_direction, aimed_direction)) {
+      e.direction = aimed_direction;
+      e.pdf_direction = max(0.0, dot(e.direction, n)) * k_inv_pi;
+    }
+    emitted = shape.radiance;
+    e.radiance = luminance(emitted);
+    spread = k_pi * shape_area(shape);
+  }
+#endif
 #if LUCERNA_EMISSIVE
   if (kind == k_light_triangle) {
     vec3 p0 = a.xyz, p1 = b.xyz, p2 = c.xyz;

@@ -11,6 +11,9 @@ uniform samplerBuffer learned_grid;
 uniform samplerBuffer learned_rows;
 uniform samplerBuffer light_clusters;
 uniform samplerBuffer cluster_members;
+#if LUCERNA_SHAPES
+uniform samplerBuffer shape_clusters;  // a texel a lamp with a shape: bits of its cluster
+#endif
 
 // Facing of a unit normal: its dominant axis and sign.
 uint learned_facing(vec3 normal) {

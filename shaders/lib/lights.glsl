@@ -12,6 +12,10 @@
 #include "lib/frame.glsl"
 #include "lib/reservoir.glsl"
 #include "lib/sampler.glsl"
+#include "lib/hash.glsl"
+#if LUCERNA_SHAPES
+#include "lib/shapes.glsl"
+#endif
 
 #if LUCERNA_LIGHTS
 uniform samplerBuffer scene_lights;
@@ -49,10 +53,12 @@ struct LightSample {
   vec3 offset;       // error bound of target, as Surface::offset
   bool sky;          // sample of a separate sky
   uint group;        // light group
+#if LUCERNA_LEARNED || LUCERNA_SHAPES
+  float factor;      // weight of the sample: pdf over its effective density after resampling
+#endif
 #if LUCERNA_LEARNED
   uint cluster;      // light cluster
   float chosen;      // probability of that
-  float factor;      // weight of the sample: pdf over its effective density after resampling
 #if LUCERNA_SKY_PORTALS
   float own;         // of a sample of the sky: density of the cluster alone, without that of other clusters
 #endif
@@ -117,11 +123,6 @@ EnvironmentTexels environment_texels_at(vec3 direction) {
 }
 vec3 environment_mix(vec3 a, vec3 b, vec3 c, vec3 d, vec2 f) {
   return frame.environment_radiance * mix(mix(a, b, f.x), mix(c, d, f.x), f.y);
-}
-// Sine of 0..pi/2 by its series: the device's function may be wrong by as much as a small angle.
-float sine(float x) {
-  float q = x * x;
-  return x * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0 * (1.0 - q / 110.0)))));
 }
 // A uniform direction within a texel of the map, by sin^2 of half the angle to the nearer pole: near a pole all cosines
 // round to 1.
@@ -198,7 +199,7 @@ float spot_share(float cosine, float cos_inner, float cos_outer) {
 #if LUCERNA_LIGHT_GROUPS > 1
 // Group of the light whose texels begin at `at`, or of the sky.
 uint group_of_light(int at, bool sky) {
-  return sky ? frame.sky_group : floatBitsToUint(texelFetch(scene_lights, at + 3).w) >> k_light_group_shift;
+  return sky ? frame.sky_group : floatBitsToUint(texelFetch(scene_lights, at + 3).w) >> k_light_group_shift & k_light_group_mask;
 }
 #endif
 
@@ -212,6 +213,13 @@ float lamp_sends(uint lamp, vec3 position, vec3 normal) {
   float d2 = max(dot(to, to), 1e-20);
   bool directional = kind == k_light_directional;
   vec3 direction = directional ? -c.xyz : to * inversesqrt(d2);
+#if LUCERNA_SHAPES
+  if (is_shape(kind)) {
+    LampShape shape = lamp_shape(a, b, c, texelFetch(scene_lights, at + 3));
+    float extent2 = dot(shape.half_size, shape.half_size);
+    return luminance(b.xyz) * shape_facing(shape, -direction) / (d2 + extent2) * max(dot(direction, normal), 0.05);
+  }
+#endif
   float fall = directional ? 1.0 : (kind == k_light_spot ? spot_share(dot(-direction, c.xyz), b.w, c.w) : 1.0) / d2;
   return luminance(b.xyz) * fall * max(dot(direction, normal), 0.05);
 }
@@ -301,6 +309,18 @@ uint draw_triangle_of(LightCluster cluster, uint light, vec3 position, vec3 norm
 }
 #endif
 
+#if LUCERNA_SHAPES
+LampShape load_shape(uint light) {
+  int at = int(light * k_light_texels);
+  return lamp_shape(texelFetch(scene_lights, at), texelFetch(scene_lights, at + 1), texelFetch(scene_lights, at + 2),
+                    texelFetch(scene_lights, at + 3));
+}
+#if LUCERNA_LEARNED
+// Cluster of a lamp with a shape.
+uint shape_cluster(uint light) { return floatBitsToUint(texelFetch(shape_clusters, int(light - frame.first_shape)).x); }
+#endif
+#endif
+
 // Selects by `choice` (32 bits), places by u; detail: 64 further bits (environment). A separate sky has probability
 // sky_share; the other lights share the rest. `normal`: of the surface, unit, on the visible side. Requires lib/surface.glsl
 // before it.
@@ -320,7 +340,14 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   s.delta = true;
   s.sky = false;
   s.group = 0u;
+#if LUCERNA_LEARNED || LUCERNA_SHAPES
+  s.factor = 1.0;
+#endif
   float pmf;
+  float of_lamp = u.x;  // for choosing among candidates
+#if LUCERNA_SHAPES
+  of_lamp = to_unit(uvec2(hash_mix(detail.y ^ 0x2545f491u), 0u)).x;  // u is needed for the place
+#endif
 #if LUCERNA_LEARNED
   float ratio;
   s.cluster = alias_choose(learned_rows, row * frame.light_clusters, frame.light_clusters, uvec2(choice, hash_mix(choice)), ratio);
@@ -336,9 +363,8 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   uint light = s.cluster < frame.sky_clusters ? frame.light_count - 1u : member;
   pmf = ratio * texelFetch(light_alias, int(light)).z;
 #if LUCERNA_LAMP_CANDIDATES
-  light = draw_lamp_of(cluster, light, position, normal, detail.x, u.x, ratio, pmf);
+  light = draw_lamp_of(cluster, light, position, normal, detail.x, of_lamp, ratio, pmf);
 #endif
-  s.factor = 1.0;
 #if LUCERNA_SKY_PORTALS
   s.own = 0.0;
 #endif
@@ -351,7 +377,7 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
 #endif
 #if LUCERNA_LAMP_CANDIDATES && !LUCERNA_LEARNED
   // Uses random numbers that lamps do not need otherwise, so they are equally well distributed.
-  light = draw_lamp(light, position, normal, detail.x, u.x, pmf);
+  light = draw_lamp(light, position, normal, detail.x, of_lamp, pmf);
 #endif
 #if LUCERNA_SEPARATE_SKY
   uint sky_end = uint(sky_share * 4294967040.0);
@@ -382,6 +408,28 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
     s.distance = k_infinity;
     s.radiance = b.xyz;
   }
+#if LUCERNA_SHAPES
+  if (is_shape(kind)) {
+    // Rays may meet it too: MIS uses the density without candidates.
+#if LUCERNA_LAMP_CANDIDATES
+    float plain = texelFetch(light_alias, int(light)).z;
+#if LUCERNA_LEARNED
+    plain *= ratio;
+#elif LUCERNA_SEPARATE_SKY
+    plain *= 1.0 - sky_share;
+#endif
+    s.factor = plain / max(pmf, 1e-37);
+    pmf = plain;
+#endif
+    LampShape shape = lamp_shape(a, b, c, texelFetch(scene_lights, at + 3));
+    float density;
+    s.direction = sample_shape(shape, position, u, density, s.distance);
+    s.radiance = s.distance > 0.0 ? shape.radiance : vec3(0.0);
+    s.distance *= 1.0 - k_shape_gap;
+    s.pdf = pmf * density;
+    s.delta = false;
+  }
+#endif
 #if LUCERNA_EMISSIVE
   if (kind == k_light_triangle) {
     vec3 p0 = a.xyz, p1 = b.xyz, p2 = c.xyz;

@@ -19,6 +19,12 @@ bool is_finite(vec3 v) {
   return e.x != 0x7f800000u && e.y != 0x7f800000u && e.z != 0x7f800000u;
 }
 
+// Sine of -pi/2..pi/2 by its series: the device's function may be wrong by as much as a small angle.
+float sine(float x) {
+  float q = x * x;
+  return x * (1.0 - q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * (1.0 - q / 72.0 * (1.0 - q / 110.0)))));
+}
+
 // Orthonormal basis around n (Duff et al. 2017), without a branch.
 void make_basis(vec3 n, out vec3 t, out vec3 b) {
   float s = n.z >= 0.0 ? 1.0 : -1.0;

@@ -10,6 +10,10 @@
 #ifndef LUCERNA_EMISSIVE
 #define LUCERNA_EMISSIVE 0
 #endif
+// Lamps with a shape (lib/shapes.glsl).
+#ifndef LUCERNA_SHAPES
+#define LUCERNA_SHAPES 0
+#endif
 // All emissive surfaces are opaque and emit uniformly.
 #ifndef LUCERNA_PLAIN_EMITTERS
 #define LUCERNA_PLAIN_EMITTERS 0

@@ -81,14 +81,24 @@ LUCERNA_CONST uint k_light_texels = 4u;
 // texel 3:  radiance rgb without textures, bits:    0, bits likewise
 //           k_light_both_sides, k_light_flipped,
 //           group of lights << k_light_group_shift
+//
+// Lamps with a shape (shaders/lib/shapes.glsl): texels 0 to 2 as punctual, with half the width and half the height [m] in place
+// of the cosines (rectangle; sphere and disk: radius in both; tube: half the length, radius); texel 3: direction of the width,
+// or of a tube's length, unit and perpendicular to the direction, bits.
 LUCERNA_CONST uint k_light_both_sides = 1u;       ///< the back side emits as well
 LUCERNA_CONST uint k_light_flipped = 2u;          ///< the front is the clockwise side
+LUCERNA_CONST uint k_light_hidden = 4u;           ///< a lamp with a shape that the camera does not see
 LUCERNA_CONST uint k_light_group_shift = 8u;
+LUCERNA_CONST uint k_light_group_mask = 0xffu;
 LUCERNA_CONST uint k_light_triangle = 0u;
 LUCERNA_CONST uint k_light_point = 1u;
 LUCERNA_CONST uint k_light_spot = 2u;
 LUCERNA_CONST uint k_light_directional = 3u;
 LUCERNA_CONST uint k_light_environment = 4u;
+LUCERNA_CONST uint k_light_sphere = 5u;           ///< the first kind with a shape
+LUCERNA_CONST uint k_light_rectangle = 6u;
+LUCERNA_CONST uint k_light_disk = 7u;
+LUCERNA_CONST uint k_light_tube = 8u;
 
 // light_alias: one texel a light: (threshold, bits alias, pmf of this light, pmf of the alias). It is followed by a table of
 // the lamps alone, numbered from Frame::first_lamp.
@@ -138,6 +148,7 @@ struct Frame {
   vec3 environment_radiance;  ///< factor of the environment map
   uint light_count;
   uint first_lamp, lamp_count;  ///< lamps among the lights, for resampling (LUCERNA_LAMP_CANDIDATES)
+  uint first_shape, shape_count;  ///< lamps with a shape among the lights (LUCERNA_SHAPES)
   float lamp_pmf;               ///< probability that the light sampler chooses a lamp
   uint environment_width, environment_height;  ///< 0: there is none
   float environment_rotation; ///< radians

@@ -131,6 +131,38 @@ float emissive_weight(PathState path, float pdf) {
 #endif
 }
 
+#if LUCERNA_SHAPES
+// Light of lamps with a shape that a ray meets before `tmax`, by light group. `travelled`: from the path's last vertex to the
+// ray's origin.
+void shapes_met(uint slot, PathState path, Ray ray, float tmax, inout vec3 met[k_group_count]) {
+  vec3 vertex = ray.origin - path.travelled * ray.direction;
+  bool seen_directly = path_depth(path) == 0u;
+  for (uint light = frame.first_shape; light < frame.first_shape + frame.shape_count; ++light) {
+    LampShape shape = load_shape(light);
+    float t = shape_hit(shape, ray.origin, ray.direction);
+    bool hit = t > 0.0 && t * (1.0 - k_shape_gap) <= tmax && !(seen_directly && (shape.bits & k_light_hidden) != 0u);
+    // A loop instead of a branch: on lavapipe a branch saves no work, and few rays meet a lamp.
+    for (uint once = 0u; once < (hit ? 1u : 0u); ++once) {
+      float pdf = texelFetch(light_alias, int(light)).z * shape_pdf(shape, vertex, ray.direction);
+#if LUCERNA_LEARNED
+      uint cluster = shape_cluster(light);
+      pdf *= learned_ratio(path.light_group, cluster);
+      if (frame.learning != 0u) record_light_met(slot, path, shape.radiance, pdf, cluster, pdf);
+#endif
+      vec3 light_here = path.throughput * shape.radiance * emissive_weight(path, pdf);
+#if LUCERNA_VOLUMES
+      light_here *= media_transmittance(path.media, t);
+#endif
+      uint group = 0u;
+#if LUCERNA_LIGHT_GROUPS > 1
+      group = shape.bits >> k_light_group_shift & k_light_group_mask;
+#endif
+      [[unroll]] for (uint g = 0u; g < k_group_count; ++g) met[g] += g == group ? light_here : vec3(0.0);
+    }
+  }
+}
+#endif
+
 #if LUCERNA_LIGHT_SURFACE
 // Radiance of a sampled emissive triangle along -direction, including textures and alpha coverage.
 vec3 light_radiance(LightSample l) {
@@ -182,7 +214,7 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
 #endif
   float weight = l.delta ? 1.0 : mis_weight(l.pdf, f.pdf);
   vec3 arrives = path.throughput * l.radiance * (weight / max(l.pdf, 1e-37));
-#if LUCERNA_LEARNED
+#if LUCERNA_LEARNED || LUCERNA_SHAPES
   arrives *= l.factor;
 #endif
 #if LUCERNA_VOLUMES

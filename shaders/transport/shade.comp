@@ -85,7 +85,7 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
   if (go_on && !finite) atomicAdd(counters[k_counter_dropped], 1u);
   go_on = go_on && finite;
   uint sky = sky_bits(v.bsdf, sky_known, b.event);
-#if LUCERNA_SEPARATE_SKY && !LUCERNA_EMISSIVE && !LUCERNA_SUN
+#if LUCERNA_SEPARATE_SKY && !LUCERNA_EMISSIVE && !LUCERNA_SUN && !LUCERNA_SHAPES
   // The next ray could hit no light but the sky: it is traced only if the path may continue behind the hit.
   go_on = go_on && ((sky & k_path_sky_known) == 0u || automaton_goes_on(next));
 #endif
@@ -153,6 +153,11 @@ void main() {
   found.sky_known = false;
   found.samples_lights = true;
   found.branches = 1u;
+#if LUCERNA_SHAPES
+  vec3 of_shapes[k_group_count];
+  [[unroll]] for (uint g = 0u; g < k_group_count; ++g) of_shapes[g] = vec3(0.0);
+  if (!again) shapes_met(slot, path, ray, hit.prim == k_no_hit ? k_infinity : hit.t, of_shapes);
+#endif
 #if LUCERNA_HITS_SKY
   if (hit.prim == k_no_hit) {
     gain = environment_met(slot, path, ray.origin, ray.direction, sun);
@@ -260,11 +265,27 @@ void main() {
   }
 #endif
   if (again) return;
+#if LUCERNA_SHAPES
+#if LUCERNA_LIGHT_GROUPS > 1
+  uint component = automaton_component(state);
+  for (uint g = 0u; g < k_group_count; ++g) {
+    if (component >= k_component_count) continue;
+#if LUCERNA_GROUP_SUMS
+    found.radiance[component] += of_shapes[g];
+    found.by_group[g] += of_shapes[g];
+#else
+    found.radiance[lane_of(g, component)] += of_shapes[g];
+#endif
+  }
+#else
+  gain += of_shapes[0];
+#endif
+#endif
   uint met = lane_of(group, automaton_component(state)), met_sun = k_no_lane;
 #if LUCERNA_LIGHT_GROUPS > 1 && LUCERNA_SUN
   if (hit.prim == k_no_hit && frame.sun_group != frame.sky_group) met_sun = lane_of(frame.sun_group, automaton_component(state));
 #endif
-#if LUCERNA_VERTEX_HOOKS
+#if LUCERNA_VERTEX_HOOKS || (LUCERNA_SHAPES && LUCERNA_LIGHT_GROUPS > 1)
 #if LUCERNA_GROUP_SUMS
   add_radiance_found(slot, met, gain, met_sun, sun, found.radiance, found.by_group);
 #else
@@ -276,7 +297,7 @@ void main() {
 #endif
 #elif LUCERNA_HITS_SKY && LUCERNA_LIGHT_GROUPS > 1 && LUCERNA_SUN
   add_radiance_of_component(slot, met, gain, met_sun, sun);
-#elif LUCERNA_HITS_SKY || LUCERNA_HITS_EMISSIVE || LUCERNA_UNLIT
+#elif LUCERNA_HITS_SKY || LUCERNA_HITS_EMISSIVE || LUCERNA_UNLIT || LUCERNA_SHAPES
   add_radiance(slot, met, gain);
 #endif
 }

@@ -135,7 +135,13 @@ TEST_CASE("lights in a closed room give the same light whatever lights are outsi
                           .kind = scene::LightKind::directional,
                           .intensity = vec3(3),
                           .direction = {0, -1, 0}});
-    if (outside >= 4) s.environment.radiance = vec3(1);
+    if (outside == 6)
+      s.lights.push_back({.name = "globe",
+                          .kind = scene::LightKind::sphere,
+                          .intensity = vec3(2),
+                          .position = {0, 3, 0},
+                          .radius = 0.5f});
+    if (outside == 4 || outside == 5) s.environment.radiance = vec3(1);
     if (outside == 5) {
       s.environment.image = scene::Id(s.images.size());
       s.images.push_back(s.images[3]);
@@ -145,9 +151,9 @@ TEST_CASE("lights in a closed room give the same light whatever lights are outsi
   constexpr uint32_t k_size = 24;
   for (const bool point : {false, true}) {
     const film::Image alone = picture(room(point, 0), 64, k_size);
-    for (int outside = 1; outside <= 5; ++outside) {
+    for (int outside = 1; outside <= 6; ++outside) {
       const film::Image both = picture(room(point, outside), 64, k_size);
-      // Nine blocks, ten pairs, two components: a false alarm in a thousand.
+      // Nine blocks, twelve pairs, two components: a false alarm in a thousand.
       for (const int c : {0, 1})
         for (uint32_t b = 0; b < 9; ++b) {
           const test::Mean x = test::block_mean(alone, c, b % 3, b / 3),

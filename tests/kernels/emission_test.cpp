@@ -7,6 +7,7 @@
 
 #include "gpu/stream.h"
 #include "kernels/statistics_support.h"
+#include "scene/lamp.h"
 #include "shaders/shared/transport.h"
 #include "transport/light_source.h"
 #include "upload/device_scene.h"
@@ -185,6 +186,59 @@ TEST_CASE(
     CHECK(chi_square(observed, rings).p > 1e-4);
     CHECK(even_tail(around, 1) > 1e-4);
   }
+}
+
+TEST_CASE("shapes emit their power, equal per path, evenly from their surface, cosine-distributed") {
+  for (const auto kind : {scene::LightKind::sphere, scene::LightKind::rectangle, scene::LightKind::disk,
+                          scene::LightKind::tube})
+    for (const bool both : {false, true}) {
+      scene::Scene s = floor();
+      s.lights = {lamp(kind, {3, 2, 1})};
+      scene::Light& l = s.lights[0];
+      l.width = 0.8f, l.height = 0.3f, l.radius = 0.2f, l.two_sided = both;
+      l.right = scene::right_across(l.direction, {1, 0, 0});
+      const Emitted e(s);
+      INFO(scene::kind_name(kind) << ", two sides " << both);
+      check_all(e, vec3(float(scene::solid_angle(l))) * vec3(3, 2, 1), 1e-4);
+      const vec3 up = glm::cross(l.right, l.direction);
+      std::vector<vec2> places, cosines;
+      size_t off = 0, back = 0;
+      for (const Beginning& b : e.paths) {
+        const vec3 d = b.origin - l.position;
+        const vec3 at(glm::dot(d, l.right), glm::dot(d, up), glm::dot(d, l.direction));
+        vec3 normal = l.direction;
+        if (kind == scene::LightKind::sphere) {
+          normal = d / l.radius;
+          places.emplace_back(0.5f * normal.z + 0.5f, turn(normal, {0, 0, 1}));
+          off += std::abs(glm::length(d) / l.radius - 1) > 1e-4f;
+        } else if (kind == scene::LightKind::tube) {
+          normal = (d - at.x * l.right) / l.radius;
+          places.emplace_back(at.x / l.width + 0.5f, turn(normal, l.right));
+          off += std::abs(glm::length(normal) - 1) > 1e-4f;
+        } else {
+          const bool front = glm::dot(b.direction, l.direction) > 0;
+          back += !front;
+          if (!front) normal = -normal;
+          const vec2 half = scene::half_size(l), on = vec2(at) / half;
+          if (kind == scene::LightKind::disk)
+            places.emplace_back(glm::dot(on, on), std::atan2(on.y, on.x) / float(2 * k_pi_d) + 0.5f);
+          else
+            places.push_back(0.5f * on + 0.5f);
+          off += std::abs(at.z) > 1e-5f;
+        }
+        const float cosine = glm::dot(b.direction, normal);
+        off += !(cosine > -1e-5f);
+        cosines.emplace_back(cosine * cosine, 0.5f);
+      }
+      CHECK(off == 0);
+      const bool flat = kind == scene::LightKind::rectangle || kind == scene::LightKind::disk;
+      CHECK(std::abs(double(back) - (flat && both ? 0.5 : 0) * double(e.paths.size())) <
+            4 * std::sqrt(double(e.paths.size())));
+      CHECK(even_tail(places) > 1e-4);
+      std::vector<double> squares(32, 0.0);
+      for (const vec2& c : cosines) squares[size_t(std::clamp(int(c.x * 32), 0, 31))] += 1;
+      CHECK(chi_square(squares, std::vector<double>(32, double(cosines.size()) / 32)).p > 1e-4);
+    }
 }
 
 TEST_CASE("a sun emits its irradiance through a disk that covers the whole scene") {
@@ -392,7 +446,8 @@ scene::Scene sky_scene() {
 
 TEST_CASE("aimed paths have the same mean as unaimed ones, for any shares and every kind of light") {
   std::vector<std::pair<std::string, scene::Scene>> scenes;
-  for (const auto kind : {scene::LightKind::point, scene::LightKind::spot, scene::LightKind::directional}) {
+  for (const auto kind : {scene::LightKind::point, scene::LightKind::spot, scene::LightKind::directional,
+                          scene::LightKind::sphere, scene::LightKind::rectangle, scene::LightKind::tube}) {
     scene::Scene s = floor();
     s.lights = {lamp(kind, {3, 2, 1})};
     s.lights[0].inner_cone = 0.2f, s.lights[0].outer_cone = 0.5f;

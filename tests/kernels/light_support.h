@@ -42,6 +42,7 @@ class Lights {
   explicit Lights(upload::FlatScene flattened) : flat(std::move(flattened)), scene_(device(), flat, {}) {
     frame.light_count = static_cast<uint32_t>(flat.lights.size() / shared::k_light_texels);
     frame.first_lamp = flat.first_lamp, frame.lamp_count = static_cast<uint32_t>(flat.lamp_alias.size());
+    frame.first_shape = flat.first_shape, frame.shape_count = flat.shape_count;
     frame.lamp_pmf = flat.lamp_pmf;
     frame.environment_radiance = flat.environment_radiance;
     frame.environment_width = flat.environment_width;
@@ -63,6 +64,10 @@ class Lights {
     return query("1", questions);
   }
   std::vector<Answer> triangle_pdf(const std::vector<vec4>& questions) { return query("2", questions); }
+  /// Distances and densities of directions (xyz) to the lamp with a shape of that number (w).
+  std::vector<Answer> shapes(const vec3& position, const std::vector<vec4>& questions) {
+    return query("4", questions, position);
+  }
   /// Draws entries of a given table.
   std::vector<Answer> choose(const std::vector<vec4>& table, uint32_t count, uint32_t seed) {
     gpu::Buffer buffer(device(), {"table", table.size() * sizeof(vec4), gpu::Memory::device, true});
@@ -84,11 +89,12 @@ class Lights {
     uint32_t count, seed;
     vec3 position;
   };
-  std::vector<Answer> query(const char* what, const std::vector<vec4>& questions) {
+  std::vector<Answer> query(const char* what, const std::vector<vec4>& questions,
+                            const vec3& position = vec3(0)) {
     questions_ = gpu::Buffer(device(), {"questions", questions.size() * sizeof(vec4)});
     questions_.write(std::span<const vec4>(questions));
     resources_.set("Questions", questions_);
-    return run<Answer>(what, "Answers", {static_cast<uint32_t>(questions.size()), 0, vec3(0)});
+    return run<Answer>(what, "Answers", {static_cast<uint32_t>(questions.size()), 0, position});
   }
   template <class Result>
   std::vector<Result> run(const char* what, const char* name, const Push& push) {

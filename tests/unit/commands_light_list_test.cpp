@@ -160,7 +160,7 @@ TEST_CASE("invalid edits of lights are refused and change nothing") {
     INFO(line);
     CHECK_THAT(b.failure(line), Contains(why));
   };
-  refused("light.add lantern", "expected one of point, spot, sun");
+  refused("light.add lantern", "expected one of point, spot, sun, sphere");
   refused("light.add point name=Sun", "there is a light 'Sun' already");
   refused("light.add point name=\" \"", "name: it is empty");
   refused("light.add point name=" + std::string(65, 'x'), "65 bytes are too long; at most 64");
@@ -174,7 +174,7 @@ TEST_CASE("invalid edits of lights are refused and change nothing") {
   refused("light.rename 1 \"Brass lamp\"", "there is a light 'Brass lamp' already");
   refused("light.rename 1 \"\"", "name: it is empty");
   refused("light.aim_at 2", "a point lamp cannot be aimed at a point");
-  refused("light.aim_at 3 at=0,2,0", "the spot is there itself");
+  refused("light.aim_at 3 at=0,2,0", "the light is there itself");
   refused("light.move 1 to=0,0,0", "a sun is infinitely far");
   refused("light.move 2 by=1,0,0 to=0,0,0", "exclude each other");
   refused("sun.set 2 date=2024-06-21", "is no sun");

@@ -73,6 +73,10 @@ TEST_CASE("an effect is called for by the objects that have it, and by no others
   s.materials[2].roughness = 0;
   CHECK(facts_of(s).has("caustic"));
   CHECK(facts_of(s).has("point_caustic"));
+  s.lights.front().kind = s.lights.back().kind = scene::LightKind::sphere;
+  CHECK(facts_of(s).has("caustic"));
+  CHECK_FALSE(facts_of(s).has("point_caustic"));
+  CHECK(facts_of(s).has("shaped"));
   // Without the lamp there is nothing to focus; an emitter has a size.
   s.lights.clear();
   CHECK_FALSE(facts_of(s).has("caustic"));
@@ -119,7 +123,8 @@ TEST_CASE("without an effect, a scene no longer calls for it, and keeps all othe
   glass.transmission = 1, glass.thickness = 1, glass.attenuation_distance = 1, glass.roughness = 0.3f;
   glass.dispersion = 0.3f, glass.attenuation_color = vec3(0.5f), glass.alpha_mode = scene::AlphaMode::blend;
   glass.transmission_texture.texture = 0;
-  full.lights.resize(3);
+  full.lights.resize(4);
+  full.lights[3].kind = scene::LightKind::disk;
   full.lights[1].kind = scene::LightKind::spot, full.lights[2].kind = scene::LightKind::directional;
   full.environment.radiance = vec3(1);
   full.portals.resize(1);

@@ -3,6 +3,7 @@
 
 #include "scene/io/load.h"
 #include "scene/io/own_extras.h"
+#include "scene/lamp.h"
 #include "scene/light_groups.h"
 
 namespace lucerna::scene {
@@ -45,10 +46,6 @@ const char* wrap_name(Wrap wrap) {
   return wrap == Wrap::clamp ? "clamp" : wrap == Wrap::mirror ? "mirror" : "repeat";
 }
 
-const char* kind_name(LightKind kind) {
-  return kind == LightKind::point ? "point" : kind == LightKind::spot ? "spot" : "directional";
-}
-
 Json describe_materials(const Scene& scene) {
   Json list = Json::array();
   for (const Material& m : scene.materials) {
@@ -68,7 +65,9 @@ Json describe_lights(const Scene& scene) {
   for (const Light& light : scene.lights) {
     Json item{{"name", light.name}, {"kind", kind_name(light.kind)}, {"intensity", rgb(light.intensity)}};
     if (light.kind != LightKind::directional) item["position"] = rgb(light.position);
-    if (light.kind != LightKind::point) item["direction"] = rgb(light.direction);
+    if (light.kind != LightKind::point && light.kind != LightKind::sphere)
+      item["direction"] = rgb(light.direction);
+    if (has_shape(light.kind)) item["size"] = {2 * half_size(light).x, 2 * half_size(light).y};
     if (light.kind == LightKind::spot)
       item["cone_degrees"] = {glm::degrees(light.inner_cone), glm::degrees(light.outer_cone)};
     list.push_back(item);

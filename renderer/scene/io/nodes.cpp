@@ -7,6 +7,7 @@
 #include "scene/io/accessor.h"
 #include "scene/io/node_matrix.h"
 #include "scene/io/own_extras.h"
+#include "scene/lamp.h"
 #include "scene/range.h"
 
 namespace lucerna::scene {
@@ -454,6 +455,15 @@ class Walker {
       if (outer <= 0 || outer > half_turn + 1e-6 || inner < 0 || inner > outer)
         document_.warnings.add("{} spot lights whose cone angles are not 0 <= inner < outer <= pi/2: clamped",
                                spot->path());
+    }
+    try {
+      read_own_shape(item, light);
+    } catch (const Error& error) {
+      document_.warnings.add("{} shapes of lamps that cannot be used: lamps without a shape", error.what());
+    }
+    if (has_shape(light.kind)) {
+      light.inner_cone = Light().inner_cone, light.outer_cone = Light().outer_cone;
+      light.right = right_across(light.direction, vec3(axis(world, 0)));
     }
     read_own_extras(root_.at("nodes").at(index), light);
     scene_.lights.push_back(light);

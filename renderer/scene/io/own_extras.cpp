@@ -5,6 +5,8 @@
 
 #include "base/json_text.h"
 #include "scene/io/nodes.h"
+#include "scene/lamp.h"
+#include "scene/range.h"
 #include "scene/sky_image.h"
 #include "scene/solar.h"
 
@@ -38,10 +40,41 @@ SunTime read_sun(const Item& item) {
 
 const char* name_of(SkyKind kind) { return k_sky_names[static_cast<size_t>(kind)]; }
 
+void read_own_shape(const Item& definition, Light& light) {
+  const auto own = own_extras(definition);
+  const auto shape = own ? own->find("shape") : std::nullopt;
+  if (!shape) return;
+  const std::string& name = shape->text();
+  LightKind kind = LightKind::sphere;
+  while (kind <= LightKind::tube && name != kind_name(kind))
+    kind = static_cast<LightKind>(static_cast<uint32_t>(kind) + 1);
+  if (kind > LightKind::tube) shape->fail("'{}', expected sphere, rectangle, disk or tube", name);
+  const auto size = [&](const char* key) {
+    const double value = own->at(key).number();
+    if (!(value >= double{k_least_lamp} && value <= double{k_max_lamp}))
+      own->at(key).fail("{} m is not between {:g} and {:g}", value, k_least_lamp, k_max_lamp);
+    return static_cast<float>(value);
+  };
+  Light shaped = light;
+  shaped.kind = kind;
+  if (kind == LightKind::rectangle)
+    shaped.width = size("width"), shaped.height = size("height");
+  else
+    shaped.radius = size("radius");
+  if (kind == LightKind::tube) shaped.width = size("length");
+  shaped.two_sided = own->boolean("two_sided", false);
+  shaped.visible = own->boolean("visible", true);
+  light = shaped;
+}
+
 void read_own_extras(const Item& node, Light& light) {
   const auto own = own_extras(node);
   if (!own) return;
   light.enabled = own->boolean("enabled", true);
+  if (const auto right = own->find("right"); right && has_shape(light.kind)) {
+    const vec3 value = right->rgb();
+    if (glm::distance(value, light.right) < glm::radians(0.01f)) light.right = value;
+  }
   const auto sun = own->find("sun");
   if (!sun || light.kind != LightKind::directional) return;
   const SunTime time = read_sun(*sun);

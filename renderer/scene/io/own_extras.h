@@ -8,7 +8,15 @@ namespace lucerna::scene {
 /// "zone": 1, "latitude": 48.1, "longitude": 11.6, "north": 0}} (sun_time.h; time in hours). A place of the
 /// sun that does not fit the node's rotation within 0.01 degrees is ignored: the node was turned elsewhere.
 /// Throws a located Error for wrong types and values.
+/// Of a shape {"right": [x, y, z]}: the direction of its width in the world, if that is the node's X axis
+/// within 0.01 degrees, so that it keeps all digits.
 void read_own_extras(const Item& node, Light& light);
+
+/// Of a light in KHR_lights_punctual: {"shape": "sphere" | "disk", "radius": m}, {"shape": "rectangle",
+/// "width": m, "height": m}, {"shape": "tube", "length": m, "radius": m}; optional "two_sided" (false) and
+/// "visible" (true). Gives the light that kind; unchanged without a shape. Throws a located Error for other
+/// types and values.
+void read_own_shape(const Item& definition, Light& light);
 
 /// Of a camera: {"section": {"normal": [x, y, z], "offset": metres}}, in the file's coordinates.
 void read_own_section(const Item& camera, Camera& result);

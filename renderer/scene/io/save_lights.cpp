@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scene/io/node_matrix.h"
+#include "scene/lamp.h"
 #include "scene/solar.h"
 
 namespace lucerna::scene {
@@ -32,6 +33,18 @@ dquat turned_to(const dvec3& direction) {
   }
   const dvec3 axis = glm::cross(rest, direction);
   return glm::normalize(dquat(1 + cosine, axis.x, axis.y, axis.z));
+}
+
+/// The rotation of a node whose -Z axis has that direction, and whose X axis is `right` as far as it is
+/// perpendicular.
+dquat turned_to(const dvec3& direction, const dvec3& right) {
+  const dvec3 x = glm::normalize(right - direction * glm::dot(direction, right));
+  return glm::normalize(glm::quat_cast(dmat3(x, glm::cross(-direction, x), -direction)));
+}
+
+/// Whether a light's node turns it.
+bool has_direction(const Light& light) {
+  return light.kind != LightKind::point && light.kind != LightKind::sphere;
 }
 
 EditedJson json_of(const dvec3& v) { return EditedJson::array({v.x, v.y, v.z}); }
@@ -108,14 +121,14 @@ class LightWriter {
 
   void remove(Id index) {
     remove_extension(node(index), k_punctual);
-    for (const char* key : {"enabled", "sun"}) remove_own(node(index), key);
+    for (const char* key : {"enabled", "sun", "right"}) remove_own(node(index), key);
   }
 
   void add(const Light& light) {
     EditedJson made = EditedJson::object();
     if (!light.name.empty()) made["name"] = light.name;
     if (light.kind != LightKind::directional) place(made, dmat4(1), light);
-    if (light.kind != LightKind::point) turn(made, dmat4(1), light);
+    if (has_direction(light)) turn(made, dmat4(1), light);
     EditedJson& list = definitions();
     list.push_back(definition(light, EditedJson::object()));
     const size_t index = list.size() - 1;
@@ -128,7 +141,8 @@ class LightWriter {
   void change(const Light& before, const Light& after) {
     Id index = before.id;
     const bool moved = before.position != after.position && after.kind != LightKind::directional;
-    const bool turned = before.direction != after.direction && after.kind != LightKind::point;
+    const bool turned =
+        (before.direction != after.direction || before.right != after.right) && has_direction(after);
     if ((moved || turned) && !holds_light_only(index)) index = move_to_own_node(index, after.name);
     const dmat4 parent = world_of(index < parents_.size() ? parents_[index] : k_none);
     if (turned) turn(node(index), parent, after);
@@ -137,7 +151,9 @@ class LightWriter {
     write_own(node(index), after);
     const bool defined = before.name != after.name || before.kind != after.kind ||
                          before.intensity != after.intensity || before.inner_cone != after.inner_cone ||
-                         before.outer_cone != after.outer_cone;
+                         before.outer_cone != after.outer_cone || before.width != after.width ||
+                         before.height != after.height || before.radius != after.radius ||
+                         before.two_sided != after.two_sided || before.visible != after.visible;
     if (!defined) return;
     own_definition(index);
     EditedJson& slot = definitions()[reference(index).get<size_t>()];
@@ -199,7 +215,10 @@ class LightWriter {
     // A scale may turn the axis; a light has none.
     n.erase("matrix"), n.erase("scale");
     if (translation != dvec3(0)) n["translation"] = json_of(translation);
-    n["rotation"] = json_of(turned_to(local));
+    if (has_shape(light.kind))
+      n["rotation"] = json_of(turned_to(local, glm::inverse(dmat3(parent)) * dvec3(light.right)));
+    else
+      n["rotation"] = json_of(turned_to(local));
   }
 
   void regroup(Id index, const std::string& group) {
@@ -217,6 +236,10 @@ class LightWriter {
       remove_own(n, "enabled");
     else
       set_own(n, "enabled", false);
+    if (has_shape(light.kind) && has_direction(light))
+      set_own(n, "right", vector_json(light.right));
+    else
+      remove_own(n, "right");
     if (!light.sun) return remove_own(n, "sun");
     const SunTime& t = *light.sun;
     set_own(n, "sun",
@@ -241,15 +264,39 @@ class LightWriter {
     reference(index) = definitions().size() - 1;
   }
 
+  /// As read_own_shape() reads it.
+  static void write_shape(EditedJson& n, const Light& light) {
+    for (const char* key : {"shape", "radius", "width", "height", "length", "two_sided", "visible"})
+      remove_own(n, key);
+    if (!has_shape(light.kind)) return;
+    set_own(n, "shape", kind_name(light.kind));
+    if (light.kind == LightKind::rectangle) {
+      set_own(n, "width", number_json(light.width));
+      set_own(n, "height", number_json(light.height));
+    } else {
+      if (light.kind == LightKind::tube) set_own(n, "length", number_json(light.width));
+      set_own(n, "radius", number_json(light.radius));
+    }
+    if (light.two_sided) set_own(n, "two_sided", true);
+    if (!light.visible) set_own(n, "visible", false);
+  }
+
   static EditedJson definition(const Light& light, EditedJson from) {
-    static constexpr const char* k_types[] = {"point", "spot", "directional"};
+    // Of shapes, the kind whose light is the most like theirs.
+    static constexpr const char* k_types[] = {"point", "spot", "directional", "point",
+                                              "spot",  "spot", "point"};
     if (!light.name.empty()) from["name"] = light.name;
     from["type"] = k_types[static_cast<size_t>(light.kind)];
+    write_shape(from, light);
     const auto [color, strength] = split_strength(light.intensity);
     from["color"] = vector_json(color);
     from["intensity"] = number_json(strength);
-    if (light.kind != LightKind::spot) {
+    if (from["type"] != "spot") {
       from.erase("spot");
+      return from;
+    }
+    if (has_shape(light.kind)) {
+      from["spot"] = {{"innerConeAngle", 0.0}, {"outerConeAngle", glm::radians(90.0)}};
       return from;
     }
     EditedJson& spot = object_at(from, "spot");

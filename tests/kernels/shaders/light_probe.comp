@@ -1,6 +1,7 @@
 // shaders/lib/lights.glsl, one query per invocation.
 // TEST_ASK 0: draws a light and a direction to it; 1: the environment's radiance and density; 2: the density of a
-// direction to a triangle; 3: an entry of an alias table.
+// direction to a triangle; 3: an entry of an alias table; 4: distance (x) and density of a direction (xyz) to the lamp with a
+// shape of that number (w).
 #include "shaders/lib/invocation.glsl"
 #include "shaders/lib/frame.glsl"
 #include "shaders/lib/surface.glsl"
@@ -73,6 +74,12 @@ void main() {
 #endif
 #elif TEST_ASK == 2
   a.pdf = emissive_pdf(floatBitsToUint(q.x), q.y, q.z);
+#elif TEST_ASK == 4
+#if LUCERNA_SHAPES
+  LampShape shape = load_shape(frame.first_shape + uint(q.w));
+  a.value = vec3(shape_hit(shape, push.position, q.xyz), 0.0, 0.0);
+  a.pdf = shape_pdf(shape, push.position, q.xyz);
+#endif
 #else
   a.value.x = float(alias_choose(light_alias, frame.light_count, uvec2(bits(i, 0u), bits(i, 1u)), a.pdf));
 #endif
