@@ -30,6 +30,9 @@ TEST_CASE("a picture is usable if the median tile and the worst tenth are") {
   s.seconds = 1;
   s.shown_error = film::ShownError{0.1, 0.29};
   CHECK(ui::usable_text(s) == ": usable");
+  s.coarse = true;  // no sample at full resolution yet
+  CHECK(ui::usable_text(s) == ": usable, still coarse");
+  s.coarse = false;
   s.shown_error = film::ShownError{0.1, 0.5};
   CHECK(ui::usable_text(s) != ": usable");
   s.shown_error = film::ShownError{0.2, 0.25};
