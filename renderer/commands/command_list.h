@@ -34,6 +34,7 @@ void add_script_commands(Workspace& work);
 void add_session_test_commands(Workspace& work);
 void add_wait_commands(Workspace& work);
 void add_inspect_commands(Workspace& work);
+void add_path_commands(Workspace& work);
 void add_solver_commands(Registry& registry, const OpenScene& open, SavedFiles& files);
 
 }  // namespace lucerna::commands

@@ -38,6 +38,7 @@ Workspace::Workspace(session::Session& s, WorkspaceEvents e)
   add_session_test_commands(*this);
   add_wait_commands(*this);
   add_inspect_commands(*this);
+  add_path_commands(*this);
   add_solver_commands(registry, open, files);
   add_values(*this);
 }
@@ -68,6 +69,8 @@ void Workspace::refresh(double time) {
   });
   scene_file.follow();
   if (pixel) pixel->follow(open, camera);
+  if (traced) traced->refresh();
+  if (noise) noise->refresh();
   for (const std::string& name : files.take_written())
     if (events.written) events.written(name);
 }
@@ -81,6 +84,7 @@ void Workspace::follow_scene() {
   history.forget_steps();
   scene_file.begin_scene();
   exposure.begin_scene();
+  traced.reset(), noise.reset();
   if (open.loading()) history.record({"wait_scene", "wait_scene"});
   if (events.scene_changed) events.scene_changed();
 }
