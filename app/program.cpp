@@ -67,6 +67,7 @@ class Program {
   void add_viewer();
   void add_render();
   void add_small_verbs();
+  void add_path_verb();
   void add_script_verbs();
   void add_bench();
   void add_bench_rays();
@@ -86,13 +87,15 @@ class Program {
   double scene_memory_ = double(scene::k_scene_bytes) / k_gib;
 
   CLI::App *render_ = nullptr, *info_ = nullptr, *convert_ = nullptr, *devices_ = nullptr,
-           *compare_ = nullptr, *bench_ = nullptr, *rays_ = nullptr, *latency_ = nullptr, *photons_ = nullptr,
-           *interiors_ = nullptr, *auto_ = nullptr, *scripts_ = nullptr, *help_ = nullptr;
+           *compare_ = nullptr, *paths_ = nullptr, *bench_ = nullptr, *rays_ = nullptr, *latency_ = nullptr,
+           *photons_ = nullptr, *interiors_ = nullptr, *auto_ = nullptr, *scripts_ = nullptr,
+           *help_ = nullptr;
   RenderArguments r;
   InfoArguments i;
   ConvertArguments v;
   bool devices_json_ = false;
   CompareArguments c;
+  PathsArguments p;
   ScriptArguments s;
   std::string topic_;
   BenchArguments bm;
@@ -109,6 +112,7 @@ Program::Program() {
   add_viewer();
   add_render();
   add_small_verbs();
+  add_path_verb();
   add_script_verbs();
   add_bench();
   add_bench_rays();
@@ -120,6 +124,7 @@ Program::Program() {
   // Footers come last: a new verb inherits the footer of its parent.
   app_.footer(settings_help());
   render_->footer(settings_help());
+  paths_->footer(describe_path_fields());
   bench_->footer(bench::k_matrix_help);
 }
 
@@ -195,6 +200,20 @@ void Program::add_render() {
                       "at --error or a number of samples that is given (also by --set or the scene)");
   render_->add_option("--seed", r.seed, "seed of all random numbers")
       ->check(CLI::Range(int64_t(0), int64_t(4294967295)));
+  render_
+      ->add_option("--record-paths", r.record_paths,
+                   "OUT.lpath: record paths of the finished picture, by tracing them again; 'lucerna paths' "
+                   "searches them")
+      ->check(named());
+  render_->add_option("--record-every", r.record_every, "record every n-th path")
+      ->check(CLI::Range(uint64_t(1), uint64_t(1) << 31))
+      ->capture_default_str();
+  render_
+      ->add_option("--record-over", r.record_over,
+                   "record only paths that bring more light than this (luminance)")
+      ->check(finite() & CLI::NonNegativeNumber);
+  render_->add_option("--record-region", r.record_region, "X Y WIDTH HEIGHT: record only these pixels")
+      ->expected(4);
   render_->add_option("--set", r.set, "KEY=VALUE; see below")->allow_extra_args(false);
   render_->add_option("--device", r.device, k_device_help);
   render_->add_option("--ledger", r.ledger, "write time, rays and error during the render as CSV")
@@ -259,6 +278,19 @@ void Program::add_small_verbs() {
       ->add_option("--max-relmse", c.max_relmse,
                    "exit with 1 if the relative MSE is above this, or a value of any layer is not finite")
       ->check(finite() & CLI::Range(0.0, 1e300));
+}
+
+void Program::add_path_verb() {
+  paths_ = app_.add_subcommand("paths", "search recorded paths (render --record-paths)");
+  paths_->add_option("FILE", p.file, "recorded paths (.lpath)")->required();
+  paths_->add_option(
+      "--where", p.where,
+      "rows that are wanted: FIELD == != < <= > >= VALUE, word ~ 'E[SG]*DL', joined by and, or, "
+      "not, ( )");
+  paths_->add_option("--group-by", p.group_by, "sums per value of this field");
+  paths_->add_flag("--csv", p.csv, "all rows, or sums, as CSV");
+  paths_->add_flag("--json", p.json, "... as JSON");
+  paths_->add_option("--most", p.most, "rows of the table, the brightest first")->capture_default_str();
 }
 
 void Program::add_script_verbs() {
@@ -520,6 +552,7 @@ int Program::run(int argc, char** argv) {
   }
   if (*devices_) return devices(devices_json_);
   if (*compare_) return compare(c);
+  if (*paths_) return search_paths(p);
   if (*help_) return help(topic_);
   if (*scripts_) {
     s.scenes = scenes_;

@@ -17,6 +17,7 @@
 #include "base/timer.h"
 #include "commands/camera_control.h"
 #include "commands/lens.h"
+#include "recording/file.h"
 #include "session/pick.h"
 #include "session/renderer.h"
 
@@ -41,7 +42,7 @@ void print_progress(const session::Renderer& r, double seconds, double limit, bo
 
 /// True if any output besides solvers' work is requested.
 bool makes_picture(const RenderArguments& a) {
-  return !a.outputs.empty() || !a.stats.empty() || !a.ledger.empty();
+  return !a.outputs.empty() || !a.stats.empty() || !a.ledger.empty() || !a.record_paths.empty();
 }
 
 /// Throws Error if two outputs are the same file, of which the first would be lost.
@@ -74,9 +75,17 @@ void check_outputs(const RenderArguments& a, const std::map<std::string, std::st
   }
   if (!a.stats.empty()) check_writable(a.stats);
   if (!a.ledger.empty()) check_writable(a.ledger);
+  if (!a.record_paths.empty()) {
+    if (!a.record_paths.ends_with(recording::k_file_ending) && !file_behind(a.record_paths).empty())
+      throw_error(a.record_paths, "recorded paths need the ending {}", recording::k_file_ending);
+    check_writable(a.record_paths);
+  } else if (!a.record_region.empty() || a.record_over > 0) {
+    throw_error("--record-paths", "name the file for the recorded paths: --record-paths OUT{}",
+                recording::k_file_ending);
+  }
   for (const auto& [name, file] : to_save) check_writable(file);
   std::vector<std::string> files = a.outputs;
-  for (const std::string& file : {a.stats, a.ledger})
+  for (const std::string& file : {a.stats, a.ledger, a.record_paths})
     if (!file.empty()) files.push_back(file);
   for (const auto& [name, file] : to_save) files.push_back(file);
   check_distinct(files);
@@ -363,6 +372,46 @@ void filter(session::Renderer& r, const std::optional<double>& target) {
                      : ". More samples: --samples N");
 }
 
+/// Records paths of the finished picture (--record-paths).
+void record_paths(session::Renderer& r, const RenderArguments& a, const Interrupt& interrupt) {
+  constexpr size_t k_part = 1 << 16;
+  const Timer timer;
+  const uint32_t width = r.film().width(), height = r.film().height();
+  session::PathSelection selection{.right = width, .bottom = height, .samples = r.samples()};
+  if (a.record_region.size() == 4) {
+    const auto sum = [](uint32_t from, uint32_t size) {
+      return uint32_t(std::min<uint64_t>(uint64_t{from} + size, 1u << 31));
+    };
+    selection.left = a.record_region[0], selection.top = a.record_region[1];
+    selection.right = sum(selection.left, a.record_region[2]),
+    selection.bottom = sum(selection.top, a.record_region[3]);
+    if (selection.left >= width || selection.top >= height || selection.left == selection.right ||
+        selection.top == selection.bottom)
+      throw_error("--record-region", "no pixel of the picture of {}x{} is in this region", width, height);
+  }
+  selection.every = uint32_t(a.record_every);
+  session::PathChoices choices(selection, width, height);
+  const recording::Recording names = r.begin_recording();
+  nlohmann::ordered_json about;
+  about["settings"] = r.settings().changed_json();
+  about["samples"] = selection.samples, about["every"] = selection.every, about["over"] = a.record_over;
+  about["region"] = {selection.left, selection.top, selection.right, selection.bottom};
+  recording::Writer writer(a.record_paths, names, about);
+  uint64_t traced = 0, lost = 0;
+  while (!choices.done() && !interrupt.signal()) {
+    recording::Recording part = names;
+    r.record_paths(choices.take(k_part), part, [&] { return interrupt.signal() != 0; });
+    traced += part.paths.size();
+    if (a.record_over > 0) recording::keep_over(part, a.record_over);
+    lost += part.lost();
+    writer.add(part);
+  }
+  writer.finish();
+  log::info("{}: {} paths of {} traced again, {} events, in {:.2f} s", a.record_paths, writer.paths(), traced,
+            writer.events(), timer.seconds());
+  if (lost > 0) log::warning("{}: {} events had no room: their light is missing", a.record_paths, lost);
+}
+
 }  // namespace
 
 int render(const RenderArguments& a) {
@@ -407,6 +456,7 @@ int render(const RenderArguments& a) {
       }
       write_file(a.stats, json_text(stats, 2) + "\n");
     });
+  if (!a.record_paths.empty()) outputs.attempt([&] { record_paths(r, a, interrupt); });
   for (const auto& [name, file] : outputs.work())
     if (interrupted)
       std::fprintf(stderr, "lucerna: %s: not written; its data was incomplete\n", file.c_str());

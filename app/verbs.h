@@ -29,8 +29,12 @@ struct RenderArguments {
   std::vector<double> shift;     ///< right, up; empty: the scene's
   std::vector<std::string> set;  ///< key=value
   bool quiet = false;
-  bool filter = false;        ///< files contain the filtered picture too
-  scene::LoadOptions scenes;  ///< limits for files and memory of scenes; likewise below
+  bool filter = false;                  ///< files contain the filtered picture too
+  std::string record_paths;             ///< file for recorded paths; "": none
+  uint64_t record_every = 100;          ///< every n-th path is recorded
+  double record_over = 0;               ///< only paths with more light, in luminance
+  std::vector<uint32_t> record_region;  ///< X Y WIDTH HEIGHT, pixels; empty: the picture
+  scene::LoadOptions scenes;            ///< limits for files and memory of scenes; likewise below
 };
 int render(const RenderArguments& arguments);
 
@@ -119,6 +123,16 @@ struct ScriptArguments {
 int run_scripts(const ScriptArguments& arguments);
 /// Prints the help of a command, setting or topic; "": the list of commands.
 int help(const std::string& topic);
+
+struct PathsArguments {
+  std::string file, where, group_by;
+  bool csv = false, json = false;
+  uint64_t most = 20;  ///< rows of the table: the brightest
+};
+/// Searches a file of recorded paths. Throws Error: query, file.
+int search_paths(const PathsArguments& arguments);
+/// The fields of its queries, for the help.
+std::string describe_path_fields();
 
 struct CompareArguments {
   std::string a, b, layer, difference;

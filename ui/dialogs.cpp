@@ -30,6 +30,7 @@ std::vector<std::pair<std::string, std::string>> key_rows() {
       {"Ctrl + left drag", "rotate the environment, or the sun if there is none"},
       {"Click", "select the object; a second click selects its material"},
       {"Hold", "the left button still: values, noise and surface of the pixel"},
+      {"I", "trace the paths of the pixel that is held, or of the next clicked one"},
       {"F", "frame the selection, or the scene"},
       {"L", "mark lamps and emissive surfaces; click to select, drag to move a lamp"},
       {"Drag on a lamp's mark",
@@ -213,6 +214,8 @@ void handle_keys(Ui& ui) {
       ui.act("exposure.dropper", false);
     else if (ui.scene_view.focusing)
       ui.act("camera.focusing", false);
+    else if (ui.paths.pick != PathsView::Pick::none)
+      ui.act("paths.pick", "none");
     else if (ui.open.loading())
       ui.act("scene.cancel");
     else if (!ui.cards.errors.empty())
@@ -226,6 +229,12 @@ void handle_keys(Ui& ui) {
   if (ui.pressed(GLFW_KEY_B, GLFW_MOD_CONTROL) && ui.camera.view) keep_view(ui);
   if (ui.pressed(GLFW_KEY_B) && ui.camera.view) ui.act("exposure.dropper", !ui.dropper);
   if (ui.pressed(GLFW_KEY_R)) ui.act("render.restart");
+  if (ui.pressed(GLFW_KEY_I) && ui.open.scene) {
+    if (ui.held_pixel.reported && ui.work.pixel)
+      trace_pixel(ui, ui.work.pixel->at);
+    else
+      ui.act("paths.pick", ui.paths.pick == PathsView::Pick::pixel ? "none" : "pixel");
+  }
   if (ui.pressed(GLFW_KEY_L)) ui.act("view.lamps", !ui.light_marks);
   if (ui.pressed(GLFW_KEY_T)) ui.toggle("overlay.tiles");
   if (ui.pressed(GLFW_KEY_U))

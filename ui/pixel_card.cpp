@@ -44,7 +44,7 @@ void draw_pixel_card(const commands::Workspace& work, const Area& picture) {
   float width = 0;
   for (const std::string& line : lines) width = std::max(width, text_width(line, font));
   width = std::min(width + 2 * px(k_pad), picture.width() - 2 * px(k_edge));
-  const float height = std::min(px(k_row) * static_cast<float>(lines.size()) + 2 * px(k_pad),
+  const float height = std::min(px(k_row) * static_cast<float>(lines.size() + 1) + 2 * px(k_pad),
                                 picture.height() - 2 * px(k_edge));
   if (width < px(80) || height < px(40)) return;
   // On the side of the picture that the pixel is not on.
@@ -62,6 +62,9 @@ void draw_pixel_card(const commands::Workspace& work, const Area& picture) {
               elided(line, width - 2 * px(k_pad), font), colour::text, Align::left, font);
     y += px(k_row);
   }
+  if (y + px(k_row) <= lo.y + height)
+    draw_text(list, {lo.x + px(k_pad), y}, {lo.x + width - px(k_pad), y + px(k_row)}, "I: trace its paths",
+              colour::text_faint, Align::left, font);
 }
 
 }  // namespace lucerna::ui

@@ -318,13 +318,14 @@ std::string capitals(std::string text) {
 
 }  // namespace
 
-Area draw_side_tabs(Actions& actions, const std::string& side, bool expanded, const Area& area) {
+Area draw_side_tabs(Actions& actions, const std::string& side, bool paths, bool expanded, const Area& area) {
   struct Tab {
     std::string side, label, help;
   };
   std::vector<Tab> tabs{{k_scene_side, "Scene", "Cameras, lights, environment, materials."}};
   for (const SolverInfo* solver : solvers::registered())
     if (solver->has_panel()) tabs.push_back({solver->name, solver->label, panel_help(*solver) + " K."});
+  if (paths) tabs.push_back({k_paths_side, "Paths", "Paths of a pixel, and what the noise comes from."});
   if (!expanded) {
     begin_panel("##side_folded", area, colour::panel, false);
     const auto shown = std::find_if(tabs.begin(), tabs.end(), [&](const Tab& t) { return t.side == side; });

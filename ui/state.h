@@ -15,6 +15,7 @@
 #include "lamp_handles.h"
 #include "layout.h"
 #include "log_view.h"
+#include "paths_panel.h"
 #include "requests.h"
 #include "scene_view.h"
 #include "solvers/info.h"
@@ -88,8 +89,9 @@ struct Ui {
   } drag;
   /// True: the next click in the picture sets the exposure.
   bool dropper = false;
-  /// ... does not select: it sets the exposure or the plane of focus.
-  bool click_taken() const { return dropper || scene_view.focusing; }
+  /// ... does not select: it sets the exposure or the plane of focus, or traces paths.
+  bool click_taken() const { return dropper || scene_view.focusing || paths.pick != PathsView::Pick::none; }
+  PathsView paths;
 
   HeldPixel held_pixel;
 
@@ -134,7 +136,8 @@ struct Ui {
   bool picture_hovered = false;
 
   // Solvers.
-  std::string side = k_scene_side;  ///< what the right panel shows: the scene, or the solver of that name
+  std::string side =
+      k_scene_side;  ///< what the right panel shows: the scene, paths, or the solver of that name
   /// The panel that K shows next: those of solvers in use, then the scene.
   std::string next_side() const;
   /// True if a view is on that inspects the place under the pointer.
@@ -173,6 +176,9 @@ struct Ui {
   uint64_t wheel_gesture_ = 0;
 };
 
+/// Traces the paths of the pixel at that place, and shows their panel.
+void trace_pixel(Ui& ui, const vec2& at);
+
 /// Handles pressed keys and draws all parts of the window; once per frame.
 void draw_parts(Ui& ui);
 
@@ -182,7 +188,8 @@ void draw_light_panel(Controls& controls, bool expanded, const Area& area);
 /// The light mix, into a section of that panel.
 void draw_mix(Actions& actions, commands::OpenScene& open);
 /// The tabs of the right panel; returns the area below them.
-Area draw_side_tabs(Actions& actions, const std::string& side, bool expanded, const Area& area);
+/// `paths`: there is a tab for the panel of paths.
+Area draw_side_tabs(Actions& actions, const std::string& side, bool paths, bool expanded, const Area& area);
 void draw_scene_panel(Controls& controls, const commands::Navigation& camera, SceneView& view,
                       const std::function<void()>& keep_view, const Area& area);
 void draw_solver_panel(Controls& controls, const solvers::SolverInfo& solver, const Area& area);

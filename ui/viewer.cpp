@@ -279,9 +279,13 @@ void draw_parts(Ui& ui) {
     draw_menu_bar(ui, areas.bar);
     draw_light_panel(ui.controls, ui.shown.left_open, areas.left);
     draw_toolbar(ui, areas.toolbar);
-    const Area side = draw_side_tabs(ui.actions, ui.side, ui.shown.right_open, areas.right);
+    const Area side =
+        draw_side_tabs(ui.actions, ui.side, ui.work.traced || ui.work.noise || ui.side == k_paths_side,
+                       ui.shown.right_open, areas.right);
     if (const solvers::SolverInfo* solver = solvers::find(ui.side); solver && ui.shown.right_open)
       draw_solver_panel(ui.controls, *solver, side);
+    else if (ui.side == k_paths_side && ui.shown.right_open)
+      draw_paths_panel(ui.controls, ui.work, ui.paths, side);
     else if (ui.shown.right_open)
       draw_scene_panel(
           ui.controls, ui.camera, ui.scene_view, [&ui] { keep_view(ui); }, side);

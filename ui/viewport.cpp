@@ -311,7 +311,10 @@ void click(Ui& ui, const Area& shown) {
   } else if (ui.scene_view.focusing) {
     ui.act("camera.focusing", false);
     ui.act("camera.focus", x, y);
-  } else {
+  } else if (ui.paths.pick == PathsView::Pick::pixel) {
+    ui.act("paths.pick", "none");
+    trace_pixel(ui, {x, y});
+  } else if (ui.paths.pick == PathsView::Pick::none) {
     ui.act("pick", x, y);
   }
 }
@@ -362,6 +365,11 @@ void inspect_at_rest(Ui& ui, const Area& shown, bool active) {
 }
 
 }  // namespace
+
+void trace_pixel(Ui& ui, const vec2& at) {
+  ui.act("inspect.trace", at.x, at.y, ui.paths.count);
+  ui.act("window.side", k_paths_side);
+}
 
 void keep_view(Ui& ui) {
   const commands::Navigation::Bookmarks before = ui.camera.bookmarks_of(ui.open.scene.get());
@@ -482,6 +490,12 @@ void draw_picture(Ui& ui, const Area& area) {
     if (!inspected && ui.picture_hovered && ImGui::IsMouseReleased(0) && ImGui::IsItemDeactivated() &&
         ImGui::GetIO().MouseDragMaxDistanceSqr[0] < px(k_drag) * px(k_drag))
       click(ui, frame);
+  }
+  if (shown && ui.side == k_paths_side) draw_paths_marks(ui.work, frame);
+  if (shown && drag_noise_area(ui.actions, ui.paths, frame, active)) {
+    ui.wake(2);
+    ImGui::End();
+    return;
   }
   inspect_at_rest(ui, frame, active);
   navigate(ui, frame, ui.picture_hovered, active);

@@ -14,15 +14,16 @@ const std::vector<std::string> k_levels{"debug", "info", "warning", "error"};
 
 /// The panels that the right side can show.
 std::vector<std::string> sides() {
-  std::vector<std::string> names{k_scene_side};
+  std::vector<std::string> names{k_scene_side, k_paths_side};
   for (const solvers::SolverInfo* solver : solvers::registered())
     if (solver->has_panel()) names.push_back(solver->name);
   return names;
 }
 
 std::vector<std::string> section_names(const Ui& ui) {
-  std::vector<std::string> names{"Light",       "Light mix", "Render",  "Camera", "Lights",
-                                 "Environment", "Materials", "Objects", "Options"};
+  std::vector<std::string> names{"Light",           "Light mix",     "Render",  "Camera",  "Lights",
+                                 "Environment",     "Materials",     "Objects", "Options", "Paths of a pixel",
+                                 "Brightest paths", "Followed path", "Noise"};
   const auto add = [&](const std::string& name) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   };
@@ -155,15 +156,34 @@ void add_picture_commands(Ui& ui, const Add& add) {
       "exposure.dropper", "Makes the next click in the picture set the exposure from the clicked point.",
       {on()},
       [&ui](const Arguments& a) {
-        ui.dropper = a.boolean("on"), ui.scene_view.focusing = false;
+        ui.dropper = a.boolean("on"), ui.scene_view.focusing = false, ui.paths.pick = {};
         if (ui.dropper) ui.notice("Click a grey point to show it as middle grey. Esc cancels.");
       },
       false);
   add(
       "camera.focusing", "Makes the next click in the picture focus on the clicked point.", {on()},
       [&ui](const Arguments& a) {
-        ui.scene_view.focusing = a.boolean("on"), ui.dropper = false;
+        ui.scene_view.focusing = a.boolean("on"), ui.dropper = false, ui.paths.pick = {};
         if (ui.scene_view.focusing) ui.notice("Click a surface to focus on it. Esc cancels.");
+      },
+      false);
+  add(
+      "paths.pick",
+      "Makes the next click in the picture trace the paths of a pixel, or the next drag explain the noise of "
+      "a "
+      "rectangle; shows the panel of paths.",
+      {{.name = "what", .type = Type::choice, .choices = {"none", "pixel", "area"}}},
+      [&ui](const Arguments& a) {
+        using Pick = PathsView::Pick;
+        const std::string& what = a.text("what");
+        ui.paths.pick = what == "pixel" ? Pick::pixel : what == "area" ? Pick::area : Pick::none;
+        ui.paths.from.reset();
+        ui.dropper = ui.scene_view.focusing = false;
+        if (ui.paths.pick == Pick::none) return;
+        ui.side = k_paths_side;
+        set_open(ui.layout, "right", true);
+        ui.notice(ui.paths.pick == Pick::pixel ? "Click a pixel to trace its paths. Esc cancels."
+                                               : "Drag a rectangle to explain its noise. Esc cancels.");
       },
       false);
   add("view.divisor", "Sets the pixels of the window per pixel of the picture, along a side.",

@@ -68,7 +68,7 @@ void add_inspect_commands(Workspace& work) {
        .recorded = false,
        .needs_outcome = true});
   work.registry.add({.name = "inspect.none",
-                     .help = "Ends the inspection.",
+                     .help = "Ends the inspection of places and pixels.",
                      .parameters = {},
                      .run =
                          [&work](const Arguments&) {

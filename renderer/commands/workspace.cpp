@@ -39,6 +39,7 @@ Workspace::Workspace(session::Session& s, WorkspaceEvents e)
   add_wait_commands(*this);
   add_inspect_commands(*this);
   add_effect_commands(registry, open);
+  add_path_commands(*this);
   add_solver_commands(registry, open, files);
   add_values(*this);
 }
@@ -69,6 +70,8 @@ void Workspace::refresh(double time) {
   });
   scene_file.follow();
   if (pixel) pixel->follow(open, camera);
+  if (traced) traced->refresh();
+  if (noise) noise->refresh();
   for (const std::string& name : files.take_written())
     if (events.written) events.written(name);
 }
@@ -82,6 +85,7 @@ void Workspace::follow_scene() {
   history.forget_steps();
   scene_file.begin_scene();
   exposure.begin_scene();
+  traced.reset(), noise.reset();
   if (open.loading()) history.record({"wait_scene", "wait_scene"});
   if (events.scene_changed) events.scene_changed();
 }

@@ -17,6 +17,7 @@
 #include "commands/history.h"
 #include "commands/navigation.h"
 #include "commands/open_scene.h"
+#include "commands/path_inquiry.h"
 #include "commands/registry.h"
 #include "commands/saved_files.h"
 #include "commands/scene_file.h"
@@ -79,6 +80,8 @@ class Workspace {
   uint64_t error_count = 0;            ///< number of logged errors so far, counted by note_log()
   std::deque<LoggedProblem> problems;  ///< the latest errors and warnings
   std::optional<PixelInquiry> pixel;   ///< by inspect.pixel
+  std::optional<PathInquiry> traced;   ///< by inspect.trace
+  std::optional<NoiseInquiry> noise;   ///< by inspect.noise
   uint64_t inspections = 0;            ///< inspect.at commands so far
 
   /// Reads what the session has published since. Call before reading state and before running commands.

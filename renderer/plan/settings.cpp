@@ -172,6 +172,12 @@ void add_display_options(std::vector<OptionInfo>& list) {
                      "Tints surfaces that the camera's lens shows sharp, with a line in the plane of focus.",
                      "Depth of field")));
   list.push_back(without_restart(choice_option(
+      "overlay.path_color", "event", {"event", "component", "contribution"}, "",
+      "Colour of recorded paths (inspect.trace). event: by the lobe that scattered each ray and by what it "
+      "met. "
+      "component: by the light that a ray leads to. contribution: by the light that the path brings.",
+      "Paths by")));
+  list.push_back(without_restart(choice_option(
       "preview.filter", "auto", {"auto", "off"}, "",
       "Preview in the window. auto: filters noise, and keeps the picture from before an edit until the new "
       "light is better. off: shows the unfiltered samples. Statistics and EXR files always use the samples.",

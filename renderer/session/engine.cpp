@@ -153,6 +153,8 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
   const auto rules = classes == "off"      ? transport::HitClassRules::never()
                      : classes == "always" ? transport::HitClassRules::at_once()
                                            : transport::HitClassRules{};
+  path_defines_ = world.device->defines();
+  for (const auto& [name, value] : defines) path_defines_[name] = value;
   wavefront_ = std::make_unique<transport::Wavefront>(device, compiler, *world.device, slots, world.trace(),
                                                       defines, bind, rules, std::move(learning));
   developer_ = before ? before->developer_ : std::make_shared<film::Developer>(device, compiler);

@@ -127,6 +127,8 @@ class Engine {
   /// True if lookups provide direct light.
   bool looks_up_direct_light() const;
   double compile_seconds() const { return compile_seconds_; }
+  /// #defines of the wavefront's kernels for vertices, with those of the solvers' hooks.
+  const gpu::Defines& path_defines() const { return path_defines_; }
   /// #defines of the wavefront's kernels, for other kernels that work on its paths.
   const gpu::Defines& defines() const { return made_for_.scene_defines; }
 
@@ -156,7 +158,7 @@ class Engine {
 
   const paths::Automaton& automaton_;
   plan::Plan plan_;
-  gpu::Defines learned_defines_;
+  gpu::Defines learned_defines_, path_defines_;
   bool begun_ = false;
   bool learned_elsewhere_ = false;  ///< from another view
   Routes routes_;                   ///< of the current picture

@@ -21,8 +21,8 @@ bool Overlays::are_on() const {
     return option.key.starts_with("overlay.") && owner && setup_.engine->find(owner->name) &&
            setup_.settings.text(option.key) != option.fallback;
   };
-  return mode_.inspected || LightsView::shown(setup_.settings) || FocusView::shown(setup_.settings) ||
-         std::any_of(plan::options().begin(), plan::options().end(), on);
+  return mode_.inspected || paths_shown_.of || LightsView::shown(setup_.settings) ||
+         FocusView::shown(setup_.settings) || std::any_of(plan::options().begin(), plan::options().end(), on);
 }
 
 overlay::Sheet& Overlays::sheet() {
@@ -74,6 +74,7 @@ std::vector<uint8_t> Overlays::finish(const film::View& shown, const std::functi
       cancel);
   draw_lights(cancel);
   draw_focus(cancel);
+  draw_paths(cancel);
   if (scale() == 1) return setup_.film->read_picture();
   std::vector<uint8_t> pixels(uint64_t{setup_.width} * setup_.height * scale() * scale() * 4);
   sheet().picture(*setup_.film).read(pixels.data(), pixels.size());
@@ -111,6 +112,16 @@ void Overlays::draw_focus(const std::function<bool()>& cancel) {
   Engine& engine = *setup_.engine;
   focus_->draw({engine.wavefront(), *setup_.film, *setup_.coarse, sheet(), cancel},
                engine.frame(view(), setup_.film->width(), setup_.film->height()));
+}
+
+void Overlays::draw_paths(const std::function<bool()>& cancel) {
+  if (!setup_.engine || !setup_.film || !paths_shown_.of) {
+    if (paths_) paths_->forget();
+    return;
+  }
+  if (!paths_) paths_ = std::make_unique<PathsView>(context_.device, context_.compiler);
+  paths_->draw({setup_.engine->wavefront(), *setup_.film, *setup_.coarse, sheet(), cancel}, paths_shown_,
+               setup_.settings, setup_.world.flat.core_radius);
 }
 
 }  // namespace lucerna::session

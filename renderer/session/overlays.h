@@ -1,6 +1,6 @@
 #pragma once
-// What is drawn over the picture: the views of solvers, of learned lights and of the depth of field, with the
-// inspected place.
+// What is drawn over the picture: the views of solvers, of learned lights, of the depth of field and of
+// recorded paths, with the inspected place.
 #include <functional>
 #include <memory>
 #include <optional>
@@ -9,6 +9,7 @@
 #include "overlay/sheet.h"
 #include "session/focus_view.h"
 #include "session/lights_view.h"
+#include "session/paths_view.h"
 #include "session/transaction.h"
 
 namespace lucerna::session {
@@ -29,6 +30,10 @@ class Overlays {
   /// Informs the solvers of the inspected place.
   void set_mode(const Mode& mode);
 
+  /// Recorded paths that are drawn.
+  void show_paths(ShownPaths paths) { paths_shown_ = std::move(paths); }
+  const ShownPaths& shown_paths() const { return paths_shown_; }
+
   /// The film's picture with the overlays, larger by scale(); in the given view, tiles are drawn too.
   std::vector<uint8_t> finish(const film::View& view, const std::function<bool()>& cancel);
   uint32_t scale() { return sheet().scale(); }
@@ -46,6 +51,10 @@ class Overlays {
   const solvers::Report* focus_report() const {
     return focus_ && focus_->report() ? &*focus_->report() : nullptr;
   }
+  /// ... of recorded paths.
+  const solvers::Report* paths_report() const {
+    return paths_ && paths_->report() ? &*paths_->report() : nullptr;
+  }
 
   /// Call when surfaces or kernels have changed.
   void forget_surfaces();
@@ -60,6 +69,7 @@ class Overlays {
   void fit(uint32_t scale);
   void draw_lights(const std::function<bool()>& cancel);
   void draw_focus(const std::function<bool()>& cancel);
+  void draw_paths(const std::function<bool()>& cancel);
   PictureView view() const { return setup_.view(context_.automaton); }
 
   const SetupContext& context_;
@@ -69,6 +79,8 @@ class Overlays {
   std::unique_ptr<overlay::Sheet> sheet_;  ///< null until something is drawn
   std::unique_ptr<LightsView> lights_;     ///< null until it is shown
   std::unique_ptr<FocusView> focus_;       ///< likewise
+  std::unique_ptr<PathsView> paths_;       ///< likewise
+  ShownPaths paths_shown_;
 };
 
 }  // namespace lucerna::session

@@ -66,6 +66,7 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
   target.settings = std::move(settings);
   install(std::move(target), progress, scene::Change::shape);
   loaded_ = loaded;
+  overlays_.show_paths({});
 }
 
 void Renderer::install(Transaction::Target target, const Progress& progress, const scene::Changes& changes) {
@@ -135,6 +136,7 @@ void Renderer::reload_shaders() {
   if (display_) display = std::make_unique<Display>(*device_, *compiler_);
   commit(transaction);
   display_ = std::move(display), shown_ = {};
+  recording_.reset();
   if (window_filter_) window_filter_->reset_kernels();
   notify_settings_changed();
   restart(scene::Change::shaders);

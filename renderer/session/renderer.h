@@ -21,6 +21,7 @@
 #include "paths/automaton.h"
 #include "plan/plan.h"
 #include "plan/settings.h"
+#include "recording/noise.h"
 #include "scene/io/load.h"
 #include "scene/scene.h"
 #include "session/display.h"
@@ -28,6 +29,7 @@
 #include "session/image_progress.h"
 #include "session/lights_edit.h"
 #include "session/overlays.h"
+#include "session/path_recording.h"
 #include "session/pilot.h"
 #include "session/sampling.h"
 #include "session/setup.h"
@@ -275,6 +277,21 @@ class Renderer {
   /// Session::inspect; shown in later pictures.
   void inspect(std::optional<vec2> at);
 
+  /// Records paths of the present picture by tracing them again; nothing else changes. Throws Error: no
+  /// scene, kernels, memory.
+  recording::Recording begin_recording() const;
+  /// Appends these paths to such a recording. False if cancelled: then some are missing.
+  bool record_paths(std::span<const shared::PathChoice> choices, recording::Recording& into,
+                    const std::function<bool()>& cancel = {},
+                    uint32_t events_per_path = transport::PathRecorder::k_events);
+  /// Explains the noise of a part of the picture, 0..1 to the right and down, from a small seeded trial of
+  /// its paths: shares by component, word, light and material, and settings that would reduce it
+  /// (plan/choose.h).
+  recording::NoiseReport explain_noise(const vec2& lo, const vec2& hi);
+  /// Draws recorded paths over later pictures; nullptr: none.
+  void show_paths(ShownPaths paths) { overlays_.show_paths(std::move(paths)); }
+  const ShownPaths& shown_paths() const { return overlays_.shown_paths(); }
+
   /// Cost and error of this image over time; the last entry is current only after finish_ledger().
   const stats::Ledger& ledger() const { return progress_.ledger(); }
   void finish_ledger();
@@ -349,6 +366,7 @@ class Renderer {
   bool refining_pays(uint64_t paths);
   /// If the item waits for a round: runs one work item of that round. True if it did.
   std::optional<bool> prepare_round(const schedule::WorkItem& item, const std::function<bool()>& cancel);
+  recording::NoiseCure noise_cure(const recording::NoiseReport& report) const;
   /// Call after a coarse preview sample, with its duration.
   void note_path_pace(double seconds);
 
@@ -368,6 +386,7 @@ class Renderer {
   std::unique_ptr<Pilot> pilot_;                ///< while it runs
   std::optional<solvers::Findings> findings_;   ///< of this scene's pilot
   std::optional<double> seconds_limit_;
+  std::unique_ptr<PathRecording> recording_;     ///< null until paths are recorded
   std::optional<Filtered> filtered_;             ///< by filter()
   std::unique_ptr<WindowFilter> window_filter_;  ///< null in batch
   std::unique_ptr<Display> display_;             ///< null in batch

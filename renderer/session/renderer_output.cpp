@@ -70,7 +70,8 @@ bool Renderer::shows_the_same() const {
   const auto draws = [&](const OptionInfo& option) {
     return option.key.starts_with("overlay.") && setup_.settings.text(option.key) != option.fallback;
   };
-  if (!setup_.engine || !setup_.film || overlays_.mode().inspected || shown_.version != display_->version())
+  if (!setup_.engine || !setup_.film || overlays_.mode().inspected || overlays_.shown_paths().of ||
+      shown_.version != display_->version())
     return false;
   const Filtered* f = shown_filtered(view());
   const bool same = f ? shown_.filtered && shown_.paths == f->paths

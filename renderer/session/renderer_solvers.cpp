@@ -67,6 +67,8 @@ std::vector<std::shared_ptr<const solvers::Report>> Renderer::reports() {
     all.push_back(std::make_shared<const solvers::Report>(*lights));
   if (const solvers::Report* focus = overlays_.focus_report())
     all.push_back(std::make_shared<const solvers::Report>(*focus));
+  if (const solvers::Report* paths = overlays_.paths_report())
+    all.push_back(std::make_shared<const solvers::Report>(*paths));
   return all;
 }
 

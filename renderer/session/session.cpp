@@ -228,6 +228,38 @@ std::shared_future<film::FilmImage> Session::layers(SceneId scene) {
   return result;
 }
 
+std::shared_future<std::shared_ptr<const recording::Recording>> Session::trace_paths(const vec2& at,
+                                                                                     uint32_t samples,
+                                                                                     SceneId scene) {
+  return impl_->when_pictured<std::shared_ptr<const recording::Recording>>(
+      [at, samples](Renderer& r) {
+        const uvec2 pixel = pixel_at(at, r.film().width(), r.film().height());
+        recording::Recording all = r.begin_recording();
+        r.record_paths(choices_of({.left = pixel.x,
+                                   .top = pixel.y,
+                                   .right = pixel.x + 1,
+                                   .bottom = pixel.y + 1,
+                                   .samples = samples},
+                                  all.width, all.height),
+                       all);
+        auto recorded = std::make_shared<const recording::Recording>(std::move(all));
+        r.show_paths({recorded});
+        return recorded;
+      },
+      "the paths of a pixel", scene);
+}
+
+void Session::show_paths(const ShownPaths& paths, SceneId scene) {
+  const auto run = [paths](Renderer& r) { r.show_paths(paths); };
+  impl_->post({.run = run, .subject = "recorded paths", .scene = scene});
+}
+
+std::shared_future<recording::NoiseReport> Session::explain_noise(const vec2& lo, const vec2& hi,
+                                                                  SceneId scene) {
+  return impl_->when_pictured<recording::NoiseReport>(
+      [lo, hi](Renderer& r) { return r.explain_noise(lo, hi); }, "the noise of the picture", scene);
+}
+
 Saved Session::save(const std::filesystem::path& file, bool as_shown) {
   return impl_->post_save(file, "", k_any_scene, as_shown);
 }

@@ -14,11 +14,14 @@
 #include "film/io/image_file.h"
 #include "film/shown_error.h"
 #include "plan/settings.h"
+#include "recording/noise.h"
+#include "recording/recording.h"
 #include "scene/io/load.h"
 #include "scene/scene.h"
 #include "session/accuracy.h"
 #include "session/command_queue.h"
 #include "session/lights_edit.h"
+#include "session/paths_view.h"
 #include "solvers/report.h"
 
 namespace lucerna::session {
@@ -185,6 +188,17 @@ class Session {
   /// The layers of the present picture as floats (Renderer::film_image_with_halves); get() throws Error if it
   /// has no sample. Nothing is logged.
   std::shared_future<film::FilmImage> layers(SceneId scene = k_any_scene);
+  /// Records the first `samples` paths of the pixel at that place, and draws them over the picture from then
+  /// on; as soon as there is a picture. get() throws on failure. Nothing is logged.
+  std::shared_future<std::shared_ptr<const recording::Recording>> trace_paths(const vec2& at,
+                                                                              uint32_t samples,
+                                                                              SceneId scene = k_any_scene);
+  /// Draws recorded paths over the picture; nullptr: none.
+  void show_paths(const ShownPaths& paths, SceneId scene = k_any_scene);
+  /// Explains the noise of a part of the picture (0..1 to the right and down): Renderer::explain_noise. As
+  /// soon as there is a picture; get() throws on failure. Nothing is logged.
+  std::shared_future<recording::NoiseReport> explain_noise(const vec2& lo, const vec2& hi,
+                                                           SceneId scene = k_any_scene);
   /// Writes EXR or PNG as soon as every pixel has a sample, or at once if rendering rests without.
   /// `as_shown`: a PNG includes the preview's filter, like the snapshots.
   Saved save(const std::filesystem::path& file, bool as_shown = false);

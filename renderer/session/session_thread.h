@@ -59,8 +59,9 @@ struct Session::Impl {
     std::optional<vec2> at;
     std::shared_ptr<std::promise<film::Brightness>> promise;
   };
-  std::vector<Measure> measures;               // waiting for a picture
-  std::unique_ptr<EffectMeasurement> effects;  // while it is at work
+  std::vector<Measure> measures;                          // waiting for a picture
+  std::vector<std::function<void(Renderer&)>> questions;  // likewise; they throw nothing
+  std::unique_ptr<EffectMeasurement> effects;             // while it is at work
 
   bool works(Renderer& r) const {
     return r.ready() && !paused && (!r.done() || r.filter_due()) && !r.waits();
@@ -111,9 +112,35 @@ struct Session::Impl {
       }
   }
 
+  /// Answers with `answer(renderer)` as soon as the picture has a sample, or rendering rests without.
+  template <class Answer>
+  std::shared_future<Answer> when_pictured(std::function<Answer(Renderer&)> answer, const char* subject,
+                                           SceneId scene) {
+    auto promise = std::make_shared<std::promise<Answer>>();
+    auto result = promise->get_future().share();
+    const auto question = [this, promise, answer = std::move(answer)](Renderer& r) {
+      try {
+        promise->set_value(answer(r));
+      } catch (...) {
+        promise->set_exception(std::current_exception());
+      }
+      dirty = true;
+    };
+    post({.run = [this, question](Renderer&) { questions.push_back(question); },
+          .subject = subject,
+          .scene = scene});
+    return result;
+  }
+
+  void answer_due(Renderer& r) {
+    if (r.samples() == 0 && works(r)) return;
+    for (const auto& question : std::exchange(questions, {})) question(r);
+  }
+
   void serve_due(Renderer& r) {
     write_due(r);
     measure_due(r);
+    answer_due(r);
   }
 
   void give_up_saves(const char* why) {

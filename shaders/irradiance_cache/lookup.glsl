@@ -30,6 +30,10 @@ struct Cached {
   vec3 part[k_part_count];
   float weight;  // 0: no record serves here
   uint guide;    // nearest crowded record; k_no_guide: none, paths do not gather here
+#if LUCERNA_PATH_EVENTS
+  uint records;  // records that serve the place
+  uint record;   // drawn one
+#endif
 #if LUCERNA_GROUP_SUMS
   vec3 group[k_group_count];  // all parts except k_part_direct, by light group; unbiased over `u`
 #endif
@@ -185,6 +189,9 @@ Cached nothing_cached() {
   for (uint p = 0u; p < k_part_count; ++p) found.part[p] = vec3(0.0);
   found.weight = 0.0;
   found.guide = k_no_guide;
+#if LUCERNA_PATH_EVENTS
+  found.records = found.record = 0u;
+#endif
 #if LUCERNA_GROUP_SUMS
   [[unroll]] for (uint g = 0u; g < k_group_count; ++g) found.group[g] = vec3(0.0);
 #endif
@@ -251,11 +258,17 @@ Cached cache_draw(vec3 x, vec3 n, vec3 shading, uint media, bool enabled, float 
     Serving s = next_serving(i, range.last, x, n, media);
     meet(s, x, nearest, found.guide);
     bool drawn = reservoir_draw(drawing, s.crowded ? 0.0 : s.weight);
+#if LUCERNA_PATH_EVENTS
+    found.records += s.crowded || s.weight <= 0.0 ? 0u : 1u;
+#endif
     record = drawn ? s.record : record;
     place = drawn ? s.place.xyz : place;
     facing = drawn ? s.facing.xyz : facing;
   }
   found.weight = paths_gather(nearest) ? 0.0 : drawing.total;
+#if LUCERNA_PATH_EVENTS
+  found.record = record;
+#endif
   Extrapolation by = extrapolation(facing, x - place, shading);
   vec3 light = vec3(0.0);
   // A loop instead of a branch: on lavapipe a branch saves no reads for vertices without a lookup.

@@ -21,10 +21,12 @@ struct cache_Vertex {
   vec4 note, note_facing;
 };
 
-bool cache_propagates() { return cache.probing == k_probe_errors || cache.probing == k_probe_errors_beyond; }
+// Recorded paths are the picture's, whatever is being built.
+uint cache_probing() { return LUCERNA_PATH_EVENTS != 0 ? k_probe_none : cache.probing; }
+bool cache_propagates() { return cache_probing() == k_probe_errors || cache_probing() == k_probe_errors_beyond; }
 // State of the eye path. The delegated states repeat the same table: record light never depends on delegation.
 uint cache_state_of(VertexIn v) { return v.state % k_delegated_states; }
-bool cache_next_read(uint state) { return cache.probing == k_probe_next && state >= k_fallback_state; }
+bool cache_next_read(uint state) { return cache_probing() == k_probe_next && state >= k_fallback_state; }
 // Random number that selects one of the records.
 float record_lot(VertexIn v) { return sample_2d(v.random, k_pad_record + v.depth).x; }
 bool cache_coin(VertexIn v) { return (sample_vertex_bits(v.random, v.depth, k_pad_light_choice).x & 1u) != 0u; }
@@ -34,8 +36,8 @@ bool cache_coin(VertexIn v) { return (sample_vertex_bits(v.random, v.depth, k_pa
 cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
   cache_Vertex x;
   uint own_state = cache_state_of(v), routes = cache.routes[own_state];
-  bool beyond = cache.probing == k_probe_beyond && own_state >= k_fallback_state;
-  bool screen = cache.probing == k_probe_screen && v.depth == 0u;
+  bool beyond = cache_probing() == k_probe_beyond && own_state >= k_fallback_state;
+  bool screen = cache_probing() == k_probe_screen && v.depth == 0u;
   bool next_read = cache_next_read(own_state);
   // Learned light sampling must not depend on which solver computes a component.
   x.looks = frame.learning == 0u && (routes != k_no_routes || beyond || next_read || screen) && v.bsdf.p_diffuse + v.bsdf.p_transmitted > 0.0;
@@ -45,7 +47,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
   x.alone = false;
   x.gathers = true;
   x.guiding = k_no_guide;
-  bool notes_all = cache.probing == k_probe_screen || cache.probing == k_probe_reads || next_read;
+  bool notes_all = cache_probing() == k_probe_screen || cache_probing() == k_probe_reads || next_read;
   // Records lie on the smooth surface: neither facets nor the normal map matter.
   x.smooth_side = dot(v.surface.normal_v, v.side) < 0.0 ? -v.surface.normal_v : v.surface.normal_v;
   vec3 cached[k_component_count];
@@ -68,8 +70,8 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
     Cached found = cache_draw(v.surface.position, sign * x.smooth_side, sign * v.to_world[2], media, looks_up && !too_long, record_lot(v));
     bool missing = looks_up && found.weight <= 0.0;
     // Beyond the lookup, the last note that a coin accepts stays: each is as likely as all later ones together.
-    bool notes = !too_long && ((missing && found.guide == k_no_guide) || (looks_up && notes_all)) && cache.probing != k_probe_none && !cache_propagates() &&
-                 (cache.probing != k_probe_next || next_read) && !(beyond && cache_coin(v));
+    bool notes = !too_long && ((missing && found.guide == k_no_guide) || (looks_up && notes_all)) && cache_probing() != k_probe_none && !cache_propagates() &&
+                 (cache_probing() != k_probe_next || next_read) && !(beyond && cache_coin(v));
     bool servable = cache_can_serve(sign * x.smooth_side, sign * v.to_world[2]);
     if (notes && (servable || screen)) {
       uint origin = beyond ? k_origin_recursive : v.depth == 0u ? k_origin_screen : k_origin_world;
@@ -80,6 +82,12 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
     x.alone = x.alone || missing;
     x.gathers = x.gathers && (!missing || found.guide != k_no_guide);
     if (facing == 0) x.guiding = missing ? found.guide : k_no_guide;
+#if LUCERNA_PATH_EVENTS
+    for (uint p = 0u; p < k_part_count; ++p) {
+      uint c = (routes >> (4u * p)) & 15u;
+      if (found.weight > 0.0 && c < k_component_count) o.served[c] = found.records, o.reader[c] = k_path_records, o.record = found.record;
+    }
+#endif
     for (uint p = 0u; p < k_part_count; ++p)
       for (uint c = 0u; c < k_component_count; ++c)
         if (found.weight > 0.0 && ((routes >> (4u * p)) & 15u) == c) cached[c] += albedo * found.part[p];
@@ -104,7 +112,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
   [[unroll]] for (uint g = 0u; g < k_group_count; ++g) o.by_group[g] += x.alone ? vec3(0.0) : by_group[g];
 #endif
   o.sky_known = o.sky_known || (x.looks && !x.alone && (routes & 15u) < k_component_count);  // part 0: k_part_direct
-  o.samples_lights = o.samples_lights && cache.probing == k_probe_none;
+  o.samples_lights = o.samples_lights && cache_probing() == k_probe_none;
   if (x.alone && x.gathers && own_state < k_gather_state) o.branches = max(o.branches, cache.branches);
   return x;
 }
@@ -112,7 +120,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
 vec3 cache_cosine(VertexIn v, inout cache_Vertex x, vec2 u, vec3 cosine) {
 #if LUCERNA_CACHE_GATHERS
   // No guiding while places are chosen: places must not depend on the light.
-  bool guided = x.alone && x.gathers && (cache.probing == k_probe_none || cache_propagates());
+  bool guided = x.alone && x.gathers && (cache_probing() == k_probe_none || cache_propagates());
   x.guide = make_guide(guided ? x.guiding : k_no_guide, v.to_world[2]);
   return x.guide.total > 0.0 ? guide_sample(x.guide, u) * v.to_world : cosine;
 #else
@@ -130,8 +138,8 @@ void cache_weigh(VertexIn v, cache_Vertex x, vec3 direction, inout BsdfSample b)
 
 // State behind the vertex: this lookup passed, all lookups passed, or all lookups done.
 uint cache_state(VertexIn v, cache_Vertex x, BsdfSample b, uint state) {
-  bool passes_all = (x.alone && !x.gathers) || cache.probing == k_probe_beyond || cache.probing == k_probe_next ||
-                    (cache.probing == k_probe_errors_beyond && !x.alone);
+  bool passes_all = (x.alone && !x.gathers) || cache_probing() == k_probe_beyond || cache_probing() == k_probe_next ||
+                    (cache_probing() == k_probe_errors_beyond && !x.alone);
   uint from = passes_all ? k_fallback_state : x.alone ? k_gather_state : k_known_state, own_state = cache_state_of(v);
   bool another = x.looks && b.event == k_event_diffuse && own_state < k_fallback_state && (x.alone || passes_all || own_state >= k_gather_state);
   return another ? state % k_gather_state + from + (v.state - own_state) : state;
@@ -139,12 +147,12 @@ uint cache_state(VertexIn v, cache_Vertex x, BsdfSample b, uint state) {
 
 void cache_leave(VertexIn v, inout cache_Vertex x, Leaving l, inout vec3 throughput, inout bool go_on) {
   bool diffuse = l.b.event == k_event_diffuse, propagates = cache_propagates();
-  bool ends_here = cache.probing == k_probe_lookups || cache.probing == k_probe_reads || cache_next_read(cache_state_of(v));
-  go_on = go_on && cache.probing != k_probe_screen && !(ends_here && x.looks && diffuse);
+  bool ends_here = cache_probing() == k_probe_lookups || cache_probing() == k_probe_reads || cache_next_read(cache_state_of(v));
+  go_on = go_on && cache_probing() != k_probe_screen && !(ends_here && x.looks && diffuse);
   // Of the lookups beyond the first, a coin selects one; its light also counts for the lookups that it skips.
   bool reads = propagates && x.looks && !x.alone && diffuse, later = reads && cache_state_of(v) >= k_fallback_state;
   if (later) throughput *= 2.0;
-  if (reads && l.finite && (later ? cache_coin(v) : cache.probing == k_probe_errors)) {
+  if (reads && l.finite && (later ? cache_coin(v) : cache_probing() == k_probe_errors)) {
     uint media = 0u;
 #if LUCERNA_VOLUMES
     media = l.b.transmitted ? media_behind(v.surface, v.path.media) : v.path.media;

@@ -56,6 +56,9 @@ struct LightSample {
 #if LUCERNA_LEARNED || LUCERNA_SHAPES
   float factor;      // weight of the sample: pdf over its effective density after resampling
 #endif
+#if LUCERNA_PATH_EVENTS
+  uint entry;        // of the light table
+#endif
 #if LUCERNA_LEARNED
   uint cluster;      // light cluster
   float chosen;      // probability of that
@@ -386,6 +389,9 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
   float rest = s.sky ? float(detail.y) / float(sky_end) : float(detail.y - sky_end) / float(0xffffffffu - sky_end);
   detail.y = uint(min(rest, 1.0) * 4294967040.0);
   pmf *= 1.0 - sky_share;
+#endif
+#if LUCERNA_PATH_EVENTS
+  s.entry = s.sky ? 0xffffffffu : light;
 #endif
   int at = int(light * k_light_texels);
   vec4 a = texelFetch(scene_lights, at), b = texelFetch(scene_lights, at + 1), c = texelFetch(scene_lights, at + 2);

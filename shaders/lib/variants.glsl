@@ -239,6 +239,11 @@
 #define LUCERNA_SPLATS_WEIGHED 0
 #endif
 
+// Eye paths are recorded (lib/path_events.glsl).
+#ifndef LUCERNA_PATH_EVENTS
+#define LUCERNA_PATH_EVENTS 0
+#endif
+
 // Photons: regions whose light is delegated to eye paths.
 #ifndef LUCERNA_DELEGATED_REGIONS
 #define LUCERNA_DELEGATED_REGIONS 0

@@ -36,6 +36,9 @@ bool irradiance_read(VertexIn v, inout VertexOut o) {
   }
   if (link != k_irradiance_known) return false;
   vec3 weight = v.path.throughput * v.bsdf.diffuse_albedo * k_inv_pi;
+#if LUCERNA_PATH_EVENTS
+  o.reader[k_irradiance_component] = k_path_photons;
+#endif
   o.radiance[lane_of(0u, k_irradiance_component)] += weight * found.rgb;
 #if LUCERNA_GROUP_SUMS
   for (uint g = 0u; g < k_group_count; ++g)

@@ -26,6 +26,9 @@ struct photons_Vertex {
   uint from;  // first of the states in which the path continues behind the diffuse lobe; 0: unchanged
 };
 
+// Not 0: pilot paths. Recorded paths are the picture's, whatever is being prepared.
+uint photons_pilot_mask() { return LUCERNA_PATH_EVENTS != 0 ? 0u : photons.importance_mask; }
+
 // Rotates w by the smallest rotation that maps unit vector a to b.
 vec3 turn_along(vec3 w, vec3 a, vec3 b) {
   vec3 both = a + b;
@@ -39,7 +42,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   uint components = word & k_photon_no_components, only = word >> k_photon_unreachable_only_shift;  // bits, by part
   // Pilot paths record lookups and read no photons. Where only light is read that eye paths cannot find, the eye path
   // continues unchanged.
-  bool reads = components != k_photon_no_components && only == 0u && photons.importance_mask == 0u;
+  bool reads = components != k_photon_no_components && only == 0u && photons_pilot_mask() == 0u;
   // Eye paths stop computing a component behind a lookup of it; before there is data they compute all.
   bool some = photons.count > 0u;
 #if LUCERNA_PHOTON_IRRADIANCE
@@ -58,18 +61,18 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   vec3 x = v.surface.position;
   float radius = photon_radius(x);
   bool looks = components != k_photon_no_components && photons.count > 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0;
-  if (photons.importance_mask != 0u && components != k_photon_no_components) {
+  if (photons_pilot_mask() != 0u && components != k_photon_no_components) {
     float carried = luminance(v.path.throughput * (v.bsdf.diffuse + v.bsdf.transmitted));
     int level = photon_level(importance_radius(x));
     if (carried > 0.0)
-      atomicAdd(photon_importance[photon_entry_of(ivec3(floor(x * photon_inverse_cell(level))), level, photons.importance_mask)],
+      atomicAdd(photon_importance[photon_entry_of(ivec3(floor(x * photon_inverse_cell(level))), level, photons_pilot_mask())],
                 uint(clamp(k_photon_importance_scale * carried, 1.0, float(k_photon_most_importance))));
     if (v.path.pixel < photons.lookups && (components >> 4u * k_photon_caustic_part & 15u) < k_component_count)
       photon_lookups[v.path.pixel] =
           PhotonLookup(x, luminance(v.path.throughput * v.bsdf.diffuse_albedo), facet_pack(v.side));
   }
   // Targets of useful light: diffuse vertices of the pilot's paths behind the first.
-  if (photons.importance_mask != 0u && v.depth > 0u && v.depth <= photons.vertices && v.path.pixel < photons.lookups && !automaton_no_diffuse(v.state))
+  if (photons_pilot_mask() != 0u && v.depth > 0u && v.depth <= photons.vertices && v.path.pixel < photons.lookups && !automaton_no_diffuse(v.state))
     photon_lookups[photons.lookups + v.path.pixel * photons.vertices + v.depth - 1u] =
         PhotonLookup(x, luminance(v.path.throughput * v.bsdf.diffuse_albedo), facet_pack(v.side));
   int lowest = photon_lowest_level(radius), highest = photon_highest_level(radius);
@@ -111,6 +114,10 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
         // The facet is rotated into this plane, so flux is divided by the cosine at the photon's own facet.
         wi = reflected ? turn_along(wi, side, v.side) : turn_along(wi, front, v.surface.normal_g);
         vec3 flux = diffuse_of_flux(v.bsdf, v.to_world, v.surface.normal_g, wi, reflected) * b.rgb, light = flux * photon_kernel(d2, r);
+#if LUCERNA_PATH_EVENTS
+        uint to = components >> 4u * part & 15u;
+        if (to < k_component_count) ++o.served[to], o.reader[to] = k_path_photons;
+#endif
         bool contributes = (LUCERNA_PHOTON_DIRECT != 0 || part > 0u) && (components >> 4u * part & 15u) < k_component_count;
         found_flat += contributes ? flux * photon_flat_kernel(r) : vec3(0.0);
 #if LUCERNA_PHOTON_DIRECT
@@ -132,7 +139,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   // If deep light is looked up and no photon is found, its relative error is unknown.
   bool deep = ((components >> 4 & 15u) < k_component_count && (only >> 1 & 1u) == 0u) ||
               ((components >> 8 & 15u) < k_component_count && (only >> 2 & 1u) == 0u);
-  if (deep && photons.importance_mask == 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0 && max3(found_1 + found_2 + found_3) <= 0.0)
+  if (deep && photons_pilot_mask() == 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0 && max3(found_1 + found_2 + found_3) <= 0.0)
     o.bias += k_found_nothing;
   // Only if there is an error to correct.
   if (max3(found_0 + found_1 + found_2 + found_3) > 0.0) areas = photon_areas(x, v.surface.normal_g, radius);

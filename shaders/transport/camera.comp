@@ -4,6 +4,7 @@
 #include "lib/sampler.glsl"
 #include "lib/blocks.glsl"
 #include "lib/media.glsl"
+#include "lib/path_events.glsl"
 #if LUCERNA_THIN_LENS
 #include "lib/lens.glsl"
 #endif
@@ -12,6 +13,9 @@
 layout(scalar) readonly buffer SplatBlock { SplatFrame splat_frame; };
 uniform samplerBuffer splat_picture;
 #endif
+#if LUCERNA_PATH_EVENTS
+layout(scalar) readonly buffer PathChoices { PathChoice path_choices[]; };
+#endif
 #if LUCERNA_DELEGATED_REGIONS
 #include "lib/delegated_regions.glsl"
 #endif
@@ -19,12 +23,18 @@ uniform samplerBuffer splat_picture;
 void main() {
   uint slot = global_index();
   if (slot >= push.count) return;
+#if LUCERNA_PATH_EVENTS
+  uint pixel = path_choices[slot].pixel, sample_index = path_choices[slot].sample_index;
+  uvec2 xy = uvec2(pixel % frame.width, pixel / frame.width);
+  const bool inside = true;
+#else
   uint in_batch = slot % push.pixel_count;
   WorkBlock block = blocks[in_batch / 64u];
   uvec2 xy = block_pixel(block.index, in_batch % 64u, frame.width);
   bool inside = xy.x < frame.width && xy.y < frame.height;
   uint pixel = xy.y * frame.width + xy.x;
   uint sample_index = block.first_sample + slot / push.pixel_count;
+#endif
   Sampler s = make_sampler(pixel, frame.width, sample_index, frame.seed);
   vec2 place = (vec2(xy) + sample_2d(s, k_pad_pixel)) / vec2(frame.width, frame.height);
   vec3 shift = shift_at(place);
@@ -68,6 +78,13 @@ void main() {
   p.light_group = 0u;
   store_path(slot, p);
   clear_radiance(slot);
+#if LUCERNA_PATH_EVENTS
+  event_state = PathEventState(0u, 0u, 0u, k_path_by_none, 0u);
+  PathEvent start = new_event(k_path_camera, k_path_no_event, k_path_by_none, ray.origin);
+  start.normal = ray.direction;
+  start.throughput = p.throughput;
+  write_event(slot, event_place(), start);
+#endif
 #if LUCERNA_SPLATS
   // Adds what light paths contributed to the pixel, whatever this path hits. A preview sample of lower resolution reads the
   // pixel that its path goes through.
@@ -77,6 +94,13 @@ void main() {
     uvec2 at = same ? xy : min(uvec2(place * vec2(size)), size - 1u);
     vec4 splat = texelFetch(splat_picture, int(at.y * size.x + at.x));
     radiance[radiance_texel(slot, lane_of(0u, splat_frame.component))].rgb = splat.rgb;
+#if LUCERNA_PATH_EVENTS
+    if (event_counts(splat.rgb, splat_frame.component)) {
+      PathEvent e = new_event(k_path_splat, 0u, k_path_by_none, ray.origin);
+      add_light(e, splat.rgb, splat_frame.component, 255u);
+      write_event(slot, event_place(), e);
+    }
+#endif
 #if LUCERNA_GROUP_SUMS
     // Each channel's light belongs to its group. If two channels share a group, its texel is written twice with equal
     // values.
@@ -99,4 +123,7 @@ void main() {
 #endif
   features[2u * slot] = vec4(0.0);
   features[2u * slot + 1u] = vec4(0.0);
+#if LUCERNA_PATH_EVENTS
+  path_event_states[slot] = event_state;
+#endif
 }

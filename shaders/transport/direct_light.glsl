@@ -6,6 +6,7 @@
 #ifndef LUCERNA_TRANSPORT_DIRECT_LIGHT
 #define LUCERNA_TRANSPORT_DIRECT_LIGHT
 #include "lib/variants.glsl"
+#include "lib/path_events.glsl"
 
 layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
 
@@ -182,6 +183,23 @@ vec3 light_radiance(LightSample l) {
 }
 #endif
 
+#if LUCERNA_LIGHTS && LUCERNA_PATH_EVENTS
+// Records one lobe's share of a light sample, blocked until its shadow ray arrives. Returns 1 + its number; 0: none.
+uint record_light_event(uint slot, PathState path, LightSample l, vec3 light, uint component, uint event, vec3 target) {
+  if (!event_counts(light, component)) return 0u;
+  PathEvent e = new_event(k_path_blocked, event_vertex, event, target);
+  e.pdf = l.pdf;
+  e.normal = l.normal;
+  e.throughput = path.throughput;
+  e.primitive = l.primitive;
+  e.light = l.entry;
+  add_light(e, light, component, l.group);
+  uint at = event_place();
+  write_event(slot, at, e);
+  return at == k_path_no_event ? 0u : at + 1u;
+}
+#endif
+
 #if LUCERNA_LIGHTS
 // One light sample for all lobes, queued as a shadow ray if it can contribute. `row`: of learned lights.
 void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, vec3 wo, mat3 to_world, Sampler random, bool sky_known, bool wanted,
@@ -250,6 +268,12 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
     } else if (l.distance < 1e30) {
       shadow_ray.tmax = l.distance;
     }
+#if LUCERNA_PATH_EVENTS
+    vec3 target = shadow_ray.origin + shadow_ray.direction * min(shadow_ray.tmax, path_event_frame.far);
+    uint of_diffuse = record_light_event(slot, path, l, shadow.diffuse, component_d, k_event_diffuse, target);
+    uint of_glossy = record_light_event(slot, path, l, shadow.glossy, component_g, k_event_glossy, target);
+    shadow.tag = of_diffuse | of_glossy << 16;
+#endif
     uint first = max3(shadow.diffuse) > 0.0 ? component_d : component_g;
     shadow_queue[queue_place(k_counter_shadow, k_counter_shadow_rays, first)] = slot;
     store_shadow_ray(slot, shadow_ray);

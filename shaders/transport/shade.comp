@@ -14,6 +14,7 @@
 #endif
 #include "transport/vertex_hooks.glsl"
 #include "transport/direct_light.glsl"
+#include "lib/path_events.glsl"
 
 #if LUCERNA_VERTEX_HOOKS
 // Stored vertices with further branches: 2 texels for the ray, 1 for the hit, 3 for the path.
@@ -80,6 +81,10 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
   if (passes) throughput *= v.surface.spectrum;
   wavelength = wavelength_bits(v.surface, path, passes);
 #endif
+#if LUCERNA_PATH_EVENTS
+  event_state.by = b.event;
+  event_end = automaton_live(next) ? k_end_absorbed : k_end_complete;
+#endif
   bool finite = is_finite(throughput);
   bool go_on = sides_agree && (!finite || max3(throughput) > 0.0) && automaton_live(next);
   if (go_on && !finite) atomicAdd(counters[k_counter_dropped], 1u);
@@ -89,7 +94,13 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
   // The next ray could hit no light but the sky: it is traced only if the path may continue behind the hit.
   go_on = go_on && ((sky & k_path_sky_known) == 0u || automaton_goes_on(next));
 #endif
+#if LUCERNA_PATH_EVENTS
+  bool wanted = go_on;
+#endif
   hooks_leave(v, hooks, Leaving(b, finite), throughput, go_on);
+#if LUCERNA_PATH_EVENTS
+  if (wanted && !go_on) event_end = k_end_looked_up;
+#endif
   path.eta_scale *= b.eta2;
 #if LUCERNA_VERTEX_HOOKS
   bool one_of_many = branches > 1u && b.event == k_event_diffuse;
@@ -102,6 +113,9 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
     float u = to_unit(sample_vertex_bits(v.random, v.depth, k_pad_light_choice)).y;
     if (u >= q) {
       if (go_on) count_one(k_counter_roulette);
+#if LUCERNA_PATH_EVENTS
+      if (go_on) event_end = k_end_roulette;
+#endif
       go_on = false;
     }
     throughput /= max(q, 1e-30);
@@ -116,6 +130,53 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
 #endif
   return go_on;
 }
+
+#if LUCERNA_PATH_EVENTS
+// The vertex, unless a former branch has written it, and the end of the path there. `branches`: further branches begin here.
+void record_vertex(uint slot, PathEvent vertex, Hit hit, bool again, bool branches, bool continues) {
+  if (!again) write_event(slot, event_vertex, vertex);
+  if (event_vertex != k_path_no_event) event_state.last = event_vertex;
+  if (branches) event_state.branch = event_state.last;
+  if (continues) return;
+  PathEvent end = new_event(k_path_end, event_state.last, k_path_by_none, vertex.position);
+  end.throughput = vertex.throughput;
+  end.bits |= (hit.prim == k_no_hit ? k_end_left : event_end) << k_path_reason_shift;
+  write_event(slot, event_place(), end);
+}
+
+void record_light(uint slot, PathEvent e, vec3 light, uint component, uint group) {
+  if (!event_counts(light, component)) return;
+  add_light(e, light, component, group);
+  write_event(slot, event_place(), e);
+}
+
+// Emission that the path has met, and light that was looked up.
+void record_found(uint slot, PathEvent vertex, Hit hit, VertexOut found, uint state, uint group, vec3 gain, vec3 sun) {
+  PathEvent e = vertex;
+  e.parent = event_state.last;
+  e.bits = (hit.prim == k_no_hit ? k_path_background : k_path_emission) | k_path_by_none << k_path_by_shift;
+  if (hit.prim != k_no_hit) record_light(slot, e, gain, automaton_component(state), group);
+#if LUCERNA_LIGHT_GROUPS > 1 && LUCERNA_SUN
+  record_light(slot, e, sun, automaton_component(state), frame.sun_group);
+#endif
+#if LUCERNA_VERTEX_HOOKS
+  for (uint lane = 0u; lane < found.radiance.length(); ++lane) {
+    uint component = lane % k_component_count;
+    PathEvent read = vertex;
+    read.parent = event_state.last;
+    read.pdf = 0.0;
+    read.bits = found.reader[component] | k_event_diffuse << k_path_by_shift;
+    read.served = found.served[component];
+    read.record = found.reader[component] == k_path_records ? found.record : k_path_no_event;
+#if LUCERNA_GROUP_SUMS
+    record_light(slot, read, found.radiance[lane], component, 255u);
+#else
+    record_light(slot, read, found.radiance[lane], component, lane / k_component_count);
+#endif
+  }
+#endif
+}
+#endif
 
 void main() {
   uint index = global_index();
@@ -140,6 +201,16 @@ void main() {
   if (path.pixel == 0xffffffffu) return;
   uint state = path_automaton(path), depth = path_depth(path);
   Sampler random = make_sampler(path.pixel, frame.width, path.sample_index, frame.seed);
+#if LUCERNA_PATH_EVENTS
+  event_state = path_event_states[slot];
+  // A further branch continues from a vertex that the first one has written.
+  event_vertex = again ? event_state.branch : event_place();
+  event_end = k_end_absorbed;
+  PathEvent vertex = new_event(k_path_background, event_state.last, event_state.by, ray.origin + ray.direction * path_event_frame.far);
+  vertex.pdf = path.pdf;
+  vertex.throughput = path.throughput;
+  bool continues = false;
+#endif
 
   vec3 gain = vec3(0.0);  // light found here, for one lane ...
   uint group = 0u;
@@ -157,6 +228,11 @@ void main() {
   vec3 of_shapes[k_group_count];
   [[unroll]] for (uint g = 0u; g < k_group_count; ++g) of_shapes[g] = vec3(0.0);
   if (!again) shapes_met(slot, path, ray, hit.prim == k_no_hit ? k_infinity : hit.t, of_shapes);
+#endif
+#if LUCERNA_PATH_EVENTS
+  found.served = uvec4(0u);
+  found.reader = uvec4(k_path_looked_up);
+  found.record = k_path_no_event;
 #endif
 #if LUCERNA_HITS_SKY
   if (hit.prim == k_no_hit) {
@@ -186,6 +262,14 @@ void main() {
 #if LUCERNA_LIGHT_GROUPS > 1 && (LUCERNA_EMISSIVE || LUCERNA_UNLIT)
     group = emissive_group(hit.prim);
 #endif
+#if LUCERNA_PATH_EVENTS
+    vertex.bits = vertex.bits & ~0xffu | k_path_surface;
+    vertex.position = surface.position;
+    vertex.normal = dot(surface.normal_s, ray.direction) > 0.0 ? -surface.normal_s : surface.normal_s;
+    vertex.throughput = path.throughput;
+    vertex.primitive = hit.prim;
+    vertex.material = surface.material;
+#endif
     float travelled = path.travelled + hit.t;
     bool go_on = false;   // a next ray is traced
     bool passed = false;  // ... undeflected, without an event
@@ -214,10 +298,16 @@ void main() {
       // A null event is not counted; the surface's other lobes are lit as usual.
       bool ends = depth >= frame.max_depth;
       if (ends && !passed && !again) atomicAdd(counters[k_counter_depth], 1u);
+#if LUCERNA_PATH_EVENTS
+      if (ends) event_end = k_end_depth;
+#endif
 #if LUCERNA_UNLIT
       if ((surface.flags & k_flag_unlit) != 0u) {
         if (automaton_no_diffuse(state)) gain = path.throughput * surface.base.rgb;
         ends = true;
+#if LUCERNA_PATH_EVENTS
+        event_end = k_end_unlit;
+#endif
       }
 #endif
       if (!ends) {
@@ -262,7 +352,29 @@ void main() {
       ++path.nulls;
     }
     if (go_on) queue_ray(slot, path, offset_origin(surface, direction), direction);
+#if LUCERNA_PATH_EVENTS
+    continues = go_on;
+    if (passed) {
+      vertex.bits = vertex.bits & ~0xffu | k_path_passed;
+      event_state.by = k_path_by_none;
+    }
+#endif
   }
+#endif
+#if LUCERNA_PATH_EVENTS
+  // A ray that leaves the scene is one event.
+  if (hit.prim == k_no_hit && event_counts(gain, automaton_component(state))) add_light(vertex, gain, automaton_component(state), group);
+  record_vertex(slot, vertex, hit, again, found.branches > 1u && push.round == 0u, continues);
+  if (!again) record_found(slot, vertex, hit, found, state, group, gain, sun);
+#if LUCERNA_SHAPES
+  // Lamps with a shape, which the ray has met on its way.
+  PathEvent of_lamp = new_event(k_path_emission, event_state.last, k_path_by_none, vertex.position);
+  of_lamp.pdf = vertex.pdf;
+  of_lamp.throughput = vertex.throughput;
+  if (!again)
+    for (uint g = 0u; g < k_group_count; ++g) record_light(slot, of_lamp, of_shapes[g], automaton_component(state), g);
+#endif
+  path_event_states[slot] = event_state;
 #endif
   if (again) return;
 #if LUCERNA_SHAPES

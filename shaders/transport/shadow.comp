@@ -10,9 +10,20 @@
 #include "shaders/shared/learned_lights.h"
 layout(scalar) writeonly buffer LightRecords { LightRecord light_records[]; };
 #endif
+#include "lib/path_events.glsl"
 #if LUCERNA_TRANSPARENT
 #include "lib/surface.glsl"
 layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
+#endif
+
+#if LUCERNA_PATH_EVENTS
+// The light sample has arrived. `number`: from 1; 0: not recorded.
+void note_arrival(uint slot, uint number, vec3 light) {
+  if (number == 0u) return;
+  uint at = slot * path_event_frame.most + number - 1u;
+  path_events[at].bits = path_events[at].bits & ~0xffu | k_path_light;
+  path_events[at].contribution = light;
+}
 #endif
 
 void main() {
@@ -67,6 +78,10 @@ void main() {
 #endif
   if (!blocked) {
     add_radiance_of_group(slot, s.lanes & 0xffu, s.diffuse, (s.lanes >> 8) & 0xffu, s.glossy);
+#if LUCERNA_PATH_EVENTS
+    note_arrival(slot, s.tag & 0xffffu, s.diffuse);
+    note_arrival(slot, s.tag >> 16, s.glossy);
+#endif
   }
 #endif
 }

@@ -19,6 +19,7 @@
 #define LUCERNA_TRANSPORT_VERTEX_HOOK
 #include "lib/surface.glsl"
 #include "lib/sampler.glsl"
+#include "lib/path_events.glsl"
 
 struct VertexIn {
   uint slot;
@@ -46,6 +47,11 @@ struct VertexOut {
   bool sky_known;   // includes direct sky light on the diffuse lobe
   bool samples_lights;
   uint branches;    // number of branches of the diffuse lobe
+#if LUCERNA_PATH_EVENTS
+  uvec4 served;     // by component: records or photons that were read
+  uvec4 reader;     // ... k_path_records, k_path_photons or k_path_looked_up
+  uint record;      // drawn record; k_path_no_event: none
+#endif
 };
 
 struct Leaving {

@@ -20,6 +20,7 @@
 #include "shaders/shared/learned_view.h"
 #include "shaders/shared/octree.h"
 #include "shaders/shared/overlay.h"
+#include "shaders/shared/path_events.h"
 #include "shaders/shared/photons/inspect.h"
 #include "shaders/shared/photons/irradiance.h"
 #include "shaders/shared/photons/photons.h"
@@ -74,6 +75,11 @@ std::vector<SharedStruct> structs() {
       SHARED("splat.h", SplatOwners, red, green, blue),
       SHARED("splat.h", SplatFrame, width, height, component, unit, first, pixels),
       SHARED("splat.h", SplatPush, count),
+      SHARED("path_events.h", PathEvent, position, pdf, normal, parent, throughput, bits, contribution,
+             served, primitive, material, light, record),
+      SHARED("path_events.h", PathEventState, count, last, branch, by, lost),
+      SHARED("path_events.h", PathEventFrame, most, far),
+      SHARED("path_events.h", PathChoice, pixel, sample_index),
       SHARED("overlay.h", LightPathsView, step, light, radius, pad0),
       SHARED("irradiance_cache/inspect.h", CacheLinesPush, width, height, left, top, across, down, lines,
              ring),

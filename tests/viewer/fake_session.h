@@ -48,6 +48,46 @@ inline std::atomic<int> busy_ms{0};
 /// Duration of the first picture after each command.
 inline std::atomic<int> drawing_ms{0};
 
+/// Paths of one pixel: the camera, a wall, and a lamp whose light every third path does not reach.
+inline recording::Recording paths(uint32_t count, uint32_t width, uint32_t height, const vec2& at) {
+  recording::Recording all;
+  all.width = width, all.height = height, all.scene = "fake";
+  all.materials = {"wall"}, all.lights = {"Lamp"};
+  const auto event = [](uint32_t kind, uint32_t parent, uint32_t lobe, uint32_t component, float light) {
+    recording::Event e{};
+    e.parent = parent;
+    e.bits = kind | lobe << shared::k_path_by_shift | component << shared::k_path_component_shift |
+             255u << shared::k_path_group_shift;
+    e.contribution = vec3(light);
+    e.material = kind == shared::k_path_surface ? 0 : shared::k_path_no_event;
+    e.light = 0, e.record = shared::k_path_no_event;
+    return e;
+  };
+  const uint32_t x = std::min(uint32_t(at.x * float(width)), width - 1),
+                 y = std::min(uint32_t(at.y * float(height)), height - 1);
+  for (uint32_t i = 0; i < count; ++i) {
+    all.paths.push_back({y * width + x, i, uint32_t(all.events.size()), 4, 0});
+    const bool arrives = i % 3 != 2;
+    all.events.push_back(event(shared::k_path_camera, shared::k_path_no_event, 15, 15, 0));
+    all.events.push_back(event(shared::k_path_surface, 0, 15, 15, 0));
+    all.events.push_back(
+        event(arrives ? shared::k_path_light : shared::k_path_blocked, 1, 0, 0, 0.1f * float(i + 1)));
+    all.events.push_back(event(shared::k_path_end, 1, 15, 15, 0));
+  }
+  return all;
+}
+
+inline recording::NoiseReport noise() {
+  recording::NoiseReport report{.pixels = 64, .paths = 1024, .of_sample = 0.5};
+  report.components = {{"caustic", 0.9, 0.2}, {"primary", 0.1, 0.8}};
+  report.words = {{"EDSL", 0.9, 0.2}, {"EDL", 0.1, 0.8}};
+  report.lights = {{"Lamp", 1, 1}};
+  report.materials = {{"glass", 0.9, 0.2}, {"wall", 0.1, 0.8}};
+  report.sentence = recording::noise_sentence(report, false);
+  report.cure = {{{"components.caustic", "photons"}}, "Caustic light by photons", "photons find it"};
+  return report;
+}
+
 inline scene::Scene make_scene(const std::filesystem::path& file) {
   scene::Scene scene;
   scene.name = file.stem().string();
@@ -494,6 +534,26 @@ std::shared_future<film::FilmImage> Session::layers(SceneId scene) {
   impl_->post(
       [this, promise] { promise->set_value(fake::layers(impl_->samples, impl_->width, impl_->height)); },
       scene);
+  return promise->get_future().share();
+}
+std::shared_future<std::shared_ptr<const recording::Recording>> Session::trace_paths(const vec2& at,
+                                                                                     uint32_t samples,
+                                                                                     SceneId scene) {
+  auto promise = std::make_shared<std::promise<std::shared_ptr<const recording::Recording>>>();
+  impl_->post(
+      [this, promise, at, samples] {
+        promise->set_value(std::make_shared<const recording::Recording>(
+            fake::paths(samples, impl_->width, impl_->height, at)));
+      },
+      scene);
+  return promise->get_future().share();
+}
+void Session::show_paths(const ShownPaths&, SceneId scene) {
+  impl_->post([] {}, scene);
+}
+std::shared_future<recording::NoiseReport> Session::explain_noise(const vec2&, const vec2&, SceneId scene) {
+  auto promise = std::make_shared<std::promise<recording::NoiseReport>>();
+  impl_->post([promise] { promise->set_value(fake::noise()); }, scene);
   return promise->get_future().share();
 }
 void Session::set_material(uint32_t index, const scene::Material& material, SceneId scene) {

@@ -1,0 +1,38 @@
+#pragma once
+// Recorded paths as strokes over the picture: lines from event to event, points where light was found.
+#include <vector>
+
+#include "recording/recording.h"
+#include "shaders/shared/overlay.h"
+
+namespace lucerna::overlay {
+
+enum class PathColor { event, component, contribution };
+
+struct PathLinesStyle {
+  PathColor color = PathColor::event;
+  int path = -1;    ///< index of the path that is followed, the others are faint; -1: none
+  int vertex = -1;  ///< its marked event
+  float slack = 0;  ///< OverlaySegment::slack [m]
+};
+
+struct PathStrokes {
+  std::vector<shared::OverlayPoint> points;
+  std::vector<shared::OverlaySegment> segments;
+};
+
+/// At most the brightest `k_most_drawn` paths. Blocked light samples are dark.
+inline constexpr size_t k_most_drawn_paths = 4096;
+PathStrokes path_strokes(const recording::Recording& recording, const PathLinesStyle& style);
+
+/// Encoded colours, for legends.
+vec3 event_ink(const recording::Event& event);
+vec3 lobe_ink(uint32_t lobe);  ///< k_event_* or shared::k_path_by_none
+vec3 component_ink(uint32_t component);
+/// Of a path that brings that share of the brightest one's light; the ramp ends at k_least_path_share.
+inline constexpr float k_least_path_share = 1e-3f;
+vec3 contribution_ink(double share);
+inline constexpr vec3 k_arrived_ink{1.0f, 0.86f, 0.35f}, k_blocked_ink{0.13f, 0.11f, 0.13f},
+    k_background_ink{0.45f, 0.62f, 1.0f}, k_emission_ink{1.0f, 0.55f, 0.2f}, k_read_ink{0.75f, 0.45f, 1.0f};
+
+}  // namespace lucerna::overlay

@@ -1,0 +1,219 @@
+#include "recording/file.h"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <cstddef>
+#include <cstring>
+
+#include "base/error.h"
+#include "base/hash.h"
+#include "base/json_text.h"
+
+namespace lucerna::recording {
+namespace {
+
+static_assert(std::endian::native == std::endian::little);
+
+constexpr char k_magic[] = "LUCPATHS", k_chunk[] = "CHNK", k_done[] = "DONE";
+constexpr uint32_t k_version = 1;
+constexpr uint64_t k_most_header = 64u << 20;
+
+using Json = nlohmann::ordered_json;
+
+struct ChunkHead {
+  char tag[4];
+  uint32_t paths;
+  uint64_t events;
+  uint64_t hash;
+};
+static_assert(sizeof(ChunkHead) == 24 && sizeof(Path) == 20);
+
+uint64_t hash_of(std::string_view bytes) {
+  Hash hash;
+  hash.add_bytes(bytes.data(), bytes.size());
+  return hash.low();
+}
+uint64_t hash_of(const Recording& part) {
+  Hash hash;
+  hash.add_bytes(part.paths.data(), part.paths.size() * sizeof(Path));
+  hash.add_bytes(part.events.data(), part.events.size() * sizeof(Event));
+  return hash.low();
+}
+/// Of an end: there is nothing behind its head.
+uint64_t hash_of_end(uint64_t paths, uint64_t events) {
+  Hash hash;
+  hash.add_value(paths);
+  hash.add_value(events);
+  return hash.low();
+}
+
+template <class T>
+std::string_view bytes_of(const T& value) {
+  return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+
+Json field(const char* name, const char* type, int count, size_t offset) {
+  return {{"name", name}, {"type", type}, {"count", count}, {"offset", offset}};
+}
+
+Json schema() {
+  const auto word = [](const char* name, size_t offset) { return field(name, "uint32", 1, offset); };
+  const auto triple = [](const char* name, size_t offset) { return field(name, "float32", 3, offset); };
+  Json path, event;
+  path["bytes"] = sizeof(Path);
+  path["fields"] = {word("pixel", offsetof(Path, pixel)), word("sample", offsetof(Path, sample)),
+                    word("first", offsetof(Path, first)), word("count", offsetof(Path, count)),
+                    word("lost", offsetof(Path, lost))};
+  event["bytes"] = sizeof(Event);
+  event["fields"] = {triple("position", offsetof(Event, position)),
+                     field("pdf", "float32", 1, offsetof(Event, pdf)),
+                     triple("normal", offsetof(Event, normal)),
+                     word("parent", offsetof(Event, parent)),
+                     triple("throughput", offsetof(Event, throughput)),
+                     word("bits", offsetof(Event, bits)),
+                     triple("contribution", offsetof(Event, contribution)),
+                     word("served", offsetof(Event, served)),
+                     word("primitive", offsetof(Event, primitive)),
+                     word("material", offsetof(Event, material)),
+                     word("light", offsetof(Event, light)),
+                     word("record", offsetof(Event, record))};
+  Json bits;
+  bits["kind"] = {0, 8}, bits["lobe"] = {8, 4}, bits["reason"] = {12, 4}, bits["component"] = {16, 4},
+  bits["group"] = {20, 8};
+  event["bits"] = bits;
+  event["kinds"] = k_kind_names;
+  event["reasons"] = k_reason_names;
+  event["lobes"] = {"D", "G", "S"};
+  event["components"] = paths::k_component_names;
+  return {{"path", path}, {"event", event}};
+}
+
+}  // namespace
+
+Writer::Writer(const std::filesystem::path& file, const Recording& names, const Json& about) : out_(file) {
+  Json header;
+  header["program"] = "lucerna " LUCERNA_VERSION;
+  header["scene"] = names.scene;
+  header["width"] = names.width, header["height"] = names.height, header["seed"] = names.seed;
+  for (const auto& [key, value] : about.items()) header[key] = value;
+  header["materials"] = names.materials, header["lights"] = names.lights, header["groups"] = names.groups;
+  header["schema"] = schema();
+  const std::string text = json_text(header, 1);
+  const auto bytes = uint32_t(text.size());
+  out_.write({k_magic, 8});
+  out_.write(bytes_of(k_version));
+  out_.write(bytes_of(bytes));
+  out_.write(bytes_of(hash_of(text)));
+  out_.write(text);
+}
+
+void Writer::add(const Recording& part) {
+  if (part.paths.empty()) return;
+  ChunkHead head{};
+  std::memcpy(head.tag, k_chunk, 4);
+  head.paths = uint32_t(part.paths.size()), head.events = part.events.size(), head.hash = hash_of(part);
+  out_.write(bytes_of(head));
+  out_.write({reinterpret_cast<const char*>(part.paths.data()), part.paths.size() * sizeof(Path)});
+  out_.write({reinterpret_cast<const char*>(part.events.data()), part.events.size() * sizeof(Event)});
+  paths_ += part.paths.size(), events_ += part.events.size();
+}
+
+void Writer::finish() {
+  // The number of paths may exceed 32 bits: the end has both sums behind its head.
+  ChunkHead head{};
+  std::memcpy(head.tag, k_done, 4);
+  head.hash = hash_of_end(paths_, events_);
+  out_.write(bytes_of(head));
+  out_.write(bytes_of(paths_));
+  out_.write(bytes_of(events_));
+  out_.commit();
+}
+
+void Reader::refuse(const std::string& what) const {
+  throw Error(file_.string(), fmt::format("byte {}: {}", at_, what));
+}
+
+void Reader::read(void* to, uint64_t bytes, const char* what) {
+  if (bytes > size_ - at_) refuse(fmt::format("the file ends within {}: it was cut", what));
+  in_.read(static_cast<char*>(to), std::streamsize(bytes));
+  if (!in_) refuse(fmt::format("{} cannot be read", what));
+  at_ += bytes;
+}
+
+Reader::Reader(const std::filesystem::path& file) : file_(file), in_(file, std::ios::binary) {
+  std::error_code failed;
+  if (std::filesystem::is_directory(file, failed))
+    throw Error(file.string(), "is a folder; expected an .lpath file");
+  if (!in_) throw Error(file.string(), "cannot be opened");
+  size_ = std::filesystem::file_size(file, failed);
+  if (failed) throw Error(file.string(), "cannot be read: " + failed.message());
+  char magic[8];
+  if (size_ < sizeof magic) refuse("not a file of recorded paths (.lpath)");
+  read(magic, sizeof magic, "its name");
+  at_ = 0;
+  if (std::memcmp(magic, k_magic, sizeof magic) != 0) refuse("not a file of recorded paths (.lpath)");
+  at_ = sizeof magic;
+  uint32_t version = 0, bytes = 0;
+  uint64_t hash = 0;
+  read(&version, sizeof version, "the version");
+  if (version != k_version)
+    refuse(fmt::format("version {} of the format; this program reads version {}", version, k_version));
+  read(&bytes, sizeof bytes, "the header");
+  read(&hash, sizeof hash, "the header");
+  if (bytes > k_most_header) refuse(fmt::format("a header of {} bytes: damaged", bytes));
+  std::string text(bytes, '\0');
+  read(text.data(), bytes, "the header");
+  if (hash_of(text) != hash) refuse("the header is damaged: its checksum differs");
+  try {
+    header_ = Json::parse(text);
+    if (header_.at("schema") != Json::parse(json_text(schema())))
+      refuse("its events have other fields than this program's");
+    names_.scene = header_.at("scene").get<std::string>();
+    names_.width = header_.at("width").get<uint32_t>(), names_.height = header_.at("height").get<uint32_t>();
+    names_.seed = header_.at("seed").get<uint32_t>();
+    names_.materials = header_.at("materials").get<std::vector<std::string>>();
+    names_.lights = header_.at("lights").get<std::vector<std::string>>();
+    names_.groups = header_.at("groups").get<std::vector<std::string>>();
+  } catch (const Json::exception& e) {
+    refuse(fmt::format("the header cannot be read: {}", e.what()));
+  }
+  if (names_.width == 0 || names_.height == 0) refuse("the header names a picture without pixels");
+}
+
+std::optional<Recording> Reader::next() {
+  const uint64_t begin = at_;
+  ChunkHead head{};
+  read(&head, sizeof head, "the head of a chunk");
+  if (std::memcmp(head.tag, k_done, 4) == 0) {
+    uint64_t paths = 0, events = 0;
+    read(&paths, sizeof paths, "its end");
+    read(&events, sizeof events, "its end");
+    if (head.hash != hash_of_end(paths, events)) refuse("the end is damaged: its checksum differs");
+    if (paths != paths_ || events != events_)
+      refuse(fmt::format("{} paths were written, {} are there", paths, paths_));
+    if (at_ != size_) refuse(fmt::format("{} bytes behind the end", size_ - at_));
+    return std::nullopt;
+  }
+  at_ = begin;
+  if (std::memcmp(head.tag, k_chunk, 4) != 0) refuse("expected a chunk: damaged");
+  at_ += sizeof head;
+  const uint64_t left = size_ - at_;
+  if (head.events > left / sizeof(Event) || head.paths * sizeof(Path) + head.events * sizeof(Event) > left)
+    refuse(fmt::format("a chunk of {} events, but {} bytes are left: it was cut", head.events, left));
+  Recording chunk = names_;
+  chunk.paths.resize(head.paths), chunk.events.resize(head.events);
+  read(chunk.paths.data(), head.paths * sizeof(Path), "a chunk");
+  read(chunk.events.data(), head.events * sizeof(Event), "a chunk");
+  at_ = begin;
+  if (hash_of(chunk) != head.hash) refuse("a chunk is damaged: its checksum differs");
+  const uint64_t pixels = uint64_t{chunk.width} * chunk.height;
+  for (const Path& path : chunk.paths)
+    if (path.pixel >= pixels || path.first > head.events || path.count > head.events - path.first)
+      refuse("a path lies outside the picture or its chunk: damaged");
+  at_ = begin + sizeof head + head.paths * sizeof(Path) + head.events * sizeof(Event);
+  paths_ += head.paths, events_ += head.events;
+  return chunk;
+}
+
+}  // namespace lucerna::recording

@@ -1,0 +1,76 @@
+// links: session
+// What the noise comes from, by recorded paths: the component that makes it, as the film's halves estimate
+// it, and a setting that reduces it.
+#include <catch2/catch.hpp>
+#include <cmath>
+
+#include "support/render.h"
+
+using namespace lucerna;
+
+namespace {
+
+std::unique_ptr<session::Renderer> renderer_of(const std::string& scene, const test::Settings& settings,
+                                               uint32_t samples) {
+  auto renderer = std::make_unique<session::Renderer>(test::renderer_options(false));
+  renderer->settings().set("path.batch", test::k_batch);
+  renderer->set_size(64, 64);
+  renderer->load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + scene + "/" + scene + ".gltf");
+  test::Settings all = settings;
+  all["samples"] = std::to_string(samples);
+  all.try_emplace("cache.max_records", test::k_room);
+  test::set(*renderer, all);
+  return renderer;
+}
+
+double share(const std::vector<recording::NoiseShare>& shares, const std::string& name) {
+  for (const recording::NoiseShare& s : shares)
+    if (s.name == name) return s.noise;
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("the noise of caustics is explained, and the proposed setting reduces it") {
+  const auto renderer = renderer_of("ring", {{"components.caustic", "path"}}, 16);
+  const film::Image before = test::finish(*renderer);
+  const recording::NoiseReport report = renderer->explain_noise({0, 0}, {1, 1});
+  INFO(report.sentence);
+  CHECK(report.pixels > 300);
+  REQUIRE(!report.components.empty());
+  CHECK(report.components[0].name == "caustic");
+  CHECK(report.components[0].noise > 0.5);
+  double sum = 0;
+  for (const auto& s : report.components) sum += s.noise;
+  CHECK(sum == Approx(1));
+  CHECK(report.words[0].name.starts_with("ED"));
+  // An own trial finds the same.
+  const recording::NoiseReport again = renderer->explain_noise({0, 0}, {1, 1});
+  CHECK(again.sentence == report.sentence);
+  CHECK(again.of_sample == report.of_sample);
+  // Nothing has changed.
+  CHECK(test::identical(before, renderer->image()));
+
+  const double noise = renderer->image_error().seen_rms[1 + paths::k_caustic];
+  REQUIRE(!report.cure.settings.empty());
+  CHECK(report.cure.settings[0].first == "components.caustic");
+  for (const auto& [key, value] : report.cure.settings) renderer->settings().set(key, value);
+  renderer->apply_settings();
+  test::finish(*renderer);
+  CHECK(renderer->image_error().seen_rms[1 + paths::k_caustic] < 0.7 * noise);
+}
+
+TEST_CASE("a rectangle has noise of its own; lights that are chosen by power are learned") {
+  const auto renderer = renderer_of("cornell", {{"lights.sampling", "power"}}, 16);
+  test::finish(*renderer);
+  // The lamp itself, and the ceiling.
+  const recording::NoiseReport part = renderer->explain_noise({0.1f, 0.5f}, {0.3f, 0.9f});
+  INFO(part.sentence);
+  CHECK(part.pixels > 100);
+  CHECK(part.of_sample > 0);
+  CHECK(share(part.components, "caustic") < 0.5);
+  CHECK(part.sentence.find("here") != std::string::npos);
+  CHECK(!part.cure.reason.empty());
+  const recording::NoiseReport pixel = renderer->explain_noise({0.2f, 0.7f}, {0.2f, 0.7f});
+  CHECK(pixel.pixels <= 1);
+}
