@@ -84,7 +84,7 @@ scene::Scene prism() {
 
 TEST_CASE("a prism spreads the sky behind it by wavelength") {
   const test::Settings direct{{"path.max_depth", "2"}};  // no reflections within the prism
-  const test::Result r = test::render(prism(), direct, 8, 256);
+  const test::Result r = test::render(prism(), direct, 256, 8);
   const auto expected = [](int c) {
     return mean_over(c, [](double n) { return through(n) * sky_at(deviation(n)); });
   };
@@ -94,7 +94,7 @@ TEST_CASE("a prism spreads the sky behind it by wavelength") {
   // Without dispersion: one deviation for all.
   scene::Scene plain = prism();
   plain.materials[0].dispersion = 0;
-  const test::MeanOf same = test::mean_of(test::render(plain, direct, 8, 16).image, 0);
+  const test::MeanOf same = test::mean_of(test::render(plain, direct, 16, 8).image, 0);
   for (int c = 0; c < 3; ++c)
     CHECK(same.value[c] == Approx(through(k_ior) * sky_at(deviation(k_ior))).epsilon(0.01));
 }
@@ -120,7 +120,7 @@ TEST_CASE("a plate of dispersive glass under an even sky looks like one without 
       s.cameras = {c};
       s.environment.radiance = vec3(1), s.environment.given = true;
       glm::dvec3 sum(0);
-      const test::Result r = test::render(s, {{"path.max_depth", "32"}}, 8, 256);
+      const test::Result r = test::render(s, {{"path.max_depth", "32"}}, 256, 8);
       for (int component = 0; component < 4; ++component) sum += test::mean_of(r.image, component).value;
       found[disperses] = sum;
     }
@@ -146,7 +146,7 @@ TEST_CASE("light paths leave a prism by wavelength too") {
   s.environment.given = true;
   constexpr uint32_t k_side = 64;
   const test::Result r =
-      test::render(s, {{"components.caustic", "light"}, {"light.per_round", "200000"}}, k_side, 32);
+      test::render(s, {{"components.caustic", "light"}, {"light.per_round", "100000"}}, 24, k_side);
   glm::dvec3 light(0), moment(0);
   for (uint32_t y = 0; y < k_side; ++y)
     for (uint32_t x = 0; x < k_side; ++x) {
