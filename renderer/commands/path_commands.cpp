@@ -22,11 +22,10 @@ PathInquiry& traced_paths(Workspace& work) {
 void add_trace(Workspace& work) {
   work.registry.add(
       {.name = "inspect.trace",
-       .help = "Traces the first paths of a pixel again and draws them over the picture: rays, light that "
-               "arrives, "
-               "shadow rays that are blocked (dark). The picture does not change. inspect.follow follows one "
-               "of them. "
-               "A script continues when they are shown.",
+       .help =
+           "Traces the first paths of a pixel again and draws them over the picture: rays, light that "
+           "arrives, blocked shadow rays (dark). The picture does not change. inspect.follow follows one of "
+           "them. A script continues when they are shown.",
        .parameters = {{.name = "right", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture widths"},
                       {.name = "down", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture heights"},
                       {.name = "paths",
@@ -48,9 +47,9 @@ void add_trace(Workspace& work) {
        .needs_outcome = true});
   work.registry.add(
       {.name = "inspect.follow",
-       .help = "Follows one of the traced paths: the others are drawn faintly, and its events are listed in "
-               "the log. "
-               "1 is the path that brings the most light; 0 follows none.",
+       .help =
+           "Follows one of the traced paths: the others are drawn faintly, and its events are listed in the "
+           "log. 1 is the path that brings the most light; 0 follows none.",
        .parameters = {{.name = "path", .type = Type::integer, .lo = 0, .hi = double(k_most_paths)},
                       {.name = "event",
                        .type = Type::integer,
@@ -94,27 +93,21 @@ void add_noise(Workspace& work) {
   };
   work.registry.add(
       {.name = "inspect.noise",
-       .help = "Explains the noise of a rectangle of the picture, or of all of it: which component, way of "
-               "light, "
-               "light and material it comes from, and which setting would reduce it. A short trial of the "
-               "picture's "
-               "paths; the picture does not change. A script continues when it is reported.",
+       .help =
+           "Explains the noise of a rectangle of the picture, by default of all of it: which component, way "
+           "of "
+           "light, light and material it comes from, and which setting would reduce it. A short trial of the "
+           "picture's paths; the picture does not change. A script continues when it is reported.",
        .parameters = {part("right", "picture widths"), part("down", "picture heights"),
                       part("width", "picture widths"), part("height", "picture heights")},
-       .check =
-           [](const Arguments& a) {
-             const bool all = a.has("right") && a.has("down") && a.has("width") && a.has("height");
-             if (!all && a.has("right"))
-               throw Error("", "expected all four of right, down, width and height, or none");
-           },
        .run =
            [&work](const Arguments& a) {
              work.open.needs_scene();
-             vec2 lo(0), hi(1);
-             if (a.has("right")) {
-               lo = {a.number("right"), a.number("down")};
-               hi = glm::min(lo + vec2(a.number("width"), a.number("height")), vec2(1));
-             }
+             const auto part = [&](const char* name, float otherwise) {
+               return a.has(name) ? a.number(name) : otherwise;
+             };
+             const vec2 lo(part("right", 0), part("down", 0));
+             const vec2 hi = glm::min(lo + vec2(part("width", 1), part("height", 1)), vec2(1));
              work.noise = NoiseInquiry{
                  .lo = lo, .hi = hi, .explained = work.session.explain_noise(lo, hi, work.open.id())};
            },

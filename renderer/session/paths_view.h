@@ -1,22 +1,14 @@
 #pragma once
 // Recorded paths over the picture, with a legend (overlay.path_color). They stay when the camera moves, so
 // that they can be seen from elsewhere.
-#include <memory>
 #include <optional>
 
 #include "overlay/painter.h"
 #include "plan/settings.h"
-#include "recording/recording.h"
+#include "session/shown_paths.h"
 #include "solvers/report.h"
 
 namespace lucerna::session {
-
-/// What is shown of a recording.
-struct ShownPaths {
-  std::shared_ptr<const recording::Recording> of;  ///< null: nothing
-  int path = -1;                                   ///< followed one, index in the recording; -1: none
-  int vertex = -1;                                 ///< its marked event; -1: none
-};
 
 class PathsView {
  public:

@@ -21,7 +21,7 @@
 #include "session/accuracy.h"
 #include "session/command_queue.h"
 #include "session/lights_edit.h"
-#include "session/paths_view.h"
+#include "session/shown_paths.h"
 #include "solvers/report.h"
 
 namespace lucerna::session {

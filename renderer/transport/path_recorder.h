@@ -24,7 +24,8 @@ class PathRecorder {
  public:
   static constexpr uint32_t k_events = 128;  ///< room per path
 
-  /// `path_defines`: of the wavefront's kernels for vertices. Throws Error, located: a kernel does not compile.
+  /// `path_defines`: of the wavefront's kernels for vertices. Throws Error, located: a kernel does not
+  /// compile.
   PathRecorder(gpu::Device& device, gpu::ShaderCompiler& compiler, const gpu::Defines& path_defines,
                uint32_t events_per_path = k_events);
   const gpu::Defines& path_defines() const { return path_defines_; }

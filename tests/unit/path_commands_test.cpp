@@ -42,8 +42,10 @@ TEST_CASE("inspect.noise explains the noise of a rectangle; inspect.cure sets wh
   CHECK_THAT(b.failure("inspect.cure"), Contains("no noise is explained"));
   b.open();
   b.run("wait_samples 4");
-  CHECK_THAT(b.failure("inspect.noise 0.1 0.1"),
-             Contains("expected all four of right, down, width and height"));
+  CHECK_THAT(b.failure("inspect.noise 0.1 2"), Contains("expected a number from 0 to 1 picture heights"));
+  b.run("inspect.noise 0.25");
+  CHECK(b.work.noise->lo == vec2(0.25f, 0));
+  CHECK(b.work.noise->hi == vec2(1));
   b.run("inspect.noise 0.25 0.5 0.5 0.9");
   REQUIRE(b.work.noise);
   REQUIRE(b.work.noise->report);
