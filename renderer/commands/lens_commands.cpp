@@ -51,11 +51,6 @@ std::vector<Parameter> lens_parameters() {
        .type = Type::boolean,
        .help = "true: no lens, everything is sharp",
        .optional = true},
-      {.name = "projection",
-       .type = Type::choice,
-       .help = "of a camera that is not orthographic",
-       .choices = projection_names(),
-       .optional = true},
       real("shift_right", "of the lens", -scene::k_max_shift, scene::k_max_shift, "picture widths"),
       real("shift_up", "of the lens", -scene::k_max_shift, scene::k_max_shift, "picture heights"),
       {.name = "section_normal",
@@ -64,7 +59,12 @@ std::vector<Parameter> lens_parameters() {
        .lo = -1e9,
        .hi = 1e9,
        .optional = true},
-      real("section_offset", "of that plane from the scene's origin, along its normal", -1e9, 1e9, "m")};
+      real("section_offset", "of that plane from the scene's origin, along its normal", -1e9, 1e9, "m"),
+      {.name = "projection",
+       .type = Type::choice,
+       .help = "of a camera that is not orthographic",
+       .choices = projection_names(),
+       .optional = true}};
 }
 
 std::vector<std::string> projection_names() {
