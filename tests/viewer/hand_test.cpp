@@ -156,8 +156,8 @@ TEST_CASE("a dropped image lights the scene; the first steps are shown on reques
 TEST_CASE("a lamp's strength, temperature and position are dragged in the panel, each drag one step") {
   if (test::no_display()) return;
   const auto lines = session_of("window.section Camera false\nselect light 3\nwait 0.3\n" +
-                                drag(1200, 340, 10, 0) + drag(1200, 392, 10, 0) + drag(1250, 444, 10, 0) +
-                                drag(1240, 470, 10, 0) + "key ctrl+z\nkey ctrl+z\nkey ctrl+z\n");
+                                drag(1200, 366, 10, 0) + drag(1200, 418, 10, 0) + drag(1250, 470, 10, 0) +
+                                drag(1240, 496, 10, 0) + "key ctrl+z\nkey ctrl+z\nkey ctrl+z\n");
   INFO(fmt::format("{}", fmt::join(lines, "\n")));
   REQUIRE(lines.size() == 9);
   CHECK_THAT(lines[2], Catch::StartsWith("light.set 3 intensity="));
@@ -171,19 +171,19 @@ TEST_CASE("a colour is picked; emissive surfaces are listed among the lights") {
   if (test::no_display()) return;
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
-  const auto lines =
-      session_of("select light 3\nwait 0.3\nmouse.move 1200 582\nmouse.down\nmouse.up\nwait 0.4\n" +
-                 ("screenshot " + file("picker.png") + "\n") + drag(1230, 662, 8, 8) +
-                 "key escape\nwait 0.3\nwindow.section Camera false\nmaterial.set 1 strength=2\nselect "
-                 "material 1\nwait 0.4\n"
-                 "screenshot " +
-                 file("surface.png"));
+  const auto lines = session_of(
+      "window.section Camera false\nselect light 3\nwait 0.3\nmouse.move 1200 392\nmouse.down\n"
+      "mouse.up\nwait 0.4\n" +
+      ("screenshot " + file("picker.png") + "\n") + drag(1230, 472, 8, 8) +
+      "key escape\nwait 0.3\nmaterial.set 1 strength=2\nselect material 1\nwait 0.4\n"
+      "screenshot " +
+      file("surface.png"));
   if (const char* keep = std::getenv("LUCERNA_TEST_KEEP"))
     for (const char* name : {"picker.png", "surface.png"})
       std::filesystem::copy_file(file(name), std::string(keep) + "/" + name,
                                  std::filesystem::copy_options::overwrite_existing);
   INFO(fmt::format("{}", fmt::join(lines, "\n")));
   REQUIRE(lines.size() == 5);
-  CHECK_THAT(lines[1], Catch::StartsWith("light.set 3 color="));
+  CHECK_THAT(lines[2], Catch::StartsWith("light.set 3 color="));
   CHECK(lines[4] == "select material 1");
 }
