@@ -23,7 +23,9 @@ const std::string k_ring = std::string("'") + LUCERNA_SOURCE_DIR + "/scenes/ring
 
 Run render(const std::string& more) {
   return run("render " + k_ring +
-             " --size 16x16 --samples 4 --quiet --device cpu --set lights.sampling=power " + more);
+             " --size 16x16 --samples 4 --quiet --device cpu --set lights.sampling=power --set "
+             "components.caustic=path " +
+             more);
 }
 
 size_t lines(const std::string& text) { return size_t(std::count(text.begin(), text.end(), '\n')); }
