@@ -35,7 +35,8 @@
 //
 // Perspective cameras with extras {"lucerna": {"f_number": .., "focus_distance": ..}} have a lens (Lens),
 // with "aperture_blades" and "aperture_rotation" [radians] if given; "shift_right" and "shift_up" are
-// Camera::shift, "section" is Camera::section; "projection": "panorama" or "fisheye" is Camera::wide. An invalid lens is left out with a warning.
+// Camera::shift, "section" is Camera::section; "projection": "panorama" or "fisheye" is Camera::wide. An
+// invalid lens is left out with a warning.
 //
 // Nodes or meshes with extras {"portal": true} are portals of the sky instead of surfaces (portals.h).
 //
