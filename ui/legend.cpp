@@ -94,14 +94,31 @@ void tile_sample(ImDrawList* list, const ImVec2& lo, uint32_t state) {
   }
 }
 
-/// A square of a colour and its meaning; returns the x behind it.
-float swatch(ImDrawList* list, const ImVec2& at, ImU32 colour, const std::string& name) {
+/// A square of a colour and its meaning.
+void swatch(ImDrawList* list, const ImVec2& at, ImU32 colour, const std::string& name) {
   ImFont* font = theme().fonts.small;
   list->AddRectFilled({at.x, at.y + px(3)}, {at.x + px(10), at.y + px(13)}, colour, px(2));
-  if (name.empty()) return at.x + px(12);
-  const float end = at.x + px(14) + text_width(name, font);
-  draw_text(list, {at.x + px(14), at.y}, {end + px(2), at.y + px(16)}, name, colour::text, Align::left, font);
-  return end + px(10);
+  if (name.empty()) return;
+  const float end = at.x + px(16) + text_width(name, font);
+  draw_text(list, {at.x + px(14), at.y}, {end, at.y + px(16)}, name, colour::text, Align::left, font);
+}
+
+/// Places of marks in lines, from the corner of the first: marks with names go on in the next line; of
+/// colours without names only those of the first line are shown.
+std::vector<ImVec2> places_in_lines(const std::vector<solvers::Legend::Mark>& marks) {
+  std::vector<ImVec2> places;
+  ImVec2 at(0, 0);
+  for (const solvers::Legend::Mark& mark : marks) {
+    const bool named = !mark.text.empty();
+    const float width = named ? px(14) + text_width(mark.text, theme().fonts.small) : px(10);
+    if (at.x > 0 && at.x + width > px(k_ramp_width)) {
+      if (!named) break;
+      at = {0, at.y + px(18)};
+    }
+    places.push_back(at);
+    at.x += width + px(named ? 10.0f : 2.0f);
+  }
+  return places;
 }
 
 /// Labels of a solver's ramp; by default the ticks of its range.
@@ -131,7 +148,8 @@ constexpr float k_title = 20, k_ramp = 28, k_mark = 18, k_between = 8;  // heigh
 float body_height(const solvers::Legend& legend) {
   float h = legend.ramp ? px(k_ramp) : 0;
   if (!legend.marks.empty())
-    h += legend.marks_in_line ? px(20) : px(k_mark * static_cast<float>(legend.marks.size()));
+    h += legend.marks_in_line ? places_in_lines(legend.marks).back().y + px(20)
+                              : px(k_mark * static_cast<float>(legend.marks.size()));
   return h;
 }
 
@@ -140,14 +158,15 @@ void draw_body(ImDrawList* list, ImVec2 at, const solvers::Legend& legend) {
     ramp_bar(list, at, *legend.ramp, ramp_labels(legend));
     at.y += px(k_ramp);
   }
-  float x = at.x;
+  if (legend.marks_in_line) {
+    const std::vector<ImVec2> places = places_in_lines(legend.marks);
+    for (size_t i = 0; i < places.size(); ++i)
+      swatch(list, {at.x + places[i].x, at.y + places[i].y}, ink(legend.marks[i].ink), legend.marks[i].text);
+    return;
+  }
   for (const solvers::Legend::Mark& mark : legend.marks) {
-    if (legend.marks_in_line && x >= at.x + px(k_ramp_width - 24)) break;
-    const float end = swatch(list, {x, at.y}, ink(mark.ink), mark.text);
-    if (legend.marks_in_line)
-      x = end;
-    else
-      at.y += px(k_mark);
+    swatch(list, at, ink(mark.ink), mark.text);
+    at.y += px(k_mark);
   }
 }
 
