@@ -80,19 +80,14 @@ void trace_block(Controls& controls, const commands::Workspace& work, PathsView&
   if (!work.traced->problem.empty()) return paragraph(work.traced->problem, colour::warning);
   if (!work.traced->paths) return paragraph("Tracing\xE2\x80\xA6");
   const Recording& all = *work.traced->paths;
-  double light = 0;
-  size_t dark = 0;
-  for (const recording::Path& path : all.paths) {
-    const double y = recording::luminance_of(all.events_of(path));
-    light += y, dark += y <= 0 ? 1 : 0;
-  }
   const auto n = double(std::max<size_t>(all.paths.size(), 1));
   gap(4);
   if (!all.paths.empty())
     value_row("Pixel", fmt::format("{} {}", all.paths[0].pixel % all.width, all.paths[0].pixel / all.width),
               "Column and row, from the upper left.");
-  value_row("Mean light", fmt::format("{:.4g}", light / n), "Mean luminance that these paths bring.");
-  value_row("Without light", share_text(double(dark), n), "Paths that bring none.");
+  value_row("Mean light", fmt::format("{:.4g}", work.traced->mean_light),
+            "Mean luminance that these paths bring.");
+  value_row("Without light", share_text(double(work.traced->dark), n), "Paths that bring none.");
   if (const uint64_t lost = all.lost())
     value_row("Events without room", count_text(double(lost)), "Their light is missing in this list.",
               colour::warning);

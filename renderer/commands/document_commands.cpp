@@ -213,26 +213,26 @@ void add_material_commands(Registry& registry, OpenScene& open) {
        .run =
            [&open](const Arguments& a) {
              Document::Material& m = open.edit().materials[open.material_index(a.text("material"))];
-             if (a.has("color")) m.color = a.vector("color");
-             if (a.has("roughness")) m.roughness = a.number("roughness");
-             if (a.has("metallic")) m.metallic = a.number("metallic");
-             if (a.has("clearcoat")) m.clearcoat = a.number("clearcoat");
-             if (a.has("clearcoat_roughness")) m.clearcoat_roughness = a.number("clearcoat_roughness");
-             if (a.has("sheen")) m.sheen_color = a.vector("sheen");
-             if (a.has("sheen_roughness")) m.sheen_roughness = a.number("sheen_roughness");
-             if (a.has("anisotropy")) m.anisotropy = a.number("anisotropy");
+             take(a, "color", m.color);
+             take(a, "roughness", m.roughness);
+             take(a, "metallic", m.metallic);
+             take(a, "clearcoat", m.clearcoat);
+             take(a, "clearcoat_roughness", m.clearcoat_roughness);
+             take(a, "sheen", m.sheen_color);
+             take(a, "sheen_roughness", m.sheen_roughness);
+             take(a, "anisotropy", m.anisotropy);
              if (a.has("anisotropy_rotation"))
                m.anisotropy_rotation = glm::radians(a.number("anisotropy_rotation"));
-             if (a.has("dispersion")) m.dispersion = a.number("dispersion");
-             if (a.has("iridescence")) m.iridescence = a.number("iridescence");
-             if (a.has("film_thickness")) m.iridescence_maximum = a.number("film_thickness");
-             if (a.has("emission")) m.emission = a.vector("emission");
+             take(a, "dispersion", m.dispersion);
+             take(a, "iridescence", m.iridescence);
+             take(a, "film_thickness", m.iridescence_maximum);
+             take(a, "emission", m.emission);
              float strength = strength_of(m.emission);
              const vec3 tint = requested_tint(a, "emission_color", tint_of(m.emission));
-             if (a.has("strength")) strength = a.number("strength");
+             take(a, "strength", strength);
              if (a.has("strength") || a.has("emission_color") || a.has("kelvin"))
                m.emission = strength * tint;
-             if (a.has("on")) m.emits = a.boolean("on");
+             take(a, "on", m.emits);
            },
        .undoable = true});
 }

@@ -61,7 +61,7 @@ void check_kind(const Arguments& a, const scene::Light& light) {
 void aim(const Arguments& a, scene::Light& light) {
   constexpr float degree = k_pi / 180;
   const vec3 before = light.direction;
-  if (a.has("position")) light.position = a.vector("position");
+  take(a, "position", light.position);
   if (a.has("direction")) {
     const vec3 d = a.vector("direction");
     if (!(glm::length(d) > 1e-6f)) throw Error("", "direction: its length is 0");
@@ -69,8 +69,8 @@ void aim(const Arguments& a, scene::Light& light) {
   }
   if (a.has("azimuth") || a.has("elevation")) {
     Bearing bearing = bearing_of(light.direction);
-    if (a.has("azimuth")) bearing.azimuth = a.number("azimuth");
-    if (a.has("elevation")) bearing.elevation = a.number("elevation");
+    take(a, "azimuth", bearing.azimuth);
+    take(a, "elevation", bearing.elevation);
     turn_to(light, direction_from(bearing));
   }
   // Turned by hand: no longer where a date puts it.
@@ -89,12 +89,12 @@ void aim(const Arguments& a, scene::Light& light) {
 
 /// Applies the requested shape.
 void shape(const Arguments& a, scene::Light& light) {
-  if (a.has("width")) light.width = a.number("width");
-  if (a.has("length")) light.width = a.number("length");
-  if (a.has("height")) light.height = a.number("height");
-  if (a.has("radius")) light.radius = a.number("radius");
-  if (a.has("two_sided")) light.two_sided = a.boolean("two_sided");
-  if (a.has("visible")) light.visible = a.boolean("visible");
+  take(a, "width", light.width);
+  take(a, "length", light.width);
+  take(a, "height", light.height);
+  take(a, "radius", light.radius);
+  take(a, "two_sided", light.two_sided);
+  take(a, "visible", light.visible);
   if (a.has("right")) {
     const vec3 right = a.vector("right");
     if (light.kind == scene::LightKind::tube && glm::length(right) > 1e-6f) {
@@ -115,11 +115,11 @@ void shape(const Arguments& a, scene::Light& light) {
 void shine(const Arguments& a, scene::Light& light) {
   float strength = strength_of(light.intensity);
   const vec3 tint = requested_tint(a, "color", tint_of(light.intensity));
-  if (a.has("intensity")) strength = a.number("intensity");
+  take(a, "intensity", strength);
   if (a.has("power")) strength = a.number("power") / std::max(float(scene::solid_angle(light)), 1e-9f);
   if (a.has("intensity") || a.has("power") || a.has("color") || a.has("kelvin"))
     light.intensity = strength * tint;
-  if (a.has("on")) light.enabled = a.boolean("on");
+  take(a, "on", light.enabled);
 }
 
 }  // namespace
@@ -137,6 +137,16 @@ Parameter kelvin() {
 void exclude(const Arguments& a, const char* one, const char* other) {
   if (a.has(one) && a.has(other))
     throw Error("", fmt::format("{} and {} exclude each other: give one", one, other));
+}
+
+void take(const Arguments& a, const char* name, float& value) {
+  if (a.has(name)) value = a.number(name);
+}
+void take(const Arguments& a, const char* name, vec3& value) {
+  if (a.has(name)) value = a.vector(name);
+}
+void take(const Arguments& a, const char* name, bool& value) {
+  if (a.has(name)) value = a.boolean(name);
 }
 
 vec3 requested_tint(const Arguments& a, const char* color, const vec3& before) {

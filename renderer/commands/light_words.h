@@ -12,6 +12,10 @@ namespace lucerna::commands {
 Parameter kelvin();
 /// Throws Error if both are given.
 void exclude(const Arguments& a, const char* one, const char* other);
+/// Sets a value to the argument of that name, if it is given.
+void take(const Arguments& a, const char* name, float& value);
+void take(const Arguments& a, const char* name, vec3& value);
+void take(const Arguments& a, const char* name, bool& value);
 /// The requested colour, its strongest channel 1, from the parameter of that name or in kelvin; else
 /// `before`.
 vec3 requested_tint(const Arguments& a, const char* color, const vec3& before);

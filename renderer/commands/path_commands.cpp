@@ -19,6 +19,13 @@ PathInquiry& traced_paths(Workspace& work) {
   return *work.traced;
 }
 
+/// The explained noise. Throws Error if there is none.
+const recording::NoiseReport& explained_noise(const Workspace& work) {
+  if (!work.noise || !work.noise->report)
+    throw Error("", "no noise is explained; inspect.noise explains that of the picture");
+  return *work.noise->report;
+}
+
 void add_trace(Workspace& work) {
   work.registry.add(
       {.name = "inspect.trace",
@@ -114,21 +121,19 @@ void add_noise(Workspace& work) {
        .done = [&work](const Arguments&) { return !work.noise || work.noise->done(); },
        .recorded = false,
        .needs_outcome = true});
-  work.registry.add(
-      {.name = "inspect.cure",
-       .help = "Changes the settings that inspect.noise has found to reduce the noise.",
-       .parameters = {},
-       .run =
-           [&work](const Arguments&) {
-             if (!work.noise || !work.noise->report)
-               throw Error("", "no noise is explained; inspect.noise explains that of the picture");
-             const recording::NoiseCure& cure = work.noise->report->cure;
-             if (cure.settings.empty())
-               throw Error("", cure.reason.empty() ? "no setting is known that would reduce this noise"
-                                                   : cure.reason);
-             for (const auto& [key, value] : cure.settings) work.run(line("set", key, value));
-           },
-       .recorded = false});
+  work.registry.add({.name = "inspect.cure",
+                     .help = "Changes the settings that inspect.noise has found to reduce the noise.",
+                     .parameters = {},
+                     .run =
+                         [&work](const Arguments&) {
+                           const recording::NoiseCure& cure = explained_noise(work).cure;
+                           if (cure.settings.empty())
+                             throw Error("", cure.reason.empty()
+                                                 ? "no setting is known that would reduce this noise"
+                                                 : cure.reason);
+                           for (const auto& [key, value] : cure.settings) work.run(line("set", key, value));
+                         },
+                     .recorded = false});
 }
 
 void add_path_values(Workspace& work) {
@@ -141,22 +146,13 @@ void add_path_values(Workspace& work) {
       [&work] { return word(traced_paths(work).order.size()); });
   add("paths.lost", "events of them for which there was no room",
       [&work] { return word(traced_paths(work).paths->lost()); });
-  add("paths.light", "their mean luminance", [&work] {
-    const recording::Recording& all = *traced_paths(work).paths;
-    double sum = 0;
-    for (const recording::Path& path : all.paths) sum += recording::luminance_of(all.events_of(path));
-    return word(sum / double(std::max<size_t>(all.paths.size(), 1)));
-  });
+  add("paths.light", "their mean luminance", [&work] { return word(traced_paths(work).mean_light); });
   add("paths.followed", "the followed one as text: word, component, light", [&work] {
     const PathInquiry& traced = traced_paths(work);
     if (traced.followed < 0) throw Error("", "no path is followed");
     return recording::path_text(*traced.paths, traced.order[size_t(traced.followed)]);
   });
-  const auto report = [&work]() -> const recording::NoiseReport& {
-    if (!work.noise || !work.noise->report)
-      throw Error("", "no noise is explained; inspect.noise explains that of the picture");
-    return *work.noise->report;
-  };
+  const auto report = [&work]() -> const recording::NoiseReport& { return explained_noise(work); };
   add("noise.text", "explanation of the noise (inspect.noise)", [report] { return report().sentence; });
   add("noise.component", "component with the largest share of it",
       [report] { return report().components.empty() ? std::string("none") : report().components[0].name; });

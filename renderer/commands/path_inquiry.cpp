@@ -22,11 +22,14 @@ void PathInquiry::refresh() {
     paths = traced.get();
     order = recording::by_contribution(*paths);
     double light = 0;
-    for (const recording::Path& path : paths->paths) light += recording::luminance_of(paths->events_of(path));
+    for (const recording::Path& path : paths->paths) {
+      const double y = recording::luminance_of(paths->events_of(path));
+      light += y, dark += y <= 0 ? 1 : 0;
+    }
+    mean_light = light / double(std::max<size_t>(order.size(), 1));
     std::string text = fmt::format("{} paths of pixel {} {}: mean light {:.4g}", order.size(),
                                    order.empty() ? 0 : paths->paths[0].pixel % paths->width,
-                                   order.empty() ? 0 : paths->paths[0].pixel / paths->width,
-                                   light / double(std::max<size_t>(order.size(), 1)));
+                                   order.empty() ? 0 : paths->paths[0].pixel / paths->width, mean_light);
     if (!order.empty()) text += "; brightest: " + recording::path_text(*paths, order[0]);
     if (const uint64_t lost = paths->lost())
       text += fmt::format("; {} events had no room: their light is missing", lost);

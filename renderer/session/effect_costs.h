@@ -21,7 +21,6 @@ struct EffectCosts {
   uint32_t width = 0, height = 0;   ///< of the picture
   double sample_ms = 0;             ///< of a path-traced sample of the picture with all effects
   std::vector<EffectCost> effects;  ///< the most expensive first
-  std::string settings;  ///< for which they were measured, e.g. the variant: plan::traced_scene_key
 };
 
 /// The three most expensive ones in a line.

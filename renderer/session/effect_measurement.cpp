@@ -5,7 +5,6 @@
 
 #include "base/timer.h"
 #include "plan/facts.h"
-#include "plan/traced_scene.h"
 
 namespace lucerna::session {
 namespace {
@@ -56,7 +55,6 @@ EffectMeasurement::EffectMeasurement(Renderer& picture, const RendererOptions& o
     leave_out(**renderer, "");
   }
   result_.width = width, result_.height = height;
-  result_.settings = plan::traced_scene_key(settings_);
   for (const plan::Effect& effect : with_->facts().effects) {
     const size_t component = component_of(std::string(effect.key));
     const bool computed = component < paths::k_component_count &&
@@ -135,7 +133,6 @@ EffectCosts EffectMeasurement::take() {
   result_.sample_ms = fastest_of(all_rounds_).ms;
   std::stable_sort(result_.effects.begin(), result_.effects.end(),
                    [](const EffectCost& a, const EffectCost& b) { return a.ms > b.ms; });
-  at_ = result_.effects.size();
   return result_;
 }
 

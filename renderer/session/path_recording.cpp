@@ -3,14 +3,11 @@
 #include <algorithm>
 #include <map>
 
+#include "scene/display_name.h"
 #include "scene/light_groups.h"
 
 namespace lucerna::session {
 namespace {
-
-std::string named_or(const std::string& name, const char* kind, size_t index) {
-  return name.empty() ? fmt::format("{} {}", kind, index + 1) : name;
-}
 
 uint32_t material_of(const upload::FlatScene& flat, uint32_t primitive) {
   return flat.triangles[primitive].w & shared::k_triangle_material_mask;
@@ -75,7 +72,7 @@ recording::Recording PathRecording::begin(const PictureView& picture) const {
   const scene::Scene& scene = *picture.world.scene;
   all.scene = scene.name;
   for (size_t m = 0; m < scene.materials.size(); ++m)
-    all.materials.push_back(named_or(scene.materials[m].name, "material", m));
+    all.materials.push_back(scene::display_name(scene.materials[m].name, "material", m));
   all.lights = LightNames(picture.world.flat, all.materials).names;
   if (picture.world.flat.groups)
     for (const scene::LightGroup& group : picture.world.flat.groups->groups) all.groups.push_back(group.name);

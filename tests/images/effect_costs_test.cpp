@@ -10,14 +10,6 @@ using namespace lucerna;
 
 namespace {
 
-/// A room under a sky, with a lamp and a bright distant one.
-scene::Scene lit_room() {
-  scene::Scene s = test::block_room(true);
-  s.lights.push_back({.name = "moon", .kind = scene::LightKind::directional, .intensity = vec3(0.5f)});
-  s.lights.back().direction = {0, -1, 0};
-  return s;
-}
-
 session::EffectCosts measure(session::Renderer& r) {
   session::EffectMeasurement m(r, test::renderer_options());
   double progress = 0;
@@ -46,7 +38,7 @@ bool measured(const session::EffectCosts& costs, const std::string& key) {
 TEST_CASE("parts of lights and of components sum to the whole picture; absent effects are not measured") {
   session::Renderer r(test::renderer_options());
   r.set_size(32, 24);
-  r.set_scene(std::make_shared<scene::Scene>(lit_room()));
+  r.set_scene(std::make_shared<scene::Scene>(test::room_under_moon()));
   const film::Image before = test::finish(r);
   const session::EffectCosts costs = measure(r);
   CHECK(costs.width == 32);
@@ -78,7 +70,7 @@ TEST_CASE("parts of lights and of components sum to the whole picture; absent ef
 TEST_CASE("a cancelled part of a measurement is repeated") {
   session::Renderer r(test::renderer_options());
   r.set_size(16, 16);
-  r.set_scene(std::make_shared<scene::Scene>(lit_room()));
+  r.set_scene(std::make_shared<scene::Scene>(test::room_under_moon()));
   session::EffectMeasurement m(r, test::renderer_options());
   bool cancels = false, cancelled = false;
   for (int steps = 0; !m.done() && steps < 10000; ++steps) {

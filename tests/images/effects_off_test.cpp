@@ -10,14 +10,6 @@ using namespace lucerna;
 
 namespace {
 
-/// A room under a sky, with a lamp, and a distant one.
-scene::Scene lit_room() {
-  scene::Scene s = test::block_room(true);
-  s.lights.push_back({.name = "moon", .kind = scene::LightKind::directional, .intensity = vec3(0.5f)});
-  s.lights.back().direction = {0, -1, 0};
-  return s;
-}
-
 film::Image picture(session::Renderer& r) {
   r.settings().set("samples", "4");
   r.apply_settings();
@@ -40,7 +32,7 @@ film::Image picture_of(const scene::Scene& scene) {
 }  // namespace
 
 TEST_CASE("an effect that is off loses exactly its light, and comes back with all of it") {
-  const scene::Scene room = lit_room();
+  const scene::Scene room = test::room_under_moon();
   scene::Scene without = room;
   without.lights[0].enabled = false;
   session::Renderer r(test::renderer_options());
@@ -67,7 +59,7 @@ TEST_CASE("an effect that is off loses exactly its light, and comes back with al
 TEST_CASE("with everything off there is a black picture; an unknown effect changes nothing") {
   session::Renderer r(test::renderer_options());
   r.set_size(24, 24);
-  r.set_scene(std::make_shared<scene::Scene>(lit_room()));
+  r.set_scene(std::make_shared<scene::Scene>(test::room_under_moon()));
   const film::Image whole = picture(r);
   r.settings().set("effects.off", "point, shine");
   CHECK_THROWS_WITH(r.apply_settings(), Catch::Contains("effects.off") && Catch::Contains("'shine'"));

@@ -109,6 +109,14 @@ inline scene::Scene block_room(bool open = false) {
   return s;
 }
 
+/// block_room(true) with a distant lamp, the moon, straight above.
+inline scene::Scene room_under_moon() {
+  scene::Scene s = block_room(true);
+  s.lights.push_back({.name = "moon", .kind = scene::LightKind::directional, .intensity = vec3(0.5f)});
+  s.lights.back().direction = {0, -1, 0};
+  return s;
+}
+
 /// A closed room of 2 x 1 x 2 m around `at`, the middle of its floor, with an emissive panel `below` the
 /// ceiling's right half; the camera is under the ceiling and looks down: right is +x, up in the picture -z.
 /// Its materials: 0 walls, 1 panel; its meshes: floor, ceiling, back, front, left, right, panel.
