@@ -153,7 +153,7 @@ void draw_forecast(ImDrawList* list, const Plot& plot, const Accuracy& a, double
   dashed_line(list, {tip, plot.at(band->middle, target)}, colour::with_alpha(k_sum, 0.55f), px(3), px(3), 1);
 }
 
-void card(const std::vector<std::pair<std::string, ImU32>>& rows) {
+void tooltip_rows(const std::vector<std::pair<std::string, ImU32>>& rows) {
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(10), px(7)});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowRounding, px(3));
   ImGui::BeginTooltip();
@@ -265,7 +265,7 @@ void hover(const AccuracyView& view, const Plot& plot, const Accuracy& a) {
     if (other.empty()) rows.emplace_back("Same settings", colour::text_dim);
     for (const std::string& row : other) rows.emplace_back(row, colour::text);
   }
-  card(rows);
+  tooltip_rows(rows);
 }
 
 /// The error figures, each in its line's colour; a tooltip explains each.

@@ -13,20 +13,20 @@ namespace lucerna::ui {
 namespace {
 
 constexpr size_t k_most_rows = 40, k_most_shares = 5;
-constexpr float k_row = 18;
+constexpr float k_path_row = 18;
 
 using recording::Event;
 using recording::Recording;
 
 /// A row that can be pressed, with texts at its left and right, a mark before them and a bar behind.
-struct Row {
+struct PathRow {
   std::string left, right, help;
   ImU32 mark = 0;
   float bar = 0;  ///< 0..1
   bool on = false, faint = false;
 };
-bool row(int id, const Row& r) {
-  const float width = ImGui::CalcItemWidth(), height = px(k_row), indent = px(14);
+bool row(int id, const PathRow& r) {
+  const float width = ImGui::CalcItemWidth(), height = px(k_path_row), indent = px(14);
   const ImVec2 lo = ImGui::GetCursorScreenPos(), hi(lo.x + width, lo.y + height);
   ImDrawList* list = ImGui::GetWindowDrawList();
   ImGui::PushID(id);

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double k_hold = 0.5;  // seconds
 constexpr float k_still = 4;    // design pixels that the pointer may move
-constexpr float k_row = 16, k_pad = 10, k_edge = 12;
+constexpr float k_line = 16, k_pad = 10, k_edge = 12;
 
 }  // namespace
 
@@ -44,7 +44,7 @@ void draw_pixel_card(const commands::Workspace& work, const Area& picture) {
   float width = 0;
   for (const std::string& line : lines) width = std::max(width, text_width(line, font));
   width = std::min(width + 2 * px(k_pad), picture.width() - 2 * px(k_edge));
-  const float height = std::min(px(k_row) * static_cast<float>(lines.size() + 1) + 2 * px(k_pad),
+  const float height = std::min(px(k_line) * static_cast<float>(lines.size() + 1) + 2 * px(k_pad),
                                 picture.height() - 2 * px(k_edge));
   if (width < px(80) || height < px(40)) return;
   // On the side of the picture that the pixel is not on.
@@ -57,13 +57,13 @@ void draw_pixel_card(const commands::Workspace& work, const Area& picture) {
   list->AddCircle(at, px(5), colour::accent, 0, px(1));
   float y = lo.y + px(k_pad);
   for (const std::string& line : lines) {
-    if (y + px(k_row) > lo.y + height) break;
-    draw_text(list, {lo.x + px(k_pad), y}, {lo.x + width - px(k_pad), y + px(k_row)},
+    if (y + px(k_line) > lo.y + height) break;
+    draw_text(list, {lo.x + px(k_pad), y}, {lo.x + width - px(k_pad), y + px(k_line)},
               elided(line, width - 2 * px(k_pad), font), colour::text, Align::left, font);
-    y += px(k_row);
+    y += px(k_line);
   }
-  if (y + px(k_row) <= lo.y + height)
-    draw_text(list, {lo.x + px(k_pad), y}, {lo.x + width - px(k_pad), y + px(k_row)}, "I: trace its paths",
+  if (y + px(k_line) <= lo.y + height)
+    draw_text(list, {lo.x + px(k_pad), y}, {lo.x + width - px(k_pad), y + px(k_line)}, "I: trace its paths",
               colour::text_faint, Align::left, font);
 }
 

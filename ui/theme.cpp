@@ -130,7 +130,7 @@ void set_style(float scale) {
       set(ImGuiCol_ButtonActive, field_active);
   set(ImGuiCol_Header, field), set(ImGuiCol_HeaderHovered, field_hover),
       set(ImGuiCol_HeaderActive, field_active);
-  set(ImGuiCol_Separator, hairline), set(ImGuiCol_SeparatorHovered, accent),
+  set(ImGuiCol_Separator, colour::hairline), set(ImGuiCol_SeparatorHovered, accent),
       set(ImGuiCol_SeparatorActive, accent);
   set(ImGuiCol_TextSelectedBg, accent_dim), set(ImGuiCol_NavHighlight, accent);
   set(ImGuiCol_PlotHistogram, accent), set(ImGuiCol_ModalWindowDimBg, IM_COL32(16, 16, 16, 150));

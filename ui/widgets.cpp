@@ -2,7 +2,6 @@
 
 #include "shown_lines.h"
 
-#define IMGUI_DEFINE_MATH_OPERATORS
 #include <imgui_internal.h>
 
 #include <fmt/format.h>

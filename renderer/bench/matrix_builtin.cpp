@@ -4,7 +4,7 @@
 namespace lucerna::bench {
 namespace {
 
-const char* const k_quick = R"({
+const char* const k_quick_matrix = R"({
   "name": "quick",
   "repeats": 3,
   "scenes": [
@@ -24,7 +24,7 @@ const char* const k_quick = R"({
   ]
 })";
 
-const char* const k_full = R"({
+const char* const k_full_matrix = R"({
   "name": "full",
   "repeats": 5,
   "reference": {"samples": 16384},
@@ -54,9 +54,9 @@ const char* const k_full = R"({
   ]
 })";
 
-/// k_full with the settings that solvers provide for it.
+/// k_full_matrix with the settings that solvers provide for it.
 std::string full_matrix() {
-  std::string text = k_full, rows;
+  std::string text = k_full_matrix, rows;
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const std::string& row : solver->bench_settings) rows += "    " + row + ",\n";
   const std::string mark = "@SOLVERS@";
@@ -67,7 +67,7 @@ std::string full_matrix() {
 
 std::vector<BuiltinInfo> builtin_matrices() {
   std::vector<BuiltinInfo> all{
-      {"quick", "three scenes in small pictures, under ten minutes on two cores", k_quick},
+      {"quick", "three scenes in small pictures, under ten minutes on two cores", k_quick_matrix},
       {"full", "larger pictures, the atrium too, more budgets; hours", full_matrix()}};
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const solvers::BenchInfo& bench : solver->benches)

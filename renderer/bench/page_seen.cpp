@@ -153,7 +153,7 @@ std::string references_table(const Json& report) {
   return html + "</table>\n";
 }
 
-std::string scene_part(const Json& report, const Json& scene, const fs::path& folder) {
+std::string seen_part(const Json& report, const Json& scene, const fs::path& folder) {
   return fmt::format("<h2>{} <small class=\"dim\">{} pixels</small></h2>\n",
                      escape_markup(text_of(scene, "name")), escape_markup(text_of(scene, "size"))) +
          seen_plot(report, scene) + pictures(scene, folder, k_as_seen);
@@ -171,7 +171,7 @@ std::string make_seen_page(const Json& report, const fs::path& folder) {
         "time is what it would be if the squared error went on falling as one over the time; <b>&lt;</b>: "
         "reached by the shortest render; <b>–</b>: cannot be foretold.</p>\n" +
         time_table(report, "seen_time");
-    for (const Json& scene : report.at("scenes")) html += scene_part(report, scene, folder);
+    for (const Json& scene : report.at("scenes")) html += seen_part(report, scene, folder);
   }
   return html + references_table(report) + machine_facts(report) + "</main></body></html>\n";
 }

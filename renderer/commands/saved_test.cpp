@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const std::string k_head = "# A session of Lucerna as a test; lucerna script FILE runs it.\n";
+const std::string k_first_line = "# A session of Lucerna as a test; lucerna script FILE runs it.\n";
 
 /// A line with its files relative to the script, or "" for a line that a test does not need.
 std::string portable(const Registry& registry, const std::string& text, const fs::path& folder) {
@@ -54,7 +54,7 @@ std::string session_test(const Workspace& work, const std::string& file) {
   if (!picture || picture->coarse || picture->samples < 2)
     throw Error("", "the picture has fewer than two samples, so its noise is not known yet");
   const fs::path folder = absolute_path(file).parent_path();
-  std::string text = k_head;
+  std::string text = k_first_line;
   text += line("view.size", picture->width, picture->height) + "\n";
   for (const std::string& recorded : work.history.script()) {
     // The size is above, and the test waits for samples at its end, paused or not.
@@ -70,7 +70,7 @@ std::string session_test(const Workspace& work, const std::string& file) {
 
 void save_test(Workspace& work, const std::string& file) {
   const std::string picture = test_picture(file), text = session_test(work, file);
-  const bool ours = is_plain_file(file) && read_file(file).starts_with(k_head);
+  const bool ours = is_plain_file(file) && read_file(file).starts_with(k_first_line);
   if (file_exists(file) && !ours) throw Error(file, "exists and is no saved test: choose another name");
   if (file_exists(picture) && !ours) throw Error(picture, "exists: choose another name for the test");
   film::check_writable(picture);

@@ -21,11 +21,6 @@ bool is_name(const std::string& text) {
          std::all_of(text.begin(), text.end(), inner);
 }
 
-std::string one_form(const std::string& file) {
-  std::error_code error;
-  return std::filesystem::weakly_canonical(file, error).string();
-}
-
 constexpr const char* k_name_form = "lower-case letters, digits and _, first a letter";
 
 /// The first word of a line, as written.
@@ -47,7 +42,7 @@ class Expander {
     name_ = name, lines_ = &lines;
     const bool is_file = file_exists(name);
     folder_ = is_file ? absolute_path(name).parent_path().string() : "";
-    if (is_file) open_.push_back(one_form(name));
+    if (is_file) open_.push_back(canonical_path(name));
     block(0, lines.size());
     if (is_file) open_.pop_back();
     name_ = before, folder_ = folder, lines_ = outer;
@@ -150,7 +145,7 @@ class Expander {
     const std::vector<Word> words = split(line, at);
     if (words.size() != 2) throw Error(at, "include: expected include FILE");
     const std::string file = beside_script(folder_, words[1].text);
-    if (std::find(open_.begin(), open_.end(), one_form(file)) != open_.end())
+    if (std::find(open_.begin(), open_.end(), canonical_path(file)) != open_.end())
       throw_error(at, "include: {} is already being read: a script cannot include itself", file);
     if (open_.size() > k_most_includes)
       throw_error(at, "include: more than {} scripts within each other", k_most_includes);
@@ -204,7 +199,7 @@ class Expander {
   Variables variables_;
   std::set<std::string> mentioned_;
   std::vector<std::string> loops_;
-  std::vector<std::string> open_;  ///< files being read, by one_form()
+  std::vector<std::string> open_;  ///< files being read, by canonical_path()
   const std::vector<std::string>* lines_ = nullptr;
   std::string name_, folder_;
   std::vector<Step> steps_;
@@ -238,6 +233,11 @@ std::pair<std::string, std::string> parse_variable(const std::string& text, cons
   if (at == std::string::npos || !is_name(name) || name == "here")
     throw_error(where, "'{}': expected NAME=VALUE, with a name of {}", text, k_name_form);
   return {name, text.substr(at + 1)};
+}
+
+std::string canonical_path(const std::string& file) {
+  std::error_code error;
+  return std::filesystem::weakly_canonical(file, error).string();
 }
 
 std::string beside_script(const std::string& folder, const std::string& file) {

@@ -50,6 +50,9 @@ std::vector<std::string> read_script(const std::string& file);
 /// NAME=VALUE as a variable. Throws Error if NAME is none: lower-case letters, digits and _, first a letter.
 std::pair<std::string, std::string> parse_variable(const std::string& text, const std::string& where);
 
+/// Without links, '.' and '..', as far as the file exists: two names of one file are equal.
+std::string canonical_path(const std::string& file);
+
 /// A file named in a line of a script: relative to the folder of the script's file.
 std::string beside_script(const std::string& folder, const std::string& file);
 

@@ -22,11 +22,6 @@ const Call& root(const Call& call) {
   return *at;
 }
 
-std::string one_form(const std::string& file) {
-  std::error_code error;
-  return std::filesystem::weakly_canonical(file, error).string();
-}
-
 /// Without the beginning that names the place.
 std::string without(const std::string& where, const std::string& message) {
   return message.starts_with(where + ": ") ? message.substr(where.size() + 2) : message;
@@ -44,7 +39,7 @@ ScriptRunner::ScriptRunner(Workspace& work, ReportFolder& report, ScriptHost hos
 void ScriptRunner::start(const std::vector<std::string>& lines, const std::string& name, bool stay,
                          const Variables& variables) {
   result_.script = name;
-  const auto call = std::make_shared<const Call>(Call{.file = one_form(name), .by = {}, .own = true});
+  const auto call = std::make_shared<const Call>(Call{.file = canonical_path(name), .by = {}, .own = true});
   for (Step& step : parse_script(work_.registry, lines, name, variables)) steps_.push_back(std::move(step));
   if (!stay) steps_.push_back({"quit", name + ": end", "", {}});
   for (Step& step : steps_) step.call = call;
@@ -157,7 +152,7 @@ void ScriptRunner::give_up(const Step& step, const std::string& message) {
 
 void ScriptRunner::run_script(const std::string& file) {
   const std::shared_ptr<const Call> by = in_script_ ? steps_.front().call : nullptr;
-  const std::string form = one_form(file);
+  const std::string form = canonical_path(file);
   for (const Call* call = by.get(); call; call = call->by.get())
     if (call->file == form) throw Error(file, "is already running: a script cannot run itself");
   const auto call =

@@ -1,7 +1,6 @@
 #include "upload/flatten.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <glm/gtc/type_ptr.hpp>
@@ -19,7 +18,6 @@ namespace lucerna::upload {
 namespace {
 
 using namespace shared;
-float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
 
 bool any(const vec3& c) { return c.x > 0 || c.y > 0 || c.z > 0; }
 

@@ -2,6 +2,7 @@
 // Converts a scene to the device's arrays (shaders/shared/scene.h). Pure host code, so that it is testable
 // and can be written to a file for the stand-alone ray bench.
 #include <array>
+#include <bit>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,6 +14,9 @@
 #include "upload/portal_tables.h"
 
 namespace lucerna::upload {
+
+/// A whole number as it is stored in a texel of floats.
+inline float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
 
 /// Features that the scene needs; become #defines, so that nothing else is compiled in.
 struct Effects {

@@ -11,7 +11,6 @@ namespace lucerna::upload {
 namespace {
 
 using namespace shared;
-float as_float(uint32_t bits) { return std::bit_cast<float>(bits); }
 
 /// Texels of the light table (shaders/shared/scene.h).
 using LightTexels = std::array<vec4, k_light_texels>;

@@ -12,6 +12,8 @@
 #include "support/folder.h"
 #include "support/run.h"
 
+namespace bench_interiors_tests {
+
 namespace fs = std::filesystem;
 using Catch::Contains;
 using lucerna::test::Run;
@@ -142,3 +144,5 @@ TEST_CASE("bench interiors refuses impossible measurements") {
   refused("--seconds 5 --samples 4", "--seconds");
   refused("--seconds 0", "--seconds");
 }
+
+}  // namespace bench_interiors_tests

@@ -10,6 +10,8 @@
 
 #include "support/run.h"
 
+namespace bench_latency_tests {
+
 namespace fs = std::filesystem;
 using namespace lucerna;
 using Catch::Contains;
@@ -63,3 +65,5 @@ TEST_CASE("bench latency reports unsupported arguments") {
   refused("cornell --set film.ev=bright", "film.ev");
   refused("no-such-scene", "no-such-scene");
 }
+
+}  // namespace bench_latency_tests

@@ -8,6 +8,8 @@
 #include "support/folder.h"
 #include "support/run.h"
 
+namespace bench_photons_tests {
+
 namespace fs = std::filesystem;
 using Catch::Contains;
 using lucerna::test::Run;
@@ -100,3 +102,5 @@ TEST_CASE("bench --photons keeps finished parts when interrupted, and continues 
   CHECK(fs::exists(fs::path(folder) / "units" / "lamps-1.json"));
   CHECK_FALSE(fs::exists(fs::path(folder) / "units" / "free.json"));
 }
+
+}  // namespace bench_photons_tests

@@ -11,6 +11,8 @@
 #include "film/io/image_file.h"
 #include "support/run.h"
 
+namespace bench_tests {
+
 namespace fs = std::filesystem;
 using namespace lucerna;
 using Catch::Contains;
@@ -232,3 +234,5 @@ TEST_CASE("bench refuses invalid input before any work") {
   refused("--page " + (place / "a"), "cannot be read");
   refused("rays", "SCENE");
 }
+
+}  // namespace bench_tests

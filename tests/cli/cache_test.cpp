@@ -10,6 +10,8 @@
 #include "support/folder.h"
 #include "support/run.h"
 
+namespace cache_tests {
+
 namespace fs = std::filesystem;
 using namespace lucerna;
 using Catch::Contains;
@@ -83,3 +85,5 @@ TEST_CASE("a picture rendered with a saved cache is the same, and gathers nothin
   CHECK(nowhere.status == 1);
   CHECK_THAT(nowhere.out, Contains("no/such/folder/a.cache: cannot be written: No such file or directory"));
 }
+
+}  // namespace cache_tests

@@ -7,6 +7,8 @@
 #include "support/folder.h"
 #include "support/run.h"
 
+namespace convert_tests {
+
 namespace fs = std::filesystem;
 using namespace lucerna::test;
 using Catch::Contains;
@@ -58,3 +60,5 @@ TEST_CASE("convert refuses what it cannot write, with one line") {
   refused(copy + " \"\"", "expected a file name");
   refused(copy, "OUTPUT");
 }
+
+}  // namespace convert_tests

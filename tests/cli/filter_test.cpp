@@ -10,6 +10,8 @@
 #include "support/folder.h"
 #include "support/run.h"
 
+namespace filter_tests {
+
 using namespace lucerna;
 using Catch::Contains;
 using test::Run;
@@ -117,3 +119,5 @@ TEST_CASE("--filter --error: the render ends when the filtered picture's error i
   CHECK(figures(f, "capped")["filtered"]["reached"] == false);
   CHECK(figures(f, "capped")["filtered"]["of_mean"] > 0.0001);
 }
+
+}  // namespace filter_tests

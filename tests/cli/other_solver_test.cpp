@@ -7,6 +7,8 @@
 #include "support/folder.h"
 #include "support/run.h"
 
+namespace other_solver_tests {
+
 using namespace lucerna;
 
 TEST_CASE("a registered solver is in --help, computes its component and is in the figures") {
@@ -30,3 +32,5 @@ TEST_CASE("a registered solver is in --help, computes its component and is in th
   // The normal program does not know it.
   CHECK(test::run("render x.gltf --set components.tertiary=ambient -o x.png").status != 0);
 }
+
+}  // namespace other_solver_tests

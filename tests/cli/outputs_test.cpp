@@ -12,6 +12,8 @@
 #include "support/folder.h"
 #include "support/run.h"
 
+namespace outputs_tests {
+
 namespace fs = std::filesystem;
 using namespace lucerna;
 using Catch::Contains;
@@ -106,3 +108,5 @@ TEST_CASE("outputs are written into pipes, through links and to standard output,
   CHECK(fs::is_symlink(f / "link.png"));
   CHECK(fs::is_character_file("/dev/null"));
 }
+
+}  // namespace outputs_tests

@@ -11,6 +11,8 @@
 #include "support/folder.h"
 #include "support/run.h"
 
+namespace paths_tests {
+
 namespace fs = std::filesystem;
 using namespace lucerna;
 using Catch::Contains;
@@ -108,3 +110,5 @@ TEST_CASE("recording is limited to every n-th path, a region, or bright paths") 
   CHECK_THAT(render("--record-over 1 -o " + at + "b.exr").out, Contains("--record-paths: name the file"));
   CHECK_FALSE(fs::exists(f / "b.lpath"));
 }
+
+}  // namespace paths_tests

@@ -8,6 +8,8 @@
 
 #include "support/run.h"
 
+namespace raybench_tests {
+
 namespace fs = std::filesystem;
 using lucerna::test::Run;
 using lucerna::test::run_command;
@@ -71,3 +73,5 @@ TEST_CASE("the separate bench needs neither image IO, nor Embree, nor a window")
   }
   CHECK(r.out.find("not found") == std::string::npos);
 }
+
+}  // namespace raybench_tests

@@ -13,6 +13,8 @@
 #include "film/io/image_file.h"
 #include "support/run.h"
 
+namespace render_tests {
+
 namespace fs = std::filesystem;
 using namespace lucerna;
 using test::run;
@@ -387,3 +389,5 @@ TEST_CASE("devices and info print their lists") {
   CHECK(run("info --help").out.find("components.primary") == std::string::npos);
   CHECK(run("bench latency --help").out.find("matrix file") == std::string::npos);
 }
+
+}  // namespace render_tests

@@ -10,6 +10,8 @@
 #include "support/folder.h"
 #include "support/run.h"
 
+namespace script_tests {
+
 using namespace lucerna;
 using Catch::Contains;
 
@@ -180,3 +182,5 @@ TEST_CASE("help explains commands, settings and scripts without a device") {
   CHECK(unknown.status == 1);
   CHECK_THAT(unknown.out, Contains("there is no command 'expct'; did you mean 'expect'?"));
 }
+
+}  // namespace script_tests

@@ -10,6 +10,8 @@
 
 #include "support/run.h"
 
+namespace tools_tests {
+
 namespace fs = std::filesystem;
 using lucerna::test::Run;
 using lucerna::test::run_command;
@@ -84,3 +86,5 @@ TEST_CASE("the tool for interpolation reports the methods of limiting overlap in
   CHECK(run("interpolation " + scene + " --set cache.thinning=2").status == 1);
   CHECK(run("interpolation " + scene + " --set nothing").status == 1);
 }
+
+}  // namespace tools_tests

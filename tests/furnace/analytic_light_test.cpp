@@ -6,6 +6,8 @@
 
 #include "support/render.h"
 
+namespace analytic_light_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -53,3 +55,5 @@ TEST_CASE("a sphere light") {
     return 10 * 0.5 * r * r * h / std::pow(h * h + d * d, 1.5);
   });
 }
+
+}  // namespace analytic_light_tests

@@ -7,6 +7,8 @@
 
 #include "support/render.h"
 
+namespace furnace_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -48,3 +50,5 @@ TEST_CASE("open furnace: albedo 1 under radiance 1") { check_is_one("furnace-ope
 TEST_CASE("closed furnace: walls emit 1/2 and reflect 1/2, albedo 1 inside") {
   check_is_one("furnace-closed", 64);
 }
+
+}  // namespace furnace_tests

@@ -11,6 +11,8 @@
 #include "support/device_name.h"
 #include "support/rooms.h"
 
+namespace accuracy_tests {
+
 using namespace lucerna;
 using test::Settings;
 
@@ -157,3 +159,5 @@ TEST_CASE("every report of a session uses one clock, which stands still while re
   s.set_paused(false);
   wait([&](const session::Snapshot& at) { return !at.paused && at.seconds > after->seconds; });
 }
+
+}  // namespace accuracy_tests

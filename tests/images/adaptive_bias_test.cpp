@@ -10,6 +10,8 @@
 
 #include "support/render.h"
 
+namespace adaptive_bias_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -94,3 +96,5 @@ TEST_CASE("adaptive sampling does not shift the mean") {
     CHECK(b.deviation[0] < 0.001);  // otherwise the check above proves nothing
   }
 }
+
+}  // namespace adaptive_bias_tests

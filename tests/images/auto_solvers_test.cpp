@@ -7,6 +7,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace auto_solvers_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -103,3 +105,5 @@ TEST_CASE("the choice is the same in every run, whatever the batches") {
     CHECK(a.findings->components[c].variance == b.findings->components[c].variance);
   }
 }
+
+}  // namespace auto_solvers_tests

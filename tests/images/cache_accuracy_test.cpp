@@ -10,6 +10,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace cache_accuracy_tests {
+
 using namespace lucerna;
 using test::Result, test::Settings;
 
@@ -96,3 +98,5 @@ TEST_CASE("a panel three centimetres below a ceiling keeps its own light") {
   // records only.
   CHECK(off < 0.085);
 }
+
+}  // namespace cache_accuracy_tests

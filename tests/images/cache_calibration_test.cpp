@@ -9,6 +9,8 @@
 
 #include "support/calibration.h"
 
+namespace cache_calibration_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -185,3 +187,5 @@ TEST_CASE("a target that record errors prevent is not reported as reached and co
   test::finish(r);
   CHECK(r.image_error().records_rms < 0.8 * before);
 }
+
+}  // namespace cache_calibration_tests

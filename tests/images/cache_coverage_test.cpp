@@ -10,6 +10,8 @@
 #include "solvers/irradiance_cache/build.h"
 #include "support/rooms.h"
 
+namespace cache_coverage_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -99,3 +101,5 @@ TEST_CASE("passes that find few gaps with one path per pixel trace more paths pe
                 << " in the last");
   CHECK(share(passes.size() - 1) < 0.25 * share(2));
 }
+
+}  // namespace cache_coverage_tests

@@ -8,6 +8,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace cache_environment_tests {
+
 using namespace lucerna;
 using test::identical, test::mean, test::Mean, test::Result, test::Settings;
 
@@ -228,3 +230,5 @@ TEST_CASE("components.primary can be switched while a scene is shown") {
   CHECK(identical(finish().components[1], first.components[1]));
   CHECK(r.device().validation_messages() == 0);
 }
+
+}  // namespace cache_environment_tests

@@ -9,6 +9,8 @@
 #include "support/folder.h"
 #include "support/rooms.h"
 
+namespace cache_file_tests {
+
 namespace fs = std::filesystem;
 using namespace lucerna;
 using Catch::Contains;
@@ -274,3 +276,5 @@ TEST_CASE("the cache of a scene without diffuse surfaces can be saved and loaded
   CHECK(test::cache(second.r)->ready());
   CHECK(identical(picture, second.finish()));
 }
+
+}  // namespace cache_file_tests

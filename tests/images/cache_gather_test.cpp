@@ -10,6 +10,8 @@
 #include "cache_support.h"
 #include "support/rooms.h"
 
+namespace cache_gather_tests {
+
 using namespace lucerna;
 using test::Settings;
 
@@ -198,3 +200,5 @@ TEST_CASE("records store light once the camera has come near enough") {
   CHECK(roomy == 0);
   CHECK(test::lit(now).size() > test::lit(far).size() + 20);
 }
+
+}  // namespace cache_gather_tests

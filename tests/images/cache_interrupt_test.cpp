@@ -8,6 +8,8 @@
 #include "images/cache_support.h"
 #include "support/rooms.h"
 
+namespace cache_interrupt_tests {
+
 using namespace lucerna;
 using test::Settings;
 
@@ -279,3 +281,5 @@ TEST_CASE("moving a lamp during the first pass discards only the work that used 
     }
   }
 }
+
+}  // namespace cache_interrupt_tests

@@ -10,6 +10,8 @@
 #include "support/folder.h"
 #include "support/rooms.h"
 
+namespace cache_invalidation_tests {
+
 using namespace lucerna;
 using irradiance_cache::RawRecords;
 using irradiance_cache::StopReason;
@@ -481,3 +483,5 @@ TEST_CASE("switched-off components keep records complete, and reuse them when sw
   bed.set({{"cache.max_records", std::to_string(base.size() - 1)}});
   CHECK(test::cache(bed.r)->records().size() == 0);
 }
+
+}  // namespace cache_invalidation_tests

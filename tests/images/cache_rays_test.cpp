@@ -12,6 +12,8 @@
 #include "cache_support.h"
 #include "support/rooms.h"
 
+namespace cache_rays_tests {
+
 using namespace lucerna;
 
 TEST_CASE("the more of the picture reads a record, the less noise it has at the end") {
@@ -201,3 +203,5 @@ TEST_CASE("light that the picture reads through another record counts by its con
   // One pair of paths per pixel: only some of the pairs read a record.
   CHECK(measured == Approx(all).epsilon(0.15));
 }
+
+}  // namespace cache_rays_tests

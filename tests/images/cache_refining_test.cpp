@@ -7,6 +7,8 @@
 #include "cache_support.h"
 #include "support/rooms.h"
 
+namespace cache_refining_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -68,3 +70,5 @@ TEST_CASE("records whose noise does not matter keep their rays") {
   shown.finish();
   CHECK(shown.status().rays == rays);
 }
+
+}  // namespace cache_refining_tests

@@ -6,6 +6,8 @@
 #include "images/cache_support.h"
 #include "support/rooms.h"
 
+namespace cache_relight_preview_tests {
+
 using namespace lucerna;
 using irradiance_cache::Cache;
 using irradiance_cache::RawRecords;
@@ -209,3 +211,5 @@ TEST_CASE("batch rendering has no preview samples and no preview light") {
   CHECK_FALSE(batch.r.draw_draft());
   CHECK(batch.r.preview_shares().stale == 0);
 }
+
+}  // namespace cache_relight_preview_tests

@@ -10,6 +10,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace cache_robust_tests {
+
 using namespace lucerna;
 using irradiance_cache::StopReason;
 using test::block_mean, test::Mean, test::Result, test::Settings;
@@ -257,3 +259,5 @@ TEST_CASE("without diffuse surfaces or without lights a cache costs nothing and 
             Approx(luminance(lit.components[c][i])).epsilon(0.2).margin(0.01));
   CHECK(complaints.lines.empty());
 }
+
+}  // namespace cache_robust_tests

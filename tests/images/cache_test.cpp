@@ -5,6 +5,8 @@
 #include "images/cache_support.h"
 #include "support/rooms.h"
 
+namespace cache_tests {
+
 using namespace lucerna;
 using test::identical, test::k_cached, test::mean, test::Settings;
 
@@ -257,3 +259,5 @@ TEST_CASE("light does not leak through a wall of one millimetre") {
   // The dark half is dark, so leaked light would show.
   CHECK(column_mean(path, 1, 20, 26).value < 0.02 * column_mean(path, 1, 38, 44).value);
 }
+
+}  // namespace cache_tests

@@ -11,6 +11,8 @@
 
 #include "support/render.h"
 
+namespace determinism_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -117,3 +119,5 @@ TEST_CASE("memory of paths in flight does not grow with the picture") {
   CHECK(double(large - small) < 1.1 * per_pixel * (1 + 1.0 / 16) * more);
   CHECK(double(large - small) > 0.9 * per_pixel * more);
 }
+
+}  // namespace determinism_tests

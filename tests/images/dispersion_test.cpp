@@ -6,6 +6,8 @@
 
 #include "support/caustics.h"
 
+namespace dispersion_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -164,3 +166,5 @@ TEST_CASE("light paths leave a prism by wavelength too") {
   }
   CHECK(std::abs(moment[2] / light[2]) > 1.05 * std::abs(moment[0] / light[0]));
 }
+
+}  // namespace dispersion_tests

@@ -6,6 +6,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace effect_costs_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -82,3 +84,5 @@ TEST_CASE("a cancelled part of a measurement is repeated") {
   const session::EffectCosts all = m.take(), whole = measure(r);
   for (const session::EffectCost& c : all.effects) CHECK(c.part.light == cost(whole, c.key).part.light);
 }
+
+}  // namespace effect_costs_tests

@@ -6,6 +6,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace effects_off_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -70,3 +72,5 @@ TEST_CASE("with everything off there is a black picture; an unknown effect chang
   for (const auto& component : dark.components)
     for (const vec3& v : component) REQUIRE(v == vec3(0));
 }
+
+}  // namespace effects_off_tests

@@ -7,6 +7,8 @@
 #include "film/error.h"
 #include "support/render.h"
 
+namespace error_calibration_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -118,3 +120,5 @@ TEST_CASE("the estimated error equals the true error") {
     }
   }
 }
+
+}  // namespace error_calibration_tests

@@ -3,6 +3,8 @@
 // computes it: no radius, cell or margin scales with the scene's extent.
 #include "support/caustics.h"
 
+namespace far_things_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -74,3 +76,5 @@ TEST_CASE("under a sun a far object gets at most half of the light paths and no 
   }
 }
 TEST_CASE("far objects do not change light tracing") { check_same({{"components.caustic", "light"}}); }
+
+}  // namespace far_things_tests

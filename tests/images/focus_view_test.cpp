@@ -4,6 +4,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace focus_view_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -77,3 +79,5 @@ TEST_CASE("the view of the depth of field tints what is sharp") {
   REQUIRE(of_focus(reports));
   CHECK_THAT(of_focus(reports)->legends.at(0).note, Catch::Contains("pinhole"));
 }
+
+}  // namespace focus_view_tests

@@ -7,6 +7,8 @@
 #include "stats/forecast.h"
 #include "support/device.h"
 
+namespace forecast_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -99,3 +101,5 @@ TEST_CASE("in uniform sampling the forecast band contains the actual value in ei
   }
   CHECK(10 * held >= 8 * reported);
 }
+
+}  // namespace forecast_tests

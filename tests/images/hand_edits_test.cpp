@@ -10,6 +10,8 @@
 #include "support/folder.h"
 #include "support/rooms.h"
 
+namespace hand_edits_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -179,3 +181,5 @@ TEST_CASE("the picture is measured as a whole and at a point, first on the coars
   CHECK(luminance(sky.color) * std::exp2(*sky.ev) == Approx(0.18));
   CHECK(sky.color.z == Approx(1.5f * sky.color.x).epsilon(0.01));  // the environment's blue
 }
+
+}  // namespace hand_edits_tests

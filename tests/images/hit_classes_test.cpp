@@ -6,6 +6,8 @@
 #include "images/shafts_support.h"
 #include "support/render.h"
 
+namespace hit_classes_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -66,3 +68,5 @@ TEST_CASE("shading by class equals shading by one kernel with lookups") {
              {{"components.secondary", solver}, {"components.tertiary", solver}, {"cache.max_rays", "64"}}, 4,
              24);
 }
+
+}  // namespace hit_classes_tests

@@ -7,6 +7,8 @@
 #include "support/caustics.h"
 #include "support/rooms.h"
 
+namespace kept_solvers_tests {
+
 using namespace lucerna;
 using test::begins_with, test::identical, test::Settings;
 
@@ -224,3 +226,5 @@ TEST_CASE("a restart by hand makes everything from scratch, whatever was put asi
   bed.set({{"components.caustic", "photons"}});
   CHECK(bed.r.preparing());
 }
+
+}  // namespace kept_solvers_tests

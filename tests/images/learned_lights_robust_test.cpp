@@ -4,6 +4,8 @@
 // without the lights that reach nothing, and every pixel is finite.
 #include "images/learned_lights_support.h"
 
+namespace learned_lights_robust_tests {
+
 using namespace lucerna;
 using test::Settings, test::sky, test::window_room, test::with;
 
@@ -253,3 +255,5 @@ TEST_CASE("learning takes bounded memory, and no records once it has finished") 
   CHECK(learned > 1u << 20);
   CHECK(learning > 1u << 20);
 }
+
+}  // namespace learned_lights_robust_tests

@@ -3,6 +3,8 @@
 // less noise where walls hide most of the lights.
 #include "images/learned_lights_support.h"
 
+namespace learned_lights_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -101,3 +103,5 @@ TEST_CASE("less noise through a window") {
   INFO("variance " << power << " by power, " << learned << " learned");
   CHECK(2.5 * learned < power);
 }
+
+}  // namespace learned_lights_tests

@@ -9,6 +9,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace lens_shift_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -139,3 +141,5 @@ TEST_CASE("the preview of a moved camera finds its surfaces through a shifted le
   r.set_camera(camera);
   CHECK(border() == Approx(k_width / 2 - 8).margin(1));
 }
+
+}  // namespace lens_shift_tests

@@ -11,6 +11,8 @@
 #include "support/folder.h"
 #include "support/rooms.h"
 
+namespace light_list_tests {
+
 using namespace lucerna;
 using test::Settings;
 
@@ -188,3 +190,5 @@ TEST_CASE("a saved scene renders bit-identically") {
     CHECK(test::identical(before, test::finish(again)));
   }
 }
+
+}  // namespace light_list_tests

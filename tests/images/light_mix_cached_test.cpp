@@ -8,6 +8,8 @@
 #include "support/folder.h"
 #include "support/records.h"
 
+namespace light_mix_cached_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -152,3 +154,5 @@ TEST_CASE("reported record errors are those of the mixed light") {
   b.mix("sky: mute; sun: mute; lamp: mute; spot: mute; block: mute");
   CHECK(b.r.image_error().records_rms == 0);
 }
+
+}  // namespace light_mix_cached_tests

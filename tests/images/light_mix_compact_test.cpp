@@ -8,6 +8,8 @@
 #include "images/light_mix_support.h"
 #include "support/folder.h"
 
+namespace light_mix_compact_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using Catch::Matchers::Contains;
@@ -251,3 +253,5 @@ TEST_CASE("the window stores compact light by default, batch renders store none;
     CHECK(r.device().validation_messages() == 0);
   }
 }
+
+}  // namespace light_mix_compact_tests

@@ -5,6 +5,8 @@
 
 #include "images/light_mix_support.h"
 
+namespace light_mix_light_tracing_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -58,3 +60,5 @@ TEST_CASE("a mix of splats equals light traced from lamps of that strength, stat
   }
   CHECK(b.r.stats().rays == rays);
 }
+
+}  // namespace light_mix_light_tracing_tests

@@ -7,6 +7,8 @@
 #include "base/log.h"
 #include "images/light_mix_support.h"
 
+namespace light_mix_photons_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -90,3 +92,5 @@ TEST_CASE("records whose rays end in photons keep their groups") {
     CHECK(sum / all == Approx(1).margin(0.03));
   }
 }
+
+}  // namespace light_mix_photons_tests

@@ -10,6 +10,8 @@
 #include "session/accuracy.h"
 #include "support/folder.h"
 
+namespace light_mix_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using Catch::Matchers::Contains;
@@ -331,3 +333,5 @@ TEST_CASE("an invalid mix is refused, and the previous one stays") {
   CHECK(b.r.film().groups() == 3);
   CHECK(b.image().samples[0] == 16);
 }
+
+}  // namespace light_mix_tests

@@ -7,6 +7,8 @@
 #include "scene/light_mix.h"
 #include "support/rooms.h"
 
+namespace light_mix_written_tests {
+
 using namespace lucerna;
 using test::Settings;
 
@@ -149,3 +151,5 @@ TEST_CASE("without tracked groups, or with other light, the lights are edited an
   CHECK_THROWS_AS(other.r.set_lights(e), Error);
   CHECK(other.r.settings().text("relight.mix") != "nonsense");
 }
+
+}  // namespace light_mix_written_tests

@@ -7,6 +7,8 @@
 
 #include "support/caustics.h"
 
+namespace light_tracing_tests {
+
 using namespace lucerna;
 
 using test::mean_of, test::MeanOf, test::turned_sun, test::with;
@@ -327,3 +329,5 @@ TEST_CASE("drawing light paths and aim targets does not change the picture") {
   CHECK(test::identical(r.image(), image));
   CHECK(r.device().validation_messages() == 0);
 }
+
+}  // namespace light_tracing_tests

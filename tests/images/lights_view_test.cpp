@@ -3,6 +3,8 @@
 // rays that arrive. They do not change the picture.
 #include "images/learned_lights_support.h"
 
+namespace lights_view_tests {
+
 using namespace lucerna;
 using test::sky, test::window_room;
 
@@ -117,3 +119,5 @@ TEST_CASE("clusters lie at their lamps or at the bright part of the environment,
   }
   CHECK(lamps == 2);
 }
+
+}  // namespace lights_view_tests

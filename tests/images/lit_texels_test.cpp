@@ -2,6 +2,8 @@
 // Light paths start wherever an emitter's texture is bright, however small that part is.
 #include "support/caustics.h"
 
+namespace lit_texels_tests {
+
 using namespace lucerna;
 using test::mean_of, test::MeanOf;
 
@@ -62,3 +64,5 @@ TEST_CASE("a square of few texels emits as much light as a separate quad") {
     CHECK(found.value.x == Approx(truth.value.x).epsilon(0.15));
   }
 }
+
+}  // namespace lit_texels_tests

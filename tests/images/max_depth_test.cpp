@@ -6,6 +6,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace max_depth_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -59,3 +61,5 @@ TEST_CASE("all solvers count the same scattering events for path.max_depth") {
     }
   }
 }
+
+}  // namespace max_depth_tests

@@ -6,6 +6,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace media_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -169,3 +171,5 @@ TEST_CASE("light under water reaches a camera under water with every solver") {
         {1, 2, 3}, 16, 0.05);
   check({{"components.secondary", "cache"}, {"components.tertiary", "cache"}}, {1, 2}, 16, 0.05);
 }
+
+}  // namespace media_tests

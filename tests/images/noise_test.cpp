@@ -6,6 +6,8 @@
 
 #include "support/render.h"
 
+namespace noise_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -73,3 +75,5 @@ TEST_CASE("a rectangle has noise of its own; lights that are chosen by power are
   const recording::NoiseReport pixel = renderer->explain_noise({0.2f, 0.7f}, {0.2f, 0.7f});
   CHECK(pixel.pixels <= 1);
 }
+
+}  // namespace noise_tests

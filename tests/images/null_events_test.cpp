@@ -10,6 +10,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace null_events_tests {
+
 using namespace lucerna;
 using glm::dvec2;
 
@@ -242,3 +244,5 @@ TEST_CASE("an unlit surface hides what is behind it from paths and from light sa
   const film::Image image = test::render(s, {}, 4, 8).image;
   for (const vec3& pixel : image.components[0]) CHECK(pixel == vec3(0));
 }
+
+}  // namespace null_events_tests

@@ -9,6 +9,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace other_solver_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -136,3 +138,5 @@ TEST_CASE("its command and its file change its light; a file of another kind is 
   CHECK_THROWS_WITH(r.solver_load("ambient", other), Catch::Contains("b.ambient: is not a radiance"));
   CHECK(light() == Approx(once));
 }
+
+}  // namespace other_solver_tests

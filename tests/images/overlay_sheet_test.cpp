@@ -11,6 +11,8 @@
 #include "shaders/shared/film.h"
 #include "support/render.h"
 
+namespace overlay_sheet_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -146,3 +148,5 @@ TEST_CASE("in the window a moved camera does not wait for the surfaces of overla
   show(*r, "overlay.records", false);
   CHECK_FALSE(r->overlay_waits());
 }
+
+}  // namespace overlay_sheet_tests

@@ -8,6 +8,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace partition_tests {
+
 using namespace lucerna;
 using test::identical;
 
@@ -172,3 +174,5 @@ TEST_CASE("both tracers make the same image except at grazing ties") {
   INFO(different << " of " << host.image.samples.size() << " pixels differ");
   CHECK(different < host.image.samples.size() / 50);
 }
+
+}  // namespace partition_tests

@@ -7,6 +7,8 @@
 #include "recording/recording.h"
 #include "support/render.h"
 
+namespace path_recording_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -188,3 +190,5 @@ TEST_CASE("a selection is clipped to the picture, and takes every n-th path") {
   CHECK(choices[2].pixel == 15 * 16 + 15);
   CHECK(choices[2].sample_index == 5);
 }
+
+}  // namespace path_recording_tests

@@ -6,6 +6,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace photons_aim_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -376,3 +378,5 @@ TEST_CASE("the pilot depends on neither batches nor earlier renders") {
   test::set(r, {{"photons.aim", "true"}});
   CHECK(test::identical(once, test::finish(r)));
 }
+
+}  // namespace photons_aim_tests

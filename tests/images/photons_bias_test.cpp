@@ -9,6 +9,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace photons_bias_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -306,3 +308,5 @@ TEST_CASE("a target that blur prevents is not reported as reached, and costs few
   CHECK(tiles_of("8") > 16);
   CHECK(tiles_of("1") == 0);
 }
+
+}  // namespace photons_bias_tests

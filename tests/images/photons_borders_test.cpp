@@ -6,6 +6,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace photons_borders_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -119,3 +121,5 @@ TEST_CASE("mats, seams and flipped halves of a floor are no brighter than the re
   test::add_quad(mat, {-0.4f, 0.001f, 0.4f}, {0.4f, 0, 0}, {0, 0, -0.8f}, 0);
   CHECK(brightness(mat, {}, 16, middle) == Approx(1).epsilon(0.02));
 }
+
+}  // namespace photons_borders_tests

@@ -9,6 +9,8 @@
 
 #include "support/calibration.h"
 
+namespace photons_calibration_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -127,3 +129,5 @@ TEST_CASE("the estimated error of a picture of photons is its true error") {
     }
   }
 }
+
+}  // namespace photons_calibration_tests

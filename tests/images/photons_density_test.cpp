@@ -7,6 +7,8 @@
 #include "solvers/photons/solver.h"
 #include "support/caustics.h"
 
+namespace photons_density_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -172,7 +174,7 @@ TEST_CASE("importance is shown where lookups take place, and is even where looku
   CHECK(s.report()->legends[0].title.find("importance") != std::string::npos);
 }
 
-TEST_CASE("drawing light paths and aim targets does not change the picture") {
+TEST_CASE("drawing photons' paths and aim targets does not change the picture") {
   Shown s;
   const std::vector<uint8_t> plain = s.r.picture(false);
   const uint64_t rays = s.r.stats().rays;
@@ -200,3 +202,5 @@ TEST_CASE("drawing light paths and aim targets does not change the picture") {
   CHECK(s.r.stats().rays == rays);
   CHECK(s.r.samples() == 2);
 }
+
+}  // namespace photons_density_tests

@@ -7,6 +7,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace photons_drafts_tests {
+
 using namespace lucerna;
 using test::Settings;
 
@@ -81,3 +83,5 @@ TEST_CASE("the picture does not depend on preview samples, bit for bit") {
     CHECK(test::identical(right, window.r.image()));
   }
 }
+
+}  // namespace photons_drafts_tests

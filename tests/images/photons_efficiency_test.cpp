@@ -6,6 +6,8 @@
 #include "solvers/photons/solver.h"
 #include "support/caustics.h"
 
+namespace photons_efficiency_tests {
+
 using namespace lucerna;
 using test::with;
 
@@ -194,3 +196,5 @@ TEST_CASE("the pilot's noise estimates are correct for both methods", "[photons_
     }
   }
 }
+
+}  // namespace photons_efficiency_tests

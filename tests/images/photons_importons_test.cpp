@@ -6,6 +6,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace photons_importons_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -86,3 +88,5 @@ TEST_CASE("surfaces seen in a mirror keep their photons") { check_same(long_room
 TEST_CASE("surfaces read by final gathering keep their photons") {
   check_same(long_room(false), {{"components.tertiary", "photons"}, {"photons.efficiency", "false"}}, 0.0);
 }
+
+}  // namespace photons_importons_tests

@@ -4,6 +4,8 @@
 #include "support/caustics.h"
 #include "support/device_name.h"
 
+namespace photons_limits_tests {
+
 using namespace lucerna;
 using test::mean_of, test::MeanOf;
 
@@ -89,3 +91,5 @@ TEST_CASE("light tracing of more pixels than a buffer holds gives the same pictu
   CHECK(mean_of(images[0], 3, 0, 660, k_width, k_height).value.x > 0);
   CHECK(test::identical(images[0], images[1]));
 }
+
+}  // namespace photons_limits_tests

@@ -6,6 +6,8 @@
 
 #include "support/caustics.h"
 
+namespace photons_primary_tests {
+
 using namespace lucerna;
 using test::identical, test::mean_of, test::MeanOf, test::with;
 
@@ -126,3 +128,5 @@ TEST_CASE("paths compute primary light while records cannot serve it, and when n
   CHECK(identical(dark.image.components[0], test::render(closed, off, 4, 32).image.components[0]));
   CHECK(dark.bias_known[0]);
 }
+
+}  // namespace photons_primary_tests

@@ -6,6 +6,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace photons_shading_tests {
+
 using namespace lucerna;
 
 TEST_CASE("photons on a smooth-shaded coarse ball are as bright as path tracing") {
@@ -37,3 +39,5 @@ TEST_CASE("photons on a smooth-shaded coarse ball are as bright as path tracing"
     CHECK(most < 1.8);
   }
 }
+
+}  // namespace photons_shading_tests

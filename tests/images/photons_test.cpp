@@ -8,6 +8,8 @@
 #include "solvers/registry.h"
 #include "support/caustics.h"
 
+namespace photons_tests {
+
 using namespace lucerna;
 
 using test::mean_of, test::MeanOf, test::turned_sun, test::with;
@@ -433,3 +435,5 @@ TEST_CASE("photons are drawn over the picture and reported") {
   CHECK(r.solver_statistics().at("photons").at("rounds") == 2);
   CHECK(r.samples() == 2);
 }
+
+}  // namespace photons_tests

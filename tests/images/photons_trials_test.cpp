@@ -6,6 +6,8 @@
 #include "solvers/photons/solver.h"
 #include "support/caustics.h"
 
+namespace photons_trials_tests {
+
 using namespace lucerna;
 using test::with;
 
@@ -251,3 +253,5 @@ TEST_CASE("light without photons is unknown, and keeps the picture unfinished", 
   paths.image();
   CHECK(paths.r.image_error().relative_sum() == 0);
 }
+
+}  // namespace photons_trials_tests

@@ -4,6 +4,8 @@
 #include "images/learned_lights_support.h"
 #include "session/found_portals.h"
 
+namespace portals_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -168,3 +170,5 @@ TEST_CASE("with portals a picture is a function of scene, settings and seed") {
     CHECK(test::identical(first, with(s, how, 8, {{"path.batch", "1024"}}).image));
   }
 }
+
+}  // namespace portals_tests

@@ -6,6 +6,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace preview_mirror_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -80,3 +82,5 @@ TEST_CASE("objects behind glass have sharp borders from the first samples on") {
     check_sharp(columns(room(glass, false)));
   }
 }
+
+}  // namespace preview_mirror_tests

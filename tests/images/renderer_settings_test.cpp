@@ -10,6 +10,8 @@
 #include "support/device.h"
 #include "support/render.h"
 
+namespace renderer_settings_tests {
+
 using namespace lucerna;
 
 TEST_CASE("another tracer keeps edits and camera; another scene starts with its own settings") {
@@ -248,3 +250,5 @@ TEST_CASE("a scene's warnings refer to its own settings, not to earlier ones") {
   CHECK(r.enabled_components() == 15);
   CHECK(lamps_behind_glass(said) == 1);
 }
+
+}  // namespace renderer_settings_tests

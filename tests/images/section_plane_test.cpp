@@ -7,6 +7,8 @@
 #include "session/pick.h"
 #include "support/caustics.h"
 
+namespace section_plane_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -110,3 +112,5 @@ TEST_CASE("picking begins at the section plane too") {
   s.cameras[0].section.normal = {0, 0, 1}, s.cameras[0].section.offset = 50;
   CHECK_FALSE(session::pick(s, s.cameras[0], 0.5f, 0.5f, 1));
 }
+
+}  // namespace section_plane_tests

@@ -7,6 +7,8 @@
 #include "film/error.h"
 #include "support/render.h"
 
+namespace seen_error_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -117,3 +119,5 @@ TEST_CASE("the estimated error as seen is the squared difference of independent 
     }
   }
 }
+
+}  // namespace seen_error_tests

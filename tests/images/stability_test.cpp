@@ -7,6 +7,8 @@
 
 #include "support/render.h"
 
+namespace stability_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -212,3 +214,5 @@ TEST_CASE("light that is too bright for float is dropped and counted, never writ
   CHECK(p.finite);
   CHECK(p.dropped > 0);
 }
+
+}  // namespace stability_tests

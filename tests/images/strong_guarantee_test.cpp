@@ -11,6 +11,8 @@
 #include "support/folder.h"
 #include "support/rooms.h"
 
+namespace strong_guarantee_tests {
+
 using namespace lucerna;
 using test::Settings;
 
@@ -230,3 +232,5 @@ TEST_CASE("shaders that do not compile leave the kernels in use") {
     CHECK(test::identical(render(broken), wanted));
   }
 }
+
+}  // namespace strong_guarantee_tests

@@ -7,6 +7,8 @@
 
 #include "support/caustics.h"
 
+namespace thin_lens_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -168,3 +170,5 @@ TEST_CASE("a camera without an f-number is a pinhole, whatever its lens has, and
   renderer.set_camera(plain.cameras[0]);
   CHECK(test::identical(test::finish(renderer), expected));
 }
+
+}  // namespace thin_lens_tests

@@ -10,6 +10,8 @@
 #include "support/caustics.h"
 #include "support/rooms.h"
 
+namespace wide_cameras_tests {
+
 using namespace lucerna;
 using scene::Wide;
 
@@ -110,3 +112,5 @@ TEST_CASE("a cached panorama agrees with the path-traced one") {
     CHECK(double(luminance(vec3(test::mean_of(by_cache.image, int(c)).value))) ==
           Approx(double(luminance(vec3(test::mean_of(by_paths.image, int(c)).value)))).epsilon(0.05));
 }
+
+}  // namespace wide_cameras_tests

@@ -7,6 +7,8 @@
 #include "support/folder.h"
 #include "support/rooms.h"
 
+namespace window_filter_tests {
+
 using namespace lucerna;
 using test::Settings;
 
@@ -122,3 +124,5 @@ TEST_CASE("in batch mode only requested filtering runs") {
   batch.r.filter();
   CHECK(batch.r.picture(false) != samples);
 }
+
+}  // namespace window_filter_tests

@@ -7,6 +7,8 @@
 #include "kernels/bsdf_support.h"
 #include "kernels/statistics_support.h"
 
+namespace bsdf_energy_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -268,4 +270,6 @@ TEST_CASE("the complement has the energy of all further bounces") {
   }
 }
 
-TEST_CASE("there were no validation messages") { CHECK(device().validation_messages() == 0); }
+TEST_CASE("there were no validation messages: bsdf energy") { CHECK(device().validation_messages() == 0); }
+
+}  // namespace bsdf_energy_tests

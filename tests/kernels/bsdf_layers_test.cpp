@@ -7,6 +7,8 @@
 #include "kernels/bsdf_support.h"
 #include "kernels/statistics_support.h"
 
+namespace bsdf_layers_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -252,4 +254,6 @@ TEST_CASE("a thin film's colours repeat with the wavelength") {
   CHECK(double(list[darkest].film_thickness) == Approx(550 / 4.0 / 1.38).margin(8));
 }
 
-TEST_CASE("there were no validation messages") { CHECK(device().validation_messages() == 0); }
+TEST_CASE("there were no validation messages: bsdf layers") { CHECK(device().validation_messages() == 0); }
+
+}  // namespace bsdf_layers_tests

@@ -7,6 +7,8 @@
 #include "kernels/bsdf_support.h"
 #include "kernels/statistics_support.h"
 
+namespace bsdf_lobes_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -103,4 +105,6 @@ TEST_CASE("a smaller variant of the shader gives the results of the full one") {
     }
 }
 
-TEST_CASE("there were no validation messages") { CHECK(device().validation_messages() == 0); }
+TEST_CASE("there were no validation messages: bsdf lobes") { CHECK(device().validation_messages() == 0); }
+
+}  // namespace bsdf_lobes_tests

@@ -8,6 +8,8 @@
 #include "kernels/statistics_support.h"
 #include "shaders/shared/bsdf_table.h"
 
+namespace bsdf_sampling_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -250,4 +252,6 @@ TEST_CASE("a draw's label, side and density are correct") {
   }
 }
 
-TEST_CASE("there were no validation messages") { CHECK(device().validation_messages() == 0); }
+TEST_CASE("there were no validation messages: bsdf sampling") { CHECK(device().validation_messages() == 0); }
+
+}  // namespace bsdf_sampling_tests

@@ -11,6 +11,8 @@
 #include "solvers/irradiance_cache/placement.h"
 #include "support/records.h"
 
+namespace cache_choice_tests {
+
 using namespace lucerna;
 using namespace lucerna::irradiance_cache;
 
@@ -262,3 +264,5 @@ TEST_CASE(
     CHECK(at == 2 * each);
   }
 }
+
+}  // namespace cache_choice_tests

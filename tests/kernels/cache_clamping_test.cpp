@@ -9,6 +9,8 @@
 #include "kernels/cache_records_support.h"
 #include "solvers/irradiance_cache/clamping.h"
 
+namespace cache_clamping_tests {
+
 using namespace lucerna;
 using irradiance_cache::Clamping;
 using irradiance_cache::Metric;
@@ -121,3 +123,5 @@ TEST_CASE("radii of circles and ellipses are clamped as on the host, twice in a 
     }
   }
 }
+
+}  // namespace cache_clamping_tests

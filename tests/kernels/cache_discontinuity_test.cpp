@@ -7,6 +7,8 @@
 #include "kernels/gpu_support.h"
 #include "solvers/irradiance_cache/cache.h"
 
+namespace cache_discontinuity_tests {
+
 using namespace lucerna;
 using irradiance_cache::Discontinuity;
 using irradiance_cache::DiscontinuityOptions;
@@ -348,3 +350,5 @@ TEST_CASE("thresholds are distributed over blocks, follow the seed, and skip pix
   }
   CHECK(asking > 500);
 }
+
+}  // namespace cache_discontinuity_tests

@@ -6,6 +6,8 @@
 #include "film/error.h"
 #include "kernels/cache_records_support.h"
 
+namespace cache_error_propagation_tests {
+
 using namespace lucerna;
 using shared::BlockRecords;
 using shared::k_record_lanes;
@@ -222,3 +224,5 @@ TEST_CASE("interpolation error: the residual of neighbouring records without the
   CHECK(error.noise > 0.3);
   CHECK(error.interpolation < 2 * error.noise);
 }
+
+}  // namespace cache_error_propagation_tests

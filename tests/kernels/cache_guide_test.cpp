@@ -12,6 +12,8 @@
 #include "kernels/statistics_support.h"
 #include "shaders/shared/irradiance_cache/records.h"
 
+namespace cache_guide_tests {
+
 using namespace lucerna;
 using namespace lucerna::shared;
 
@@ -141,3 +143,5 @@ TEST_CASE("an empty guide keeps the cosine distribution") {
     CHECK(test::mean_tail(cosine, 2.0 / 3, 1e-6) > 1e-4);
   }
 }
+
+}  // namespace cache_guide_tests

@@ -6,6 +6,8 @@
 
 #include "support/cache.h"
 
+namespace cache_half_lit_tests {
+
 using namespace lucerna;
 using irradiance_cache::Place;
 using irradiance_cache::Record;
@@ -73,3 +75,5 @@ TEST_CASE("half an environment: irradiance and its rotational gradient match the
   }
   CHECK(bed.device.validation_messages() == 0);
 }
+
+}  // namespace cache_half_lit_tests

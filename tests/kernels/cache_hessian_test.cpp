@@ -10,6 +10,8 @@
 #include "support/cache.h"
 #include "support/rooms.h"
 
+namespace cache_hessian_tests {
+
 using namespace lucerna;
 using irradiance_cache::Place;
 using irradiance_cache::RawRecords;
@@ -378,3 +380,5 @@ TEST_CASE("ellipses are limited: in length, in width, by near surfaces, in the d
   CHECK(one({vec3(9, 0, 0), none, 0}, how).lesser == one({vec3(9, 0, 0), none, 0.1f}, how).lesser);
   CHECK(one({vec3(9, 0, 0), none, 0.2f}, how).lesser > one({vec3(9, 0, 0), none, 0.1f}, how).lesser);
 }
+
+}  // namespace cache_hessian_tests

@@ -14,6 +14,8 @@
 #include "support/render.h"
 #include "support/rooms.h"
 
+namespace cache_inspect_tests {
+
 using namespace lucerna;
 using irradiance_cache::Inspection;
 using irradiance_cache::Record;
@@ -550,3 +552,5 @@ TEST_CASE("the candidates chosen in a pass can be read until the next pass") {
   while (r.step()) {
   }
 }
+
+}  // namespace cache_inspect_tests

@@ -15,6 +15,8 @@
 #include "support/records.h"
 #include "support/solver.h"
 
+namespace cache_placement_tests {
+
 using namespace lucerna;
 using irradiance_cache::BuildStage;
 using irradiance_cache::PlacementShow;
@@ -429,3 +431,5 @@ TEST_CASE("a session with a paused cache is idle, responds, and continues on com
   session.solver_command("cache", "run");
   wait([](const session::Snapshot& s) { return s.finished; });
 }
+
+}  // namespace cache_placement_tests

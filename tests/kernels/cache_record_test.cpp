@@ -7,6 +7,8 @@
 
 #include "support/cache.h"
 
+namespace cache_record_tests {
+
 using namespace lucerna;
 using irradiance_cache::Place;
 using irradiance_cache::Record;
@@ -174,3 +176,5 @@ TEST_CASE("records beyond the capacity are refused, not written") {
                                            {.elevations = 1024, .azimuths = 1024}),
                     Catch::Contains("the range is 1 to"));
 }
+
+}  // namespace cache_record_tests

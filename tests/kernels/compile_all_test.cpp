@@ -12,6 +12,8 @@
 #include "gpu/kernel.h"
 #include "upload/device_scene.h"
 
+namespace compile_all_tests {
+
 using namespace lucerna;
 namespace fs = std::filesystem;
 
@@ -130,3 +132,5 @@ TEST_CASE("every macro that the host defines for a scene is used by kernels") {
     CHECK(known.contains(name));
   }
 }
+
+}  // namespace compile_all_tests

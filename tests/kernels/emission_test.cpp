@@ -12,6 +12,8 @@
 #include "transport/light_source.h"
 #include "upload/device_scene.h"
 
+namespace emission_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -515,3 +517,5 @@ TEST_CASE("aimed paths reach their box") {
   CHECK(means[3].value() > sun);
   CHECK(means[3].error() < 0.1 * means[3].value());
 }
+
+}  // namespace emission_tests

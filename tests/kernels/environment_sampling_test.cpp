@@ -3,6 +3,8 @@
 // their densities.
 #include "kernels/light_support.h"
 
+namespace environment_sampling_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -329,4 +331,8 @@ TEST_CASE("sky and sun as two emitters sum to the environment, each sampled by i
   CHECK(even.effects.lights);
 }
 
-TEST_CASE("there were no validation messages") { CHECK(device().validation_messages() == 0); }
+TEST_CASE("there were no validation messages: environment sampling") {
+  CHECK(device().validation_messages() == 0);
+}
+
+}  // namespace environment_sampling_tests

@@ -6,6 +6,8 @@
 #include "film/film.h"
 #include "support/device_name.h"
 
+namespace film_accumulate_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -83,3 +85,5 @@ TEST_CASE("a million samples of mixed magnitude: each half's sum is accurate to 
   }
   CHECK(device.validation_messages() == 0);
 }
+
+}  // namespace film_accumulate_tests

@@ -9,6 +9,8 @@
 #include "film/estimator.h"
 #include "support/device_name.h"
 
+namespace film_error_tests {
+
 using namespace lucerna;
 using shared::BlockError;
 
@@ -572,3 +574,5 @@ TEST_CASE("where lookups found no light the error is unknown, not zero", "[film_
   CHECK(film::image_error(std::array{dark}).relative_sum() == 1);
   CHECK(film::image_error(std::array{lit}).relative_sum() == 0);
 }
+
+}  // namespace film_error_tests

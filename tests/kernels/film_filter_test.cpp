@@ -9,6 +9,8 @@
 #include "film/filter/filter_error.h"
 #include "kernels/film_preview_support.h"
 
+namespace film_filter_tests {
+
 using namespace lucerna;
 using test::Sample;
 
@@ -330,3 +332,5 @@ TEST_CASE("the error of a filtered picture includes a known bias") {
   CHECK(error.tiles[4].standard_error < 0.06);
   CHECK(error.luminance == Approx(1.05));
 }
+
+}  // namespace film_filter_tests

@@ -9,6 +9,8 @@
 #include "shaders/shared/group_sums.h"
 #include "support/device_name.h"
 
+namespace film_groups_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -205,3 +207,5 @@ TEST_CASE("samples without light of a group add nothing to it, whatever memory c
     CHECK(std::all_of(sums.begin(), sums.end(), [&](const vec3& v) { return v == right; }));
   }
 }
+
+}  // namespace film_groups_tests

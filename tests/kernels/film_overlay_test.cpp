@@ -14,6 +14,8 @@
 #include "film/tonemap.h"
 #include "support/device_name.h"
 
+namespace film_overlay_tests {
+
 using namespace lucerna;
 using shared::TileMark;
 
@@ -234,3 +236,5 @@ TEST_CASE("the overlay outlines active tiles, dims finished ones, marks others, 
   CHECK(farthest(edge, base) > 0.01f);
   CHECK(farthest(edge, glm::mix(base, vec3(0.62f), 0.25f)) < 0.02f);
 }
+
+}  // namespace film_overlay_tests

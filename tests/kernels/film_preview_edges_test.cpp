@@ -4,6 +4,8 @@
 
 #include "kernels/film_preview_support.h"
 
+namespace film_preview_edges_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -175,3 +177,5 @@ TEST_CASE("one bright path among many, or two among few, show no speck") {
       CHECK(shown[y * 96 + x] < 0.4f);
     }
 }
+
+}  // namespace film_preview_edges_tests

@@ -2,6 +2,8 @@
 // The window's preview of a film whose primary visibility is known, through the real shaders.
 #include "kernels/film_preview_support.h"
 
+namespace film_preview_seen_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -260,3 +262,5 @@ TEST_CASE("while the camera moves, visible surfaces show the previous picture's 
         REQUIRE(found == Approx(light).margin(0.02));
     }
 }
+
+}  // namespace film_preview_seen_tests

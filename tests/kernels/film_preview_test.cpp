@@ -3,6 +3,8 @@
 // edges stay; the previous picture stays until new light contradicts it, and moves with the camera.
 #include "kernels/film_preview_support.h"
 
+namespace film_preview_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -495,3 +497,5 @@ TEST_CASE("a pixel that is alone on its surface does not show its two paths") {
     CHECK(shown[y * 96 + 41] < 1.0f);
   }
 }
+
+}  // namespace film_preview_tests

@@ -7,6 +7,8 @@
 #include "film/tonemap.h"
 #include "gpu/stream.h"
 
+namespace film_tonemap_tests {
+
 using namespace lucerna;
 
 TEST_CASE("the device's tone curves equal the host's, also for unusual values") {
@@ -54,3 +56,5 @@ TEST_CASE("the device's tone curves equal the host's, also for unusual values") 
   }
   CHECK(device.validation_messages() == 0);
 }
+
+}  // namespace film_tonemap_tests

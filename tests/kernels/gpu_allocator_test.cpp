@@ -7,6 +7,8 @@
 
 #include "kernels/gpu_support.h"
 
+namespace gpu_allocator_tests {
+
 using namespace lucerna;
 using namespace lucerna::gpu;
 using Catch::Matchers::Contains;
@@ -159,3 +161,5 @@ TEST_CASE("a full heap is refused with name and size, and is usable again after 
   allocator.free(second);
   CHECK(driver.live.empty());
 }
+
+}  // namespace gpu_allocator_tests

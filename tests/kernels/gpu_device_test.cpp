@@ -3,6 +3,8 @@
 
 #include "kernels/gpu_support.h"
 
+namespace gpu_device_tests {
+
 using namespace lucerna;
 using namespace lucerna::gpu;
 using Catch::Matchers::Contains;
@@ -69,3 +71,5 @@ TEST_CASE("devices can be created and destroyed on several threads at once") {
   for (auto& thread : threads) thread.join();
   CHECK(good == 4);
 }
+
+}  // namespace gpu_device_tests

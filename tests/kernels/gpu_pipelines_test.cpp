@@ -7,6 +7,8 @@
 #include "gpu/vulkan.h"
 #include "kernels/gpu_support.h"
 
+namespace gpu_pipelines_tests {
+
 using namespace lucerna;
 using namespace lucerna::gpu;
 
@@ -106,3 +108,5 @@ TEST_CASE("pipelines in use are kept, and the most recent unused ones") {
   CHECK(bed.step_of(used) == 1);
   CHECK(bed.step_of(dropped) == 2);
 }
+
+}  // namespace gpu_pipelines_tests

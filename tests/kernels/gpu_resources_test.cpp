@@ -4,6 +4,8 @@
 #include "gpu/memory.h"
 #include "kernels/gpu_support.h"
 
+namespace gpu_resources_tests {
+
 using namespace lucerna;
 using namespace lucerna::gpu;
 using Catch::Matchers::Contains;
@@ -140,3 +142,5 @@ TEST_CASE("sizes are formatted for readers") {
   CHECK(format_bytes(99ull << 20) == "99 MiB");
   CHECK(format_bytes(3ull << 29) == "1.5 GiB");
 }
+
+}  // namespace gpu_resources_tests

@@ -7,6 +7,8 @@
 #include "gpu/spirv.h"
 #include "kernels/gpu_support.h"
 
+namespace gpu_shader_tests {
+
 using namespace lucerna;
 using namespace lucerna::gpu;
 using Catch::Matchers::Contains;
@@ -238,3 +240,5 @@ TEST_CASE("several threads compile at once") {
   for (size_t i = 2; i < results.size(); ++i) CHECK(results[i] == results[i - 2]);
   CHECK(results[0] != results[1]);
 }
+
+}  // namespace gpu_shader_tests

@@ -4,6 +4,8 @@
 #include "base/math.h"
 #include "kernels/gpu_support.h"
 
+namespace gpu_stream_tests {
+
 using namespace lucerna;
 using namespace lucerna::gpu;
 using Catch::Matchers::Contains;
@@ -392,3 +394,5 @@ TEST_CASE("device time is kept per stage, in the order of first use, over any nu
   CHECK(times[0].milliseconds < 60000);
   CHECK(stream.take_times().empty());
 }
+
+}  // namespace gpu_stream_tests

@@ -7,6 +7,8 @@
 #include "kernels/light_support.h"
 #include "transport/light_learning.h"
 
+namespace learned_lights_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -87,3 +89,5 @@ TEST_CASE("densities of light samples and of rays that hit the same light agree 
     CHECK(apart[1] <= drawn[1] / 2000);
   }
 }
+
+}  // namespace learned_lights_tests

@@ -7,6 +7,8 @@
 #include "kernels/light_support.h"
 #include "upload/alias_table.h"
 
+namespace light_sampling_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -133,7 +135,7 @@ TEST_CASE("points on emissive triangles: uniform in area, triangles by power, wi
   for (size_t t = 0; t < count; ++t) {
     const double area =
         0.5 * glm::length(glm::cross(corner(t, 1) - corner(t, 0), corner(t, 2) - corner(t, 0)));
-    const scene::Scene scene = ::triangles();
+    const scene::Scene scene = light_sampling_tests::triangles();
     total += power[t] =
         area * luminance(scene.materials[triangles[t].w & shared::k_triangle_material_mask].emission);
   }
@@ -307,4 +309,6 @@ TEST_CASE("lights of another strength, chosen as before: the distribution stays,
   }
 }
 
-TEST_CASE("there were no validation messages") { CHECK(device().validation_messages() == 0); }
+TEST_CASE("there were no validation messages: light sampling") { CHECK(device().validation_messages() == 0); }
+
+}  // namespace light_sampling_tests

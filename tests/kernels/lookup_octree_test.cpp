@@ -8,6 +8,8 @@
 #include "kernels/gpu_support.h"
 #include "solvers/lookup/octree.h"
 
+namespace lookup_octree_tests {
+
 using namespace lucerna;
 using lookup::Octree;
 
@@ -575,3 +577,5 @@ TEST_CASE("lists are short in a crowd of small spheres among large ones once its
   INFO("listed: " << listed[0] << ", split " << listed[1]);
   CHECK(10 * listed[1] < listed[0]);
 }
+
+}  // namespace lookup_octree_tests

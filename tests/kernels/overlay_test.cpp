@@ -12,6 +12,8 @@
 #include "overlay/painter.h"
 #include "support/device_name.h"
 
+namespace overlay_tests {
+
 using namespace lucerna;
 using shared::OverlayDisc;
 using shared::OverlayPoint;
@@ -399,3 +401,5 @@ TEST_CASE(
     CHECK(bed.drawn(points) == expected);
   }
 }
+
+}  // namespace overlay_tests

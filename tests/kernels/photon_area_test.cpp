@@ -11,6 +11,8 @@
 #include "support/rooms.h"
 #include "upload/flatten.h"
 
+namespace photon_area_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -192,3 +194,5 @@ TEST_CASE("for random triangles the area equals a sum over their points") {
   }
   CHECK(most > 0.3);
 }
+
+}  // namespace photon_area_tests

@@ -7,6 +7,8 @@
 #include "kernels/light_support.h"
 #include "shaders/shared/portals.h"
 
+namespace portals_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -264,3 +266,5 @@ TEST_CASE("the density of a light sample by power is the sum over all ways to dr
     }
   }
 }
+
+}  // namespace portals_tests

@@ -9,6 +9,8 @@
 #include "gpu/stream.h"
 #include "kernels/statistics_support.h"
 
+namespace sampler_sobol_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -288,4 +290,6 @@ TEST_CASE("no two purposes of a path draw from the same pad") {
   CHECK(seen.size() == places.size() + others.size());
 }
 
-TEST_CASE("there were no validation messages") { CHECK(device().validation_messages() == 0); }
+TEST_CASE("there were no validation messages: sampler sobol") { CHECK(device().validation_messages() == 0); }
+
+}  // namespace sampler_sobol_tests

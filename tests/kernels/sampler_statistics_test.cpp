@@ -5,6 +5,8 @@
 
 #include "kernels/statistics_support.h"
 
+namespace sampler_statistics_tests {
+
 using namespace lucerna::test;
 
 TEST_CASE("the incomplete gamma function has its closed forms") {
@@ -77,3 +79,5 @@ TEST_CASE("a mean and its error") {
   CHECK(mean.value() == Approx(3));
   CHECK(mean.error() == Approx(std::sqrt(3.5 / 3)));
 }
+
+}  // namespace sampler_statistics_tests

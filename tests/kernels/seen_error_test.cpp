@@ -8,6 +8,8 @@
 #include "film/estimator.h"
 #include "shaders/shared/tone.h"
 
+namespace seen_error_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -260,3 +262,5 @@ TEST_CASE("Above its white a tone curve shows at most a tenth of a relative chan
   CHECK(range.floor == 0.005f);
   CHECK(range.white == 0.25f);
 }
+
+}  // namespace seen_error_tests

@@ -6,6 +6,8 @@
 #include "kernels/light_support.h"
 #include "scene/lamp.h"
 
+namespace shape_lights_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using scene::LightKind;
@@ -262,4 +264,6 @@ TEST_CASE("shapes send their power: intensity in front, behind only with two sid
   }
 }
 
-TEST_CASE("there were no validation messages") { CHECK(device().validation_messages() == 0); }
+TEST_CASE("there were no validation messages: shape lights") { CHECK(device().validation_messages() == 0); }
+
+}  // namespace shape_lights_tests

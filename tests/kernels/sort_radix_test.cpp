@@ -6,6 +6,8 @@
 #include "kernels/gpu_support.h"
 #include "sort/radix_sort.h"
 
+namespace sort_radix_tests {
+
 using namespace lucerna;
 using Catch::Matchers::Contains;
 
@@ -189,3 +191,5 @@ TEST_CASE("a sort beyond the capacity is refused") {
   CHECK(test::error_of([&] { sort(8); }) == "no error");
   sorter.stream.run();
 }
+
+}  // namespace sort_radix_tests

@@ -6,6 +6,8 @@
 #include "kernels/gpu_support.h"
 #include "sort/prefix_sum.h"
 
+namespace sort_scan_tests {
+
 using namespace lucerna;
 using Catch::Matchers::Contains;
 
@@ -129,3 +131,5 @@ TEST_CASE("a prefix sum beyond the capacity is refused") {
                  [&] { scanner.sum.encode(scanner.stream, scanner.in, scanner.out, {.most = k_words + 1}); }),
              Contains("'in'"));
 }
+
+}  // namespace sort_scan_tests

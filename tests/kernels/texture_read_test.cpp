@@ -10,6 +10,8 @@
 #include "upload/device_scene.h"
 #include "upload/textures.h"
 
+namespace texture_read_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -175,3 +177,5 @@ TEST_CASE("packing: nothing overlaps, equal uses share, and textures beyond the 
   CHECK(split.place.size() == map.place.size());
   CHECK_THROWS_AS(upload::pack_textures(s, buckets, 1), Error);
 }
+
+}  // namespace texture_read_tests

@@ -8,6 +8,8 @@
 #include "shaders/shared/trace.h"
 #include "unit/bvh_support.h"
 
+namespace trace_bvh_tests {
+
 using namespace lucerna;
 using namespace lucerna::bvh;
 using namespace lucerna::bvh::test;
@@ -282,3 +284,5 @@ TEST_CASE("queues and dead rays on the device") {
   CHECK(differences(Query::closest, queued, expected) == 0);
   CHECK(device().validation_messages() == 0);
 }
+
+}  // namespace trace_bvh_tests

@@ -5,6 +5,8 @@
 
 #include "kernels/gpu_support.h"
 
+namespace wide_sum_tests {
+
 using namespace lucerna;
 using namespace lucerna::gpu;
 
@@ -65,3 +67,5 @@ TEST_CASE("a sum of three words carries from each to the next, and accepts float
     CHECK(value(found) == Approx(std::floor(double(push.each)) * push.count).epsilon(1e-12));
   }
 }
+
+}  // namespace wide_sum_tests

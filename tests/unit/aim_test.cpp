@@ -11,6 +11,8 @@
 #include "transport/first_hits.h"
 #include "transport/light_source.h"
 
+namespace aim_tests {
+
 using namespace lucerna;
 
 TEST_CASE("separate objects form separate clusters, and one object forms one") {
@@ -166,3 +168,5 @@ TEST_CASE("lights are chosen by contribution, and a strong light starves no othe
   // No contribution at all: as in the pilot.
   CHECK(transport::light_weights(groups, power, std::vector<double>(4, 0.0)) == pilot);
 }
+
+}  // namespace aim_tests

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <random>
 
+namespace alias_table_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -51,3 +53,5 @@ TEST_CASE("a table's probabilities equal those of its coins, for weights of any 
     CHECK(sum == Approx(1).epsilon(1e-6));
   }
 }
+
+}  // namespace alias_table_tests

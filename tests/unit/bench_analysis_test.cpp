@@ -6,6 +6,8 @@
 
 #include "bench/analysis.h"
 
+namespace bench_analysis_tests {
+
 using namespace lucerna::bench;
 
 namespace {
@@ -148,3 +150,5 @@ TEST_CASE("Curves of repeats are resampled at common times") {
   CHECK(common_curve({{curve(1, 1, 1, 2), curve(1, 1, 1, 2), curve(1, 1, 4, 8)}}, 10).empty());
   CHECK(common_curve({}, 10).empty());
 }
+
+}  // namespace bench_analysis_tests

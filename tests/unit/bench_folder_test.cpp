@@ -10,6 +10,8 @@
 #include "film/io/image_file.h"
 #include "unit/bench_support.h"
 
+namespace bench_folder_tests {
+
 namespace fs = std::filesystem;
 using namespace lucerna;
 using namespace lucerna::bench;
@@ -223,3 +225,5 @@ TEST_CASE("A reference is used if it is complete and from the same inputs; other
   CHECK(reference_key(m, scene, "hash") == reference_key(m, changed, "hash"));
   CHECK(reference_key(m, scene, "hash") != key);
 }
+
+}  // namespace bench_folder_tests

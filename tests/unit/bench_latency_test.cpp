@@ -4,6 +4,8 @@
 
 #include "bench/latency.h"
 
+namespace bench_latency_tests {
+
 using namespace lucerna;
 using namespace lucerna::bench;
 using Catch::Contains;
@@ -183,3 +185,5 @@ TEST_CASE("edits are identified by their names") {
   for (size_t i = 0; i < k_edit_names.size(); ++i) CHECK(size_t(edit_of(k_edit_names[i])) == i);
   CHECK_THROWS_WITH(edit_of("lamp"), Contains("'lamp'") && Contains("strength") && Contains("solver"));
 }
+
+}  // namespace bench_latency_tests

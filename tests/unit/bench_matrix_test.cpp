@@ -7,6 +7,8 @@
 #include "bench/matrix.h"
 #include "bench/time_left.h"
 
+namespace bench_matrix_tests {
+
 using namespace lucerna;
 using namespace lucerna::bench;
 
@@ -199,3 +201,5 @@ TEST_CASE("Remaining time: from renders of the same kind, otherwise from the sce
   left.finished(small, 5);
   CHECK(*left.seconds(small, 0.2, 1) == Approx(4 + 64.0 * 105 / 516).epsilon(0.01));
 }
+
+}  // namespace bench_matrix_tests

@@ -12,6 +12,8 @@
 #include "film/io/image_file.h"
 #include "unit/bench_support.h"
 
+namespace bench_page_tests {
+
 using namespace lucerna;
 using namespace lucerna::bench;
 using Catch::Contains;
@@ -401,3 +403,5 @@ TEST_CASE("Small parts of the page") {
   CHECK_THAT(make_plot({line}, {}, "t", "e", Across::records), Contains(">3 k<") && Contains(">7 k<"));
   CHECK_THAT(make_plot({line}, {}, "t", "e"), Contains(">3000<") && Contains("seconds of rendering"));
 }
+
+}  // namespace bench_page_tests

@@ -9,6 +9,8 @@
 #include "bench/photon_errors.h"
 #include "bench/photons.h"
 
+namespace bench_photons_tests {
+
 using namespace lucerna;
 using namespace lucerna::bench;
 using Catch::Contains;
@@ -221,3 +223,5 @@ TEST_CASE("text and page show the measured values beside the expected ones") {
   report["slopes"][0].erase("points");
   CHECK_THROWS_WITH(photons_page(report), Contains("not as a bench writes it"));
 }
+
+}  // namespace bench_photons_tests

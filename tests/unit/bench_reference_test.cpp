@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace bench_reference_tests {
+
 using namespace lucerna;
 using Catch::Contains;
 
@@ -60,3 +62,5 @@ TEST_CASE("A picture without halves is no reference") {
   p.channels.erase(p.channels.begin() + 3);
   CHECK_THAT(error_of(p), Contains("'samples'"));
 }
+
+}  // namespace bench_reference_tests

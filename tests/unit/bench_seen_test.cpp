@@ -15,6 +15,8 @@
 #include "film/io/image_file.h"
 #include "unit/bench_support.h"
 
+namespace bench_seen_tests {
+
 namespace fs = std::filesystem;
 using namespace lucerna;
 using namespace lucerna::bench;
@@ -266,3 +268,5 @@ TEST_CASE("Page and findings of the error as seen show factors, and mark noise")
   CHECK(half["scenes"][0]["settings"][2]["cells"][0]["seen_ratio"].contains("high") == false);
   CHECK_THAT(compare_reports(r, r), Contains("as seen") && Contains("1.00x="));
 }
+
+}  // namespace bench_seen_tests

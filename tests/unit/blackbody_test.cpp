@@ -4,6 +4,8 @@
 
 #include "base/blackbody.h"
 
+namespace blackbody_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -45,3 +47,5 @@ TEST_CASE("the temperature of a colour is recovered, with its distance from a bl
   CHECK(nearest_kelvin(vec3(0, 1, 0)).off > 0.3f);
   CHECK(nearest_kelvin(vec3(0)).kelvin == Approx(6500).margin(700));
 }
+
+}  // namespace blackbody_tests

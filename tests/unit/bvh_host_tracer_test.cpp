@@ -9,6 +9,8 @@
 #include "bvh/embree/reference.h"
 #include "unit/bvh_support.h"
 
+namespace bvh_host_tracer_tests {
+
 using namespace lucerna;
 using namespace lucerna::bvh;
 using namespace lucerna::bvh::test;
@@ -230,3 +232,5 @@ TEST_CASE("the bench's reference tracer sees the same scene") {
   }
   CHECK_THROWS(reference.trace(Query::closest_non_opaque, rays, b));
 }
+
+}  // namespace bvh_host_tracer_tests

@@ -7,6 +7,8 @@
 #include "bvh/embree/build.h"
 #include "unit/bvh_support.h"
 
+namespace bvh_tree_tests {
+
 using namespace lucerna;
 using namespace lucerna::bvh;
 using namespace lucerna::bvh::test;
@@ -219,3 +221,5 @@ TEST_CASE("the oracle") {
   const Crossing x = cross(ray, mesh.vertices[0], mesh.vertices[1], mesh.vertices[2]);
   CHECK(x.margin == Approx(0.25 / std::sqrt(2.0)));
 }
+
+}  // namespace bvh_tree_tests

@@ -14,6 +14,8 @@
 #include "support/folder.h"
 #include "support/records.h"
 
+namespace cache_file_tests {
+
 namespace fs = std::filesystem;
 using namespace lucerna;
 using namespace lucerna::irradiance_cache;
@@ -225,3 +227,5 @@ TEST_CASE("a cache fits what it was built from, and reports what differs") {
   CHECK(fits([](MadeWith&) {}, 19) ==
         "a.cache: holds 20 records, but the limit is 19; set cache.max_records to 20 or more");
 }
+
+}  // namespace cache_file_tests

@@ -6,6 +6,8 @@
 
 #include "solvers/irradiance_cache/build_forecast.h"
 
+namespace cache_forecast_tests {
+
 using namespace lucerna;
 using namespace lucerna::irradiance_cache;
 
@@ -148,3 +150,5 @@ TEST_CASE("records for a new view take their share of the whole build") {
   }
   CHECK(last < 100131);
 }
+
+}  // namespace cache_forecast_tests

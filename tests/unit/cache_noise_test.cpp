@@ -6,6 +6,8 @@
 #include <cmath>
 #include <random>
 
+namespace cache_noise_tests {
+
 using namespace lucerna::irradiance_cache;
 
 TEST_CASE("records are judged by their neighbours' error and light and by their own bound") {
@@ -75,3 +77,5 @@ TEST_CASE("records that stop are unbiased on average, whatever their noise") {
     if (!too_noisy(std::span(list).subspan(i, 1), 0.1f).empty()) alone.push_back(i);
   CHECK(std::abs(mean_of_stopped(alone, stopped) - 1) > 0.1);
 }
+
+}  // namespace cache_noise_tests

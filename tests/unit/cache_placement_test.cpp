@@ -7,6 +7,8 @@
 
 #include "support/records.h"
 
+namespace cache_placement_tests {
+
 using namespace lucerna;
 using namespace lucerna::irradiance_cache;
 
@@ -61,3 +63,5 @@ TEST_CASE("thinning keeps a separate record for a panel above a ceiling") {
                  off_planes(radii), {})
             .size() == 1);
 }
+
+}  // namespace cache_placement_tests

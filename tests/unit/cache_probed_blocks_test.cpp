@@ -7,6 +7,8 @@
 #include <random>
 #include <set>
 
+namespace cache_probed_blocks_tests {
+
 using namespace lucerna::irradiance_cache;
 
 namespace {
@@ -95,3 +97,5 @@ TEST_CASE("pictures of one block or one row are probed too") {
     blocks.end();
   }
 }
+
+}  // namespace cache_probed_blocks_tests

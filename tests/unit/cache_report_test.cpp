@@ -7,6 +7,8 @@
 #include "solvers/irradiance_cache/info.h"
 #include "solvers/irradiance_cache/report.h"
 
+namespace cache_report_tests {
+
 using namespace lucerna;
 using namespace lucerna::irradiance_cache;
 using Catch::Contains;
@@ -210,3 +212,5 @@ TEST_CASE("the card shows the record under a point and the records it reads, sho
   c.inspection.solid = false;
   CHECK_FALSE(make_report(c, settings()).card);
 }
+
+}  // namespace cache_report_tests

@@ -8,6 +8,8 @@
 #include "solvers/irradiance_cache/placement.h"
 #include "solvers/irradiance_cache/placement_view.h"
 
+namespace cache_stages_tests {
+
 using namespace lucerna;
 using namespace lucerna::irradiance_cache;
 
@@ -133,3 +135,5 @@ TEST_CASE("the known and requested part of the placement is drawn") {
   CHECK(kind(points[2]) == shared::k_placed_tried);
   CHECK(points[4].position.x == 2);
 }
+
+}  // namespace cache_stages_tests

@@ -5,6 +5,8 @@
 #include "plan/choose.h"
 #include "solvers/registry.h"
 
+namespace choose_tests {
+
 using namespace lucerna;
 using plan::Choice, plan::Goal, plan::SceneFacts, plan::Settings;
 using solvers::Findings;
@@ -144,3 +146,5 @@ TEST_CASE("goals: samples, the target of adaptive sampling, a limit of time once
   CHECK(plan::goal_of(settings, &f, 10).samples == 20);
   CHECK(plan::goal_of(settings, &f, 10).cuts_preparation);
 }
+
+}  // namespace choose_tests

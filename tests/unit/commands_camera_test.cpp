@@ -4,6 +4,8 @@
 #include <catch2/catch.hpp>
 #include <glm/gtc/matrix_transform.hpp>
 
+namespace commands_camera_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 
@@ -151,3 +153,5 @@ TEST_CASE("focal lengths round-trip") {
   CHECK(yfov_from_focal_length(focal_length_mm(0.7f, 1.5f), 1.5f) == Approx(0.7f));
   CHECK(focal_length_mm(2 * std::atan(0.5f), 1.0f) == Approx(36.0f));
 }
+
+}  // namespace commands_camera_tests

@@ -9,6 +9,8 @@
 #include "scene/core.h"
 #include "session/pick.h"
 
+namespace commands_interior_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 
@@ -215,3 +217,5 @@ TEST_CASE("a far object changes neither speed, nor steps, nor framing") {
     CHECK(b.distance == a.distance);
   }
 }
+
+}  // namespace commands_interior_tests

@@ -4,6 +4,8 @@
 #include "session/pick.h"
 #include "unit/workspace_bench.h"
 
+namespace commands_lens_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 using Catch::Contains, test::WorkspaceBench;
@@ -176,3 +178,5 @@ TEST_CASE("lenses that make no sense are refused with what is expected, and noth
   b.run("camera.place 0,1,5 0,0,0 0,1,0 height=4");
   CHECK_THAT(b.failure("camera.f_number 2"), Contains("the camera is orthographic, without depth of field"));
 }
+
+}  // namespace commands_lens_tests

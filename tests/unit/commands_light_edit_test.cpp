@@ -7,6 +7,8 @@
 
 #include "commands/camera_control.h"
 
+namespace commands_light_edit_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 
@@ -73,3 +75,5 @@ TEST_CASE("a lamp at the camera's position or behind it does not jump") {
   for (const vec3 from : {vec3(0, 1, 4), vec3(0, 1, 9)})
     CHECK(dragged(camera, from, {50, 20}, 500, false) == from);
 }
+
+}  // namespace commands_light_edit_tests

@@ -3,6 +3,8 @@
 #include "scene/solar.h"
 #include "unit/workspace_bench.h"
 
+namespace commands_light_list_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 using namespace lucerna::test;
@@ -189,3 +191,5 @@ TEST_CASE("invalid edits of lights are refused and change nothing") {
   b.run("light.set Sun elevation=-20");
   refused("environment.sky preetham", "the sun is below the horizon");
 }
+
+}  // namespace commands_light_list_tests

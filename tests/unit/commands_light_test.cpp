@@ -3,6 +3,8 @@
 #include "base/blackbody.h"
 #include "unit/workspace_bench.h"
 
+namespace commands_light_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 using namespace lucerna::test;
@@ -270,3 +272,5 @@ TEST_CASE("a light mix is set, kept, blended, undone and written into the lights
   CHECK(b.work.open.light_groups().groups[2].name == "lamps");
   CHECK(b.work.open.light_groups().groups[2].lamps == 2);
 }
+
+}  // namespace commands_light_tests

@@ -3,6 +3,8 @@
 // component.
 #include "unit/workspace_bench.h"
 
+namespace commands_navigation_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 using namespace lucerna::test;
@@ -162,3 +164,5 @@ TEST_CASE("exposure is measured by command, at a point, and on loading if set") 
   b.run("wait_scene");
   CHECK_FALSE(b.until([&] { return b.work.open.setting_real("film.ev") != -1; }, 0.5));
 }
+
+}  // namespace commands_navigation_tests

@@ -4,6 +4,8 @@
 #include "support/folder.h"
 #include "unit/workspace_bench.h"
 
+namespace commands_order_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 using namespace lucerna::test;
@@ -296,3 +298,5 @@ TEST_CASE("a mix written into the lights is one edit for the session, and so is 
   CHECK(b.session.scene()->lights[0].enabled);
   CHECK_THAT(b.session.settings().text("relight.mix"), Contains("Brass lamp"));
 }
+
+}  // namespace commands_order_tests

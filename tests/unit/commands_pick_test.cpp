@@ -5,6 +5,8 @@
 
 #include "session/pick.h"
 
+namespace commands_pick_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -135,3 +137,5 @@ TEST_CASE("many rays with the tree give the result of one ray against all triang
   CHECK(first > 20);
   CHECK(second > 200);
 }
+
+}  // namespace commands_pick_tests

@@ -9,6 +9,8 @@
 
 #include "commands/workspace.h"
 
+namespace commands_registry_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 using Catch::Contains;
@@ -180,3 +182,5 @@ TEST_CASE("partial input is completed") {
   CHECK(offers("").size() >= work.registry.all().size());
   std::filesystem::remove_all(folder);
 }
+
+}  // namespace commands_registry_tests

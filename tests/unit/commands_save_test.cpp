@@ -6,6 +6,8 @@
 #include "unit/scene_support.h"
 #include "unit/workspace_bench.h"
 
+namespace commands_save_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 using namespace lucerna::test;
@@ -62,3 +64,5 @@ TEST_CASE("a failed save is reported, and leaves something to save") {
   CHECK(b.errors == 1);
   CHECK(b.work.scene_file.unsaved());
 }
+
+}  // namespace commands_save_tests

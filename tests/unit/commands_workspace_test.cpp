@@ -3,6 +3,8 @@
 // everything.
 #include "unit/workspace_bench.h"
 
+namespace commands_workspace_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 using namespace lucerna::test;
@@ -221,3 +223,5 @@ TEST_CASE("a repeated session script gives the same state") {
   CHECK(b.session.settings().all() == a.work.open.document().settings);
   std::filesystem::remove(file);
 }
+
+}  // namespace commands_workspace_tests

@@ -4,6 +4,8 @@
 
 #include "plan/facts_text.h"
 
+namespace facts_tests {
+
 using namespace lucerna;
 using plan::SceneFacts, plan::facts_of;
 
@@ -172,3 +174,5 @@ TEST_CASE("cameras call for a lens, a lens shift and a section plane, each by it
   s.cameras[1].orthographic = true;
   CHECK_FALSE(facts_of(s).has("depth_of_field"));
 }
+
+}  // namespace facts_tests

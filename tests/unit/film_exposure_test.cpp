@@ -6,6 +6,8 @@
 
 #include "film/exposure.h"
 
+namespace film_exposure_tests {
+
 using namespace lucerna;
 using namespace lucerna::film;
 
@@ -82,3 +84,5 @@ TEST_CASE("a point becomes middle grey by its surroundings") {
   CHECK_FALSE(
       measure_point(picture([](uint32_t, uint32_t) { return vec3(0); }), k_width, k_height, {0, 0}).ev);
 }
+
+}  // namespace film_exposure_tests

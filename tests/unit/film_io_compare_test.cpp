@@ -7,6 +7,8 @@
 
 #include "film/io/compare.h"
 
+namespace film_io_compare_tests {
+
 using namespace lucerna;
 using film::Comparison;
 using film::FilmImage;
@@ -210,3 +212,5 @@ TEST_CASE("The difference picture shows size, channel and non-finite values") {
   CHECK(std::vector<uint8_t>(rgba.begin() + 4, rgba.begin() + 8) == std::vector<uint8_t>{255, 0, 0, 255});
   CHECK(std::vector<uint8_t>(rgba.begin() + 8, rgba.begin() + 12) == std::vector<uint8_t>{255, 0, 255, 255});
 }
+
+}  // namespace film_io_compare_tests

@@ -8,6 +8,8 @@
 
 #include "film/io/compare.h"
 
+namespace film_io_flip_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -137,3 +139,5 @@ TEST_CASE("A comparison contains FLIP where it is defined") {
   CHECK(film::to_text(film::compare(a, b)).find("FLIP") != std::string::npos);
   CHECK(film::to_json(film::compare(bad, b)).find("\"flip\":null") != std::string::npos);
 }
+
+}  // namespace film_io_flip_tests

@@ -13,6 +13,8 @@
 #include "film/io/image_file.h"
 #include "support/folder.h"
 
+namespace film_io_image_file_tests {
+
 namespace fs = std::filesystem;
 using namespace lucerna;
 using film::FilmImage;
@@ -235,3 +237,5 @@ TEST_CASE("An unreadable image gives one located message") {
     CHECK(message.find('\n') == std::string::npos);
   }
 }
+
+}  // namespace film_io_image_file_tests

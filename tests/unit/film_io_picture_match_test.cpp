@@ -4,6 +4,8 @@
 
 #include <catch2/catch.hpp>
 
+namespace film_io_picture_match_tests {
+
 using namespace lucerna;
 using namespace lucerna::film;
 
@@ -53,3 +55,5 @@ TEST_CASE("pictures of other sizes and grey ones are refused") {
   grey.channels[0].first = "Y";
   CHECK_THROWS_WITH(match_pictures(reference, grey, {}, "r.png"), Catch::Contains("r.png: no channel 'R'"));
 }
+
+}  // namespace film_io_picture_match_tests

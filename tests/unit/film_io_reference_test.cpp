@@ -9,6 +9,8 @@
 
 #include "film/io/reference.h"
 
+namespace film_io_reference_tests {
+
 using namespace lucerna;
 namespace fs = std::filesystem;
 
@@ -126,3 +128,5 @@ TEST_CASE("the true error is the picture's noise without the reference's own") {
   (*noisier.noise)[0] = 0.2;
   CHECK(film::true_errors(noisier, components, samples)[0] == 0);
 }
+
+}  // namespace film_io_reference_tests

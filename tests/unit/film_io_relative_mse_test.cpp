@@ -5,6 +5,8 @@
 #include <cmath>
 #include <random>
 
+namespace film_io_relative_mse_tests {
+
 using namespace lucerna;
 using film::ReferencePair;
 using film::RelativeMse;
@@ -153,3 +155,5 @@ TEST_CASE("Dark, small and empty pictures have an error as seen") {
   CHECK(film::seen_mse_noise({}) == 0);
   CHECK(film::seen_difference({}, {}).empty());
 }
+
+}  // namespace film_io_relative_mse_tests

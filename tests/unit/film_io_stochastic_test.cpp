@@ -5,6 +5,8 @@
 #include <catch2/catch.hpp>
 #include <random>
 
+namespace film_io_stochastic_tests {
+
 using namespace lucerna;
 using namespace lucerna::film;
 using Catch::Contains;
@@ -119,3 +121,5 @@ TEST_CASE("pictures that cannot be compared are refused with the reason") {
   CHECK_THROWS_WITH(compare_stochastic(reference, reference, {.layer = "caustic"}, "r.exr"),
                     "r.exr: there is no layer 'caustic'");
 }
+
+}  // namespace film_io_stochastic_tests

@@ -5,6 +5,8 @@
 
 #include "film/tonemap.h"
 
+namespace film_io_tonemap_tests {
+
 using namespace lucerna;
 using film::ToneCurve;
 
@@ -163,3 +165,5 @@ TEST_CASE("A picture has rounded bytes and full alpha") {
   CHECK(film::tone_map_picture(pixels, 0, ToneCurve::linear) ==
         std::vector<uint8_t>{0, 0, 0, 255, 255, 255, 255, 255, 128, 255, 0, 255});
 }
+
+}  // namespace film_io_tonemap_tests

@@ -6,6 +6,8 @@
 #include "transport/hit_classes.h"
 #include "upload/material_kinds.h"
 
+namespace hit_classes_tests {
+
 using namespace lucerna;
 using namespace lucerna::upload;
 using transport::choose_hit_classes;
@@ -132,3 +134,5 @@ TEST_CASE("a class's kernel keeps what light samples read of emissive surfaces")
   CHECK(matt["LUCERNA_TEX_BASE"] == "0");
   CHECK(transport::defines_of({0, true}, all)["LUCERNA_HITS_SURFACES"] == "0");
 }
+
+}  // namespace hit_classes_tests

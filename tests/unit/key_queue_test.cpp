@@ -7,6 +7,8 @@
 
 #include "ui/key_queue.h"
 
+namespace key_queue_tests {
+
 using namespace lucerna;
 using Keys = std::vector<int>;
 
@@ -49,3 +51,5 @@ TEST_CASE("keys under equal modifiers share a frame; AltGr types") {
   CHECK(frame.keys == Keys{GLFW_KEY_Q});
   CHECK(frame.text == 1);
 }
+
+}  // namespace key_queue_tests

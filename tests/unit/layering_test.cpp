@@ -12,6 +12,8 @@
 #include <set>
 #include <sstream>
 
+namespace layering_tests {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -352,3 +354,5 @@ lucerna_module(scene DIR ${here}/scene
   CHECK_THAT(joined(parse("lucerna_module(a DIR ${here}/a DEPS later)", "", modules)),
              Catch::Contains("later"));
 }
+
+}  // namespace layering_tests

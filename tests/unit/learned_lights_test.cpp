@@ -9,6 +9,8 @@
 
 #include "transport/learned_lights.h"
 
+namespace learned_lights_tests {
+
 using namespace lucerna;
 using shared::LightRecord;
 
@@ -197,3 +199,5 @@ TEST_CASE("a cluster that reaches one corner is chosen there") {
   CHECK(chosen_at({1, 1.5f, 1}) > 0.8f);
   CHECK(clusters.plain[seen] < 0.01f);
 }
+
+}  // namespace learned_lights_tests

@@ -9,6 +9,8 @@
 #include "solvers/light_tracing/report.h"
 #include "solvers/photons/report.h"
 
+namespace legends_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -69,3 +71,5 @@ TEST_CASE("photons, their density, paths of light and what they are aimed at") {
   light.aimed = paths.aimed;
   check(light_tracing::make_report(light), 2);
 }
+
+}  // namespace legends_tests

@@ -6,6 +6,8 @@
 
 #include "scene/openings.h"
 
+namespace openings_tests {
+
 using namespace lucerna;
 using namespace lucerna::scene;
 
@@ -161,3 +163,5 @@ TEST_CASE("rays of one point, or of one direction, are no openings") {
   for (RoomRay& ray : rays) ray.direction = {1, 0, 0}, ray.escapes = true;
   CHECK(find_openings(rays, k_axes).empty());
 }
+
+}  // namespace openings_tests

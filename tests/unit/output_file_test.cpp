@@ -14,6 +14,8 @@
 #include "base/file.h"
 #include "support/folder.h"
 
+namespace output_file_tests {
+
 namespace fs = std::filesystem;
 using namespace lucerna;
 using Catch::Contains;
@@ -154,3 +156,5 @@ TEST_CASE("if the working folder is deleted paths stay as given and outputs fail
   fs::current_path(before);
   CHECK(absolute_path("a") == before / "a");
 }
+
+}  // namespace output_file_tests

@@ -2,6 +2,8 @@
 // Commands that trace, list and follow paths of a pixel, and explain noise.
 #include "workspace_bench.h"
 
+namespace path_commands_tests {
+
 using namespace lucerna;
 using Catch::Contains;
 
@@ -60,3 +62,5 @@ TEST_CASE("inspect.noise explains the noise of a rectangle; inspect.cure sets wh
   b.run("inspect.noise");
   CHECK(b.work.noise->whole_picture());
 }
+
+}  // namespace path_commands_tests

@@ -5,6 +5,8 @@
 
 #include "overlay/path_lines.h"
 
+namespace path_lines_tests {
+
 using namespace lucerna;
 using namespace lucerna::overlay;
 using recording::Event;
@@ -72,3 +74,5 @@ TEST_CASE("a followed path stands out, with its marked event") {
   CHECK(path_strokes(two_paths(), {.path = 0}).points.size() == 4);
   CHECK(path_strokes({}, {.path = 3}).segments.empty());
 }
+
+}  // namespace path_lines_tests

@@ -5,6 +5,8 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+namespace paths_tests {
+
 using namespace lucerna;
 using namespace lucerna::paths;
 
@@ -406,3 +408,5 @@ TEST_CASE(
   CHECK((packed[state_after(a, "D")] >> 27 & 1u) == 0);
   CHECK((packed[state_after(a, "SD")] >> 27 & 1u) == 1);
 }
+
+}  // namespace paths_tests

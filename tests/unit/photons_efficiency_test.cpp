@@ -7,6 +7,8 @@
 #include "base/math.h"
 #include "solvers/photons/efficiency.h"
 
+namespace photons_efficiency_tests {
+
 using namespace lucerna;
 using photons::Moments, photons::Regions, photons::EfficiencyCosts, photons::EfficiencyPilot;
 
@@ -141,3 +143,5 @@ TEST_CASE("each region gets the method that makes the whole most efficient", "[p
     CHECK(choose(halves(even, even), {.base = 2, .lookup = 0.5, .onward = 0, .paths = 4}).nowhere);
   }
 }
+
+}  // namespace photons_efficiency_tests

@@ -12,6 +12,8 @@
 #include "shaders/shared/photons/photons.h"
 #include "solvers/photons/irradiance_cells.h"
 
+namespace photons_irradiance_cells_tests {
+
 using namespace lucerna;
 using photons::IrradianceCells, photons::IrradianceCellsBuilder, photons::PhotonOnSide, photons::SideOrder;
 
@@ -208,3 +210,5 @@ TEST_CASE("without photons, or with triangles of zero area, no irradiance is kno
   for (uint32_t i = 0; i < point.size(); ++i) point[i].number = i << shared::k_photon_id_events;
   CHECK(make(photons::order_sides(one, {true}), point, 0, 1).known > 0);
 }
+
+}  // namespace photons_irradiance_cells_tests

@@ -6,6 +6,8 @@
 #include "solvers/photons/radius.h"
 #include "solvers/photons/report.h"
 
+namespace photons_radius_tests {
+
 using namespace lucerna;
 using photons::radius_ratio;
 
@@ -45,3 +47,5 @@ TEST_CASE("the report of photons states why there are none") {
   CHECK(photons::make_report(r).state == "round 5");
   CHECK(photons::make_report(r).figure("rounds") == 5);
 }
+
+}  // namespace photons_radius_tests

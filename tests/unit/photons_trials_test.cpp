@@ -4,6 +4,8 @@
 
 #include "solvers/photons/trials.h"
 
+namespace photons_trials_tests {
+
 using namespace lucerna;
 using photons::judge, photons::Trial;
 
@@ -104,3 +106,5 @@ TEST_CASE("a trial that missed light has the variance of light that is too rare 
   CHECK(judge(half) == 0);
   CHECK(half[1].product == Approx(1));
 }
+
+}  // namespace photons_trials_tests

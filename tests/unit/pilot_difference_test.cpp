@@ -6,6 +6,8 @@
 #include "film/film.h"
 #include "pilot/difference.h"
 
+namespace pilot_difference_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -70,3 +72,5 @@ TEST_CASE("black pictures differ in nothing") {
   CHECK(d.seen == 0);
   CHECK(d.noise == 0);
 }
+
+}  // namespace pilot_difference_tests

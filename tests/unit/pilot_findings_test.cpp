@@ -5,6 +5,8 @@
 
 #include "pilot/findings.h"
 
+namespace pilot_findings_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -77,3 +79,5 @@ TEST_CASE("darkness hides noise, a firefly counts with a bounded amount, and bla
   CHECK(black.components[0].variance == 0);
   CHECK(black.components[0].energy == 0);
 }
+
+}  // namespace pilot_findings_tests

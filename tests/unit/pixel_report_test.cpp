@@ -8,6 +8,8 @@
 #include "session/pick.h"
 #include "workspace_bench.h"
 
+namespace pixel_report_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 using Catch::Contains;
@@ -101,3 +103,5 @@ TEST_CASE("inspect.pixel reports in the log, until inspect.none") {
   CHECK_FALSE(b.work.pixel);
   CHECK_THAT(b.failure("inspect.pixel 2 0.5"), Contains("expected a number from 0 to 1 picture widths"));
 }
+
+}  // namespace pixel_report_tests

@@ -7,6 +7,8 @@
 #include "plan/plan.h"
 #include "scene/default_light.h"
 
+namespace plan_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -177,3 +179,5 @@ TEST_CASE("two solvers joined by a plus share a component, and both are used") {
   CHECK_FALSE(solvers::chooses("light+photons", "path"));
   CHECK_FALSE(solvers::chooses("path", "light"));
 }
+
+}  // namespace plan_tests

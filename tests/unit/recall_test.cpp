@@ -12,6 +12,8 @@
 #include "support/folder.h"
 #include "ui/recall.h"
 
+namespace recall_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -145,3 +147,5 @@ TEST_CASE("a failed save is reported once") {
   log::remove_listener(token);
   CHECK(warnings == 1);
 }
+
+}  // namespace recall_tests

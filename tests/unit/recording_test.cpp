@@ -13,6 +13,8 @@
 #include "recording/query.h"
 #include "support/folder.h"
 
+namespace recording_tests {
+
 using namespace lucerna;
 using namespace lucerna::recording;
 using Catch::Contains;
@@ -303,3 +305,5 @@ TEST_CASE("damaged, cut and foreign files are refused with their place") {
   many[chunk + 14] = 0x7f;
   CHECK_THAT(problem(many), Contains("bytes are left: it was cut"));
 }
+
+}  // namespace recording_tests

@@ -9,6 +9,8 @@
 #include "support/folder.h"
 #include "workspace_bench.h"
 
+namespace saved_test_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 using Catch::Contains;
@@ -60,3 +62,5 @@ TEST_CASE("a saved test replaces no file of another kind") {
   b.run("script.save_test " + file("a.lucerna"));
   b.run("script.save_test " + file("a.lucerna"));  // its own kind
 }
+
+}  // namespace saved_test_tests

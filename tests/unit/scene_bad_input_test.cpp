@@ -4,6 +4,8 @@
 
 #include "unit/scene_support.h"
 
+namespace scene_bad_input_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using Catch::Matchers::Contains;
@@ -405,3 +407,5 @@ TEST_CASE("invalid environments and settings") {
   a.doc["scenes"][0]["extras"]["environment"] = {{"type", "equirectangular"}, {"file", "no.hdr"}};
   CHECK_THAT(failure(a.gltf(folder)), Contains("a.gltf: scenes[0].extras.environment.file: no such file"));
 }
+
+}  // namespace scene_bad_input_tests

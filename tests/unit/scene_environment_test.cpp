@@ -9,6 +9,8 @@
 #include "scene/io/environment_file.h"
 #include "unit/scene_support.h"
 
+namespace scene_environment_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using Catch::Matchers::Contains;
@@ -216,3 +218,5 @@ TEST_CASE("one rule for the shape of environments, in scenes and as single files
   CHECK(complaint(200, 101).empty());
   CHECK(complaint(1, 1).empty());
 }
+
+}  // namespace scene_environment_tests

@@ -2,6 +2,8 @@
 // The files that a scene can make the program read: those of its folder, by content, and no others.
 #include "unit/scene_support.h"
 
+namespace scene_files_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using Catch::Matchers::Contains;
@@ -159,3 +161,5 @@ TEST_CASE("a hint that is no format name is an error, not a file name") {
     CHECK(warnings_with(scene, "is no image format that is known") == 1);
   }
 }
+
+}  // namespace scene_files_tests

@@ -7,6 +7,8 @@
 
 #include "unit/scene_support.h"
 
+namespace scene_fuzz_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -216,3 +218,5 @@ TEST_CASE("numbers, strings and structures of the JSON exchanged, 3000 files") {
   CHECK(loaded > 150);
   CHECK(loaded < 2700);
 }
+
+}  // namespace scene_fuzz_tests

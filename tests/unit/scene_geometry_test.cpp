@@ -5,6 +5,8 @@
 #include "scene/tangents.h"
 #include "unit/scene_support.h"
 
+namespace scene_geometry_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using scene::Primitive;
@@ -364,3 +366,5 @@ TEST_CASE("degenerate texture coordinates still give frames") {
   scene::make_tangents(p, plain_map());
   CHECK(p.tangents.size() == 4);
 }
+
+}  // namespace scene_geometry_tests

@@ -7,6 +7,8 @@
 #include "base/hash.h"
 #include "scene/hash.h"
 
+namespace scene_hash_tests {
+
 using namespace lucerna;
 using namespace lucerna::scene;
 
@@ -116,3 +118,5 @@ TEST_CASE("the hash is FNV-1a, whose values are stored in files") {
   hash.add_bytes("hello", 5);
   CHECK(hash.low() == 0xa430d84680aabd0bull);
 }
+
+}  // namespace scene_hash_tests

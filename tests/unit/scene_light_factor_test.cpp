@@ -4,6 +4,8 @@
 
 #include "scene/light_factor.h"
 
+namespace scene_light_factor_tests {
+
 using namespace lucerna;
 using namespace lucerna::scene;
 
@@ -115,3 +117,5 @@ TEST_CASE("by light groups each has its own factor") {
   after = before;
   CHECK(common_factor(*light_factors(before, after, &groups)) == vec3(1));
 }
+
+}  // namespace scene_light_factor_tests

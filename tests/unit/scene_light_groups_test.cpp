@@ -8,6 +8,8 @@
 #include "support/rooms.h"
 #include "unit/scene_support.h"
 
+namespace scene_light_groups_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using Catch::Matchers::Contains;
@@ -192,3 +194,5 @@ TEST_CASE("extras of a file's nodes, lamps and materials are read and described"
   asset.doc["nodes"][1]["extras"]["light_group"] = json::array();
   CHECK_THROWS_WITH(asset.load(), Contains("nodes[1].extras.light_group") && Contains("name of a group"));
 }
+
+}  // namespace scene_light_groups_tests

@@ -8,6 +8,8 @@
 #include "base/error.h"
 #include "support/rooms.h"
 
+namespace scene_light_mix_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using Catch::Matchers::Contains;
@@ -127,3 +129,5 @@ TEST_CASE("a mixed scene differs from the scene in its lights only") {
   mixed_scene(s, group_lights(s), parse_mix("shelf: ev=1; block: ev=1"), &messages);
   CHECK(messages.empty());
 }
+
+}  // namespace scene_light_mix_tests

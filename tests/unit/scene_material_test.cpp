@@ -4,6 +4,8 @@
 
 #include "unit/scene_support.h"
 
+namespace scene_material_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using scene::Image;
@@ -384,3 +386,5 @@ TEST_CASE("missing images are replaced by neutral texels") {
   CHECK(scene.images[0].width == 1);
   CHECK(scene.warnings.empty());
 }
+
+}  // namespace scene_material_tests

@@ -3,6 +3,8 @@
 // refused with the limit and the cause.
 #include "unit/scene_support.h"
 
+namespace scene_memory_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using Catch::Matchers::Contains;
@@ -114,3 +116,5 @@ TEST_CASE("images and files count before they are decoded") {
       Contains("hole.gltf: buffers[0].uri: a file of 68719476736 bytes would take 64.00 GiB more, "
                "beyond the 8.00 GiB"));
 }
+
+}  // namespace scene_memory_tests

@@ -4,6 +4,8 @@
 
 #include "unit/scene_support.h"
 
+namespace scene_nodes_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using Catch::Matchers::Contains;
@@ -397,3 +399,5 @@ TEST_CASE("a description lists the contents of a scene") {
                            "EXT_never", "warning"})
     CHECK_THAT(text, Contains(word));
 }
+
+}  // namespace scene_nodes_tests

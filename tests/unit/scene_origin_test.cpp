@@ -6,6 +6,8 @@
 #include "scene/recentre.h"
 #include "unit/scene_support.h"
 
+namespace scene_origin_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using glm::dvec3;
@@ -140,3 +142,5 @@ TEST_CASE("large coordinates inside a mesh") {
   CHECK(scene::bounds(scene).lo.x == Approx(0.1).epsilon(1e-5));
   CHECK(scene::bounds(scene).hi.x == Approx(1.1).epsilon(1e-5));
 }
+
+}  // namespace scene_origin_tests

@@ -4,6 +4,8 @@
 
 #include "unit/scene_support.h"
 
+namespace scene_portals_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using Catch::Contains;
@@ -164,3 +166,5 @@ TEST_CASE("of many portals the largest are used, and overlapping ones are report
   CHECK(warned(over, "1 portals that overlap others"));
   CHECK(warned(over, "nodes[2]"));
 }
+
+}  // namespace scene_portals_tests

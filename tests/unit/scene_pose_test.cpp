@@ -5,6 +5,8 @@
 
 #include "unit/scene_support.h"
 
+namespace scene_pose_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 using Catch::Matchers::Contains;
@@ -283,3 +285,5 @@ TEST_CASE("morph targets of normals, tangents, texture coordinates and colours")
   CHECK(p.uv0[1] == vec2(1, 4));
   CHECK(close(vec3(p.colors[0]), {0.5f, 1, 0.4f}));  // the sum is clamped, not its terms
 }
+
+}  // namespace scene_pose_tests

@@ -6,6 +6,8 @@
 #include "scene/projection.h"
 #include "scene/range.h"
 
+namespace scene_projection_tests {
+
 using namespace lucerna;
 using scene::Camera, scene::Wide;
 
@@ -80,3 +82,5 @@ TEST_CASE("an orthographic camera cannot be a panorama") {
   CHECK_THROWS_WITH(scene::check_range(camera_of(Wide::fisheye, true)),
                     Catch::Contains("fisheye is not orthographic"));
 }
+
+}  // namespace scene_projection_tests

@@ -8,6 +8,8 @@
 #include "scene/range.h"
 #include "support/folder.h"
 
+namespace scene_range_tests {
+
 using namespace lucerna;
 using Catch::Contains;
 
@@ -109,3 +111,5 @@ TEST_CASE("a file whose lamp is too far away is refused; an unused camera does n
       Contains("far.gltf: light 'Lamp': its place"));
   CHECK(load(R"({"translation": [0, 0, 3e9], "camera": 0})").cameras.size() == 1);
 }
+
+}  // namespace scene_range_tests

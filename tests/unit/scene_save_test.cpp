@@ -12,6 +12,8 @@
 #include "scene/solar.h"
 #include "unit/scene_support.h"
 
+namespace scene_save_tests {
+
 using namespace lucerna;
 using namespace lucerna::scene;
 using namespace lucerna::test;
@@ -425,3 +427,5 @@ TEST_CASE("damaged extras are refused or ignored where they stand") {
   a.doc["scenes"][0]["extras"]["lucerna"] = {{"settings", {{"film.ev", json::array()}}}};
   CHECK_THAT(failure(a), Contains("extras.lucerna.settings.film.ev: expected a number"));
 }
+
+}  // namespace scene_save_tests

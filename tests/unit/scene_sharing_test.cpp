@@ -4,6 +4,8 @@
 
 #include "scene/scene.h"
 
+namespace scene_sharing_tests {
+
 using namespace lucerna;
 
 TEST_CASE("an edited copy of a scene shares geometry, images and textures, and owns its changes") {
@@ -46,3 +48,5 @@ TEST_CASE("an empty one reads as empty") {
   CHECK(some.empty());
   CHECK(some.shares_with(none));
 }
+
+}  // namespace scene_sharing_tests

@@ -6,6 +6,8 @@
 #include "scene/variants.h"
 #include "unit/scene_support.h"
 
+namespace scene_variants_tests {
+
 using namespace lucerna;
 using namespace lucerna::test;
 
@@ -89,3 +91,5 @@ TEST_CASE("clay is matt and grey, and leaves glass, emitters and holes") {
   CHECK(clay->materials[3].alpha_mode == scene::AlphaMode::mask);
   CHECK(clay->materials[3].base_color_texture == s.materials[3].base_color_texture);
 }
+
+}  // namespace scene_variants_tests

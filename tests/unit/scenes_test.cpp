@@ -14,6 +14,8 @@
 #include "scene/lamp.h"
 #include "unit/bvh_support.h"
 
+namespace scenes_tests {
+
 using namespace lucerna;
 using bvh::test::Random;
 
@@ -213,3 +215,5 @@ TEST_CASE("the conference hall's twenty spots are unobstructed") {
   for (const shared::Hit& hit : hits) near += hit.prim == shared::k_no_hit || hit.t < 0.8f;
   CHECK(near == 0);
 }
+
+}  // namespace scenes_tests

@@ -9,6 +9,8 @@
 #include "schedule/adaptive.h"
 #include "schedule/uniform.h"
 
+namespace schedule_adaptive_tests {
+
 using namespace lucerna::schedule;
 
 namespace {
@@ -439,3 +441,5 @@ TEST_CASE("uniform passes end at every power of two, whatever fits into an item"
     CHECK(u.complete() == 600);
   }
 }
+
+}  // namespace schedule_adaptive_tests

@@ -10,6 +10,8 @@
 #include "support/folder.h"
 #include "workspace_bench.h"
 
+namespace script_runner_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 using Catch::Contains;
@@ -230,3 +232,5 @@ TEST_CASE("a report folder with other files is refused") {
   CHECK_THROWS_WITH(ReportFolder(folder.path / "letter.txt"), Contains("the report folder cannot be made"));
   CHECK(shell_word("a b'c") == "'a b'\\''c'");
 }
+
+}  // namespace script_runner_tests

@@ -9,6 +9,8 @@
 #include "commands/workspace.h"
 #include "support/folder.h"
 
+namespace script_tests {
+
 using namespace lucerna;
 using namespace lucerna::commands;
 using Catch::Contains;
@@ -119,3 +121,5 @@ TEST_CASE("the rest of a line is kept as written") {
   CHECK(text_after("expect", 1).empty());
   CHECK(text_after("expect \"a \\\" b\" c", 2) == "c");
 }
+
+}  // namespace script_tests

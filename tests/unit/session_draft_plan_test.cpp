@@ -5,6 +5,8 @@
 
 #include "session/draft_plan.h"
 
+namespace session_draft_plan_tests {
+
 using lucerna::session::DraftPlan;
 using Next = DraftPlan::Next;
 
@@ -130,3 +132,5 @@ TEST_CASE("visibility, the last coarse sample and every doubling of fine samples
   }
   CHECK(shown == 6);
 }
+
+}  // namespace session_draft_plan_tests

@@ -5,6 +5,8 @@
 
 #include "plan/settings.h"
 
+namespace settings_tests {
+
 using namespace lucerna;
 using namespace lucerna::plan;
 
@@ -91,3 +93,5 @@ TEST_CASE("values are read back typed, and only changes are written") {
     CHECK(json.find(part) != std::string::npos);
   CHECK(json.find("seed") == std::string::npos);
 }
+
+}  // namespace settings_tests

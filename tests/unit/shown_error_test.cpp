@@ -6,6 +6,8 @@
 
 #include "film/shown_error.h"
 
+namespace shown_error_tests {
+
 using namespace lucerna;
 using film::ShownError;
 using film::ShownJudge;
@@ -87,3 +89,5 @@ TEST_CASE("tiles without a measurement, and squares below 0, give a finite error
   CHECK(e.median < 0.124);
   CHECK(std::isfinite(e.worst_tenth));
 }
+
+}  // namespace shown_error_tests

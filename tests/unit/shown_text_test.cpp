@@ -4,6 +4,8 @@
 
 #include "ui/shown_text.h"
 
+namespace shown_text_tests {
+
 using namespace lucerna;
 using Texts = std::vector<std::string>;
 
@@ -60,3 +62,5 @@ TEST_CASE("a pause before the first sample is said, because the picture shows no
   s.samples = 0, s.activity = "loading";
   CHECK(ui::paused_text(s) == "");
 }
+
+}  // namespace shown_text_tests

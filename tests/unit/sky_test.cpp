@@ -6,6 +6,8 @@
 #include "base/error.h"
 #include "scene/sky_image.h"
 
+namespace sky_tests {
+
 using namespace lucerna;
 using namespace lucerna::scene;
 using Catch::Contains;
@@ -112,3 +114,5 @@ TEST_CASE("a sky out of range is refused") {
   CHECK_THROWS_WITH(check_range(SkyModel{.ground = 1.5f}), Contains("the ground"));
   CHECK_THROWS_WITH(check_range(SkyModel{.to_sun = vec3(0)}), Contains("the direction of the sun"));
 }
+
+}  // namespace sky_tests

@@ -5,6 +5,8 @@
 #include "base/error.h"
 #include "scene/solar.h"
 
+namespace solar_tests {
+
 using namespace lucerna;
 using namespace lucerna::scene;
 using Catch::Contains;
@@ -149,3 +151,5 @@ TEST_CASE("dates and times are read and refused") {
   CHECK_THAT(refused([](SunTime& s) { s.longitude = -181; }), Contains("the longitude"));
   CHECK_THAT(refused([](SunTime& s) { s.zone = 15; }), Contains("the time zone"));
 }
+
+}  // namespace solar_tests

@@ -5,6 +5,8 @@
 #include "support/rooms.h"
 #include "upload/media.h"
 
+namespace solid_shells_tests {
+
 using namespace lucerna;
 
 TEST_CASE("boxes of solids include the margin of their own triangles, whatever is far away") {
@@ -24,3 +26,5 @@ TEST_CASE("boxes of solids include the margin of their own triangles, whatever i
   CHECK(beside.shells->boxes[0].hi == box.hi);
   CHECK(beside.shells->nodes == alone.shells->nodes);
 }
+
+}  // namespace solid_shells_tests

@@ -9,6 +9,8 @@
 #include "plan/views.h"
 #include "solvers/registry.h"
 
+namespace solver_tables_tests {
+
 using namespace lucerna;
 
 TEST_CASE("every setting of the picture has a row in each solver's table of changes") {
@@ -131,3 +133,5 @@ TEST_CASE("views that belong to no solver are settings that turn them on, withou
     CHECK(option->label == view.label);
   }
 }
+
+}  // namespace solver_tables_tests

@@ -12,6 +12,8 @@
 
 #include "support/paths.h"
 
+namespace source_rules_tests {
+
 namespace fs = std::filesystem;
 
 namespace {
@@ -142,3 +144,5 @@ TEST_CASE("std::filesystem is called in the forms that do not throw") {
         2);
   CHECK(violations(throwing_calls) == "");
 }
+
+}  // namespace source_rules_tests

@@ -6,6 +6,8 @@
 
 #include "stats/forecast.h"
 
+namespace stats_tests {
+
 using namespace lucerna::stats;
 
 namespace {
@@ -356,3 +358,5 @@ TEST_CASE("the remaining time of work of estimated size does not jump") {
   // The next work starts from zero.
   CHECK_FALSE(pace.follow(seconds + 1, 5, 100));
 }
+
+}  // namespace stats_tests

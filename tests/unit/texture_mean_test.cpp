@@ -7,6 +7,8 @@
 
 #include "upload/textures.h"
 
+namespace texture_mean_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -82,3 +84,5 @@ TEST_CASE("the mean over a large triangle is that of its texels") {
   CHECK(means.over(use, {vec2(0), vec2(NAN), vec2(1)}) == Approx(2));
   CHECK(means.over({}, {vec2(0), vec2(1, 0), vec2(1)}) == 1);
 }
+
+}  // namespace texture_mean_tests

@@ -6,6 +6,8 @@
 
 #include "ui/widgets.h"
 
+namespace wrapped_text_tests {
+
 using namespace lucerna;
 
 TEST_CASE("text is broken at spaces into lines that fit; only a word without room is cut") {
@@ -29,3 +31,5 @@ TEST_CASE("text is broken at spaces into lines that fit; only a word without roo
   CHECK(cut.back() == "b");
   ImGui::DestroyContext();
 }
+
+}  // namespace wrapped_text_tests

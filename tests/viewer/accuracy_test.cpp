@@ -7,6 +7,8 @@
 #include "ui/accuracy_plot.h"
 #include "ui/chart.h"
 
+namespace accuracy_tests {
+
 using namespace lucerna;
 using namespace lucerna::ui;
 
@@ -368,3 +370,5 @@ TEST_CASE("earlier runs of a scene are kept and compared, and discarded with it"
   show(uniform(100), 31, 2);
   CHECK(runs.earlier().empty());
 }
+
+}  // namespace accuracy_tests

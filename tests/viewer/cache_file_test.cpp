@@ -4,6 +4,8 @@
 
 #include <fstream>
 
+namespace cache_file_tests {
+
 using namespace lucerna;
 
 TEST_CASE("a script saves the cache when it is complete, loads it, and continues if one is refused") {
@@ -34,3 +36,5 @@ TEST_CASE("a script saves the cache when it is complete, loads it, and continues
   CHECK_THAT(read("session.lucerna"),
              Catch::Contains("cache.save " + file("a.cache") + "\ncache.load " + file("a.cache") + "\n"));
 }
+
+}  // namespace cache_file_tests

@@ -3,6 +3,8 @@
 // and in the program itself.
 #include "inside.h"
 
+namespace cache_panel_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -136,3 +138,5 @@ TEST_CASE("inspecting a cache that is not used is an error with advice") {
   CHECK_THAT(outcome.output, Catch::Contains(":2: inspect.at: no component takes its light from the "
                                              "cache; set components.secondary cache"));
 }
+
+}  // namespace cache_panel_tests

@@ -3,6 +3,8 @@
 // renderer, and in the program itself.
 #include "inside.h"
 
+namespace cache_steps_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -97,3 +99,5 @@ TEST_CASE("in the program candidates, clusters and chosen candidates are drawn i
   CHECK(count("chosen.png", ink, 0.15f) > 500);
   CHECK(count("turned.png", ink, 0.15f) > 300);
 }
+
+}  // namespace cache_steps_tests

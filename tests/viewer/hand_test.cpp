@@ -6,6 +6,8 @@
 
 #include <sstream>
 
+namespace hand_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -187,3 +189,5 @@ TEST_CASE("a colour is picked; emissive surfaces are listed among the lights") {
   CHECK_THAT(lines[2], Catch::StartsWith("light.set 3 color="));
   CHECK(lines[4] == "select material 1");
 }
+
+}  // namespace hand_tests

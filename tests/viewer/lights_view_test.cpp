@@ -3,6 +3,8 @@
 // its legend.
 #include "viewer/support.h"
 
+namespace lights_view_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -44,3 +46,5 @@ TEST_CASE("a point's lights are shown with their shares, and a map shows where s
   CHECK(differ(heat, plain, 0, 60, 790, 560) > 12000);
   CHECK(differ(off, plain, 0, 60, 790, 560) < 500);
 }
+
+}  // namespace lights_view_tests

@@ -8,6 +8,8 @@
 #include "ui/legend.h"
 #include "ui/mark_layout.h"
 
+namespace marks_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -77,3 +79,5 @@ TEST_CASE("layers that are no light and marks of lights have a legend in words")
   REQUIRE(ui::window_legends({}, false, true).size() == 1);
   CHECK(ui::window_legends({}, false, true)[0].marks.size() == 1);
 }
+
+}  // namespace marks_tests

@@ -5,6 +5,8 @@
 #include "solvers/registry.h"
 #include "support/ambient/ambient.h"
 
+namespace other_solver_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -90,3 +92,5 @@ TEST_CASE("a solver unknown to the window has its panel, keys, legend, card and 
   CHECK(test::near_colour(all, 820, 80, 1132, 300, k_gold) > 200);
   CHECK(test::near_colour(off, 820, 80, 1132, 300, k_gold) == 0);
 }
+
+}  // namespace other_solver_tests

@@ -7,6 +7,8 @@
 
 #include "support.h"
 
+namespace screenshots_tests {
+
 using namespace lucerna;
 
 TEST_CASE("scripts of tests/screenshots pass") {
@@ -45,3 +47,5 @@ TEST_CASE("a broken overlay fails its script, with the pictures and the command 
        {"report.html", "junit.xml", "1-picture.png", "1-reference.png", "1-difference.png"})
     CHECK(std::filesystem::exists(folder.path / "report" / file));
 }
+
+}  // namespace screenshots_tests

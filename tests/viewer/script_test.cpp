@@ -8,6 +8,8 @@
 #include "inside.h"
 #include "ui/runner.h"
 
+namespace script_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -231,3 +233,5 @@ TEST_CASE("the what-if target stays when the sampling mode changes, in one step 
   act("set sampling.mode uniform");
   CHECK(window.accuracy.target() == Approx(0.2));
 }
+
+}  // namespace script_tests

@@ -2,6 +2,8 @@
 // The program in normal use: a window, a scene, a few samples, a screenshot, the end.
 #include "support.h"
 
+namespace viewer_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -145,3 +147,5 @@ TEST_CASE("a PNG is saved as shown or unfiltered, by option; an EXR always unfil
   CHECK(refused.status == 1);
   CHECK_THAT(refused.output, Catch::Contains("as: only a PNG is saved as shown"));
 }
+
+}  // namespace viewer_tests

@@ -9,6 +9,8 @@
 #include <numeric>
 #include <sstream>
 
+namespace window_tests {
+
 using namespace lucerna;
 
 namespace {
@@ -432,3 +434,5 @@ TEST_CASE(
   CHECK(target < 0.09);
   CHECK(target > 0.01);
 }
+
+}  // namespace window_tests

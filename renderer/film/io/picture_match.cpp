@@ -7,10 +7,10 @@
 namespace lucerna::film {
 namespace {
 
-using Planes = std::array<const std::vector<float>*, 3>;
+using ColourPlanes = std::array<const std::vector<float>*, 3>;
 
-Planes planes_of(const FilmImage& image, const std::string& where) {
-  Planes planes{};
+ColourPlanes planes_of(const FilmImage& image, const std::string& where) {
+  ColourPlanes planes{};
   for (size_t k = 0; k < 3; ++k) {
     planes[k] = image.find(std::string(1, "RGB"[k]));
     if (!planes[k]) throw_error(where, "no channel '{}'; expected a colour picture", "RGB"[k]);
@@ -35,7 +35,7 @@ PictureMatch match_pictures(const FilmImage& now, const FilmImage& reference, co
   if (now.width != reference.width || now.height != reference.height)
     throw_error(where, "is {}x{} pixels; the picture has {}x{}", reference.width, reference.height, now.width,
                 now.height);
-  const Planes a = planes_of(now, "the picture"), b = planes_of(reference, where);
+  const ColourPlanes a = planes_of(now, "the picture"), b = planes_of(reference, where);
   PictureMatch match;
   size_t cells = 0, over = 0;
   for (uint32_t y0 = 0; y0 < now.height; y0 += options.cell)

@@ -10,7 +10,7 @@ using namespace shared;
 
 namespace {
 
-constexpr const char* k_stage = "clamping";
+constexpr const char* k_clamping = "clamping";
 
 }  // namespace
 
@@ -29,8 +29,8 @@ void Clamping::clamp(gpu::Stream& stream, const std::function<void(gpu::Resource
   bind(resources_);
   resources_.set("Bounds", bounds_);
   const ClampPush push{count, near, crowd, undecided};
-  stream.dispatch(finding_, resources_, push, gpu::groups_for(count, 64), k_stage);
-  stream.dispatch(shrinking_, resources_, push, gpu::groups_for(count, 64), k_stage);
+  stream.dispatch(finding_, resources_, push, gpu::groups_for(count, 64), k_clamping);
+  stream.dispatch(shrinking_, resources_, push, gpu::groups_for(count, 64), k_clamping);
   stream.run();
 }
 

@@ -9,7 +9,7 @@ using namespace shared;
 
 namespace {
 
-constexpr const char* k_stage = "discontinuity";
+constexpr const char* k_finding_edges = "discontinuity";
 /// Reach of a candidate, and the distance of a record that covers it, in cell widths of its level.
 constexpr float k_cell_share = 0.5f;
 
@@ -46,7 +46,7 @@ struct Discontinuity::Impl {
     return kernel;
   }
   void run(gpu::Stream& stream, const gpu::Kernel& kernel, const void* push, size_t bytes, uint32_t items) {
-    stream.dispatch(kernel, resources, push, bytes, gpu::groups_for(items, 64), k_stage);
+    stream.dispatch(kernel, resources, push, bytes, gpu::groups_for(items, 64), k_finding_edges);
   }
 };
 
@@ -93,7 +93,7 @@ bool Discontinuity::see(transport::Wavefront& wavefront, const gpu::Buffer& cand
   const auto note = [&](const SeePush& push) {
     d.run(stream, d.ready(d.kernels.surface, "surface"), &push, sizeof push, push.count);
   };
-  return d.sight.see(wavefront, k_stage, note, cancel);
+  return d.sight.see(wavefront, k_finding_edges, note, cancel);
 }
 
 void Discontinuity::look_up(gpu::Stream& stream, const std::function<void(gpu::Resources&)>& bind) {

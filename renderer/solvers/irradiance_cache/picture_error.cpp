@@ -10,8 +10,8 @@ using namespace shared;
 
 namespace {
 
-constexpr const char* k_stage = "records' error";
-constexpr uint32_t k_paths = 2;  ///< per pixel
+constexpr const char* k_propagating = "records' error";
+constexpr uint32_t k_error_paths = 2;  ///< per pixel
 
 /// Frame of a picture whose pixels are `side` film pixels wide, and may extend over the right and lower
 /// border.
@@ -53,7 +53,7 @@ void PictureError::leave_one_out(const Work& w) {
   w.bind(resources_);
   resources_.set("Residuals", residuals_);
   w.wavefront.stream().dispatch(leave_one_out_, resources_, PoolPush{0, w.records},
-                                gpu::groups_for(w.records, 64), k_stage);
+                                gpu::groups_for(w.records, 64), k_propagating);
   residuals_for_ = w.records;
 }
 
@@ -63,7 +63,7 @@ bool PictureError::step(const Work& w) {
   const uint32_t side = side_for(w.frame);
   const Frame frame = coarser(w.frame, side);
   const uint32_t blocks = (frame.width + k_block - 1) / k_block * ((frame.height + k_block - 1) / k_block);
-  const uint32_t end = std::min(blocks, done_ + std::max(1u, w.wavefront.slots() / (64 * k_paths)));
+  const uint32_t end = std::min(blocks, done_ + std::max(1u, w.wavefront.slots() / (64 * k_error_paths)));
   w.wavefront.set_frame(frame, w.enabled);
   const bool complete = propagate(w, side, end);
   w.write_frame(k_probe_none);
@@ -75,7 +75,7 @@ bool PictureError::step(const Work& w) {
 }
 
 bool PictureError::propagate(const Work& w, uint32_t side, uint32_t end) {
-  schedule::WorkItem item{{}, k_paths};
+  schedule::WorkItem item{{}, k_error_paths};
   for (uint32_t b = done_; b < end; ++b) item.blocks.push_back({b, 0});
   gpu::Stream& stream = w.wavefront.stream();
   gpu::make_texel_room(device_, first_, "first lookups", w.candidates.bytes());
@@ -98,7 +98,7 @@ bool PictureError::propagate(const Work& w, uint32_t side, uint32_t end) {
   resources_.set("residual_texels", residuals_);
   const uint32_t pixels = 64 * uint32_t(item.blocks.size());
   const PropagatePush push{w.film.width(), w.film.height(), side, pixels, w.recursive};
-  stream.dispatch(propagating_, resources_, push, gpu::groups_for(pixels, 64), k_stage);
+  stream.dispatch(propagating_, resources_, push, gpu::groups_for(pixels, 64), k_propagating);
   stream.run();
   return true;
 }

@@ -11,8 +11,8 @@ using namespace shared;
 
 namespace {
 
-constexpr const char* k_stage = "importance";
-constexpr uint32_t k_paths = 2;  ///< per pixel
+constexpr const char* k_counting_reads = "importance";
+constexpr uint32_t k_read_paths = 2;  ///< per pixel
 
 }  // namespace
 
@@ -35,15 +35,15 @@ void PictureReads::begin(const Frame& frame) {
   for (uint32_t k = 2; pixels() > k_most_pixels; ++k)
     frame_.width = std::max(frame.width / k, 1u), frame_.height = std::max(frame.height / k, 1u);
   done_ = 0;
-  gpu::make_texel_room(device_, places_, "places of lookups", uint64_t{pixels()} * k_paths * sizeof(vec4));
+  gpu::make_texel_room(device_, places_, "places of lookups", uint64_t{pixels()} * k_read_paths * sizeof(vec4));
   begun_ = true;
 }
 
 bool PictureReads::see(transport::Wavefront& wavefront, const gpu::Buffer& candidates, bool next,
                        const std::function<void(uint32_t probing)>& write_frame,
                        const std::function<bool()>& cancel) {
-  schedule::WorkItem item{{}, k_paths};
-  const uint32_t end = std::min(blocks(), done_ + std::max(1u, wavefront.slots() / (64 * k_paths)));
+  schedule::WorkItem item{{}, k_read_paths};
+  const uint32_t end = std::min(blocks(), done_ + std::max(1u, wavefront.slots() / (64 * k_read_paths)));
   for (uint32_t b = done_; b < end; ++b) item.blocks.push_back({b, 0});
   gpu::Stream& stream = wavefront.stream();
   next_ = next;
@@ -60,7 +60,7 @@ bool PictureReads::see(transport::Wavefront& wavefront, const gpu::Buffer& candi
     resources_.set("candidate_texels", candidates);
     resources_.set("Places", *to);
     const ImportancePush push{64 * (end - done_), 64 * done_, next};
-    stream.dispatch(keeping_, resources_, push, gpu::groups_for(item.slots(), 64), k_stage);
+    stream.dispatch(keeping_, resources_, push, gpu::groups_for(item.slots(), 64), k_counting_reads);
     stream.run();
   }
   done_ = end;
@@ -75,7 +75,7 @@ std::vector<float> PictureReads::measure(gpu::Stream& stream,
   resources_.set("Sums", sums_);
   stream.fill(sums_, 0);
   stream.dispatch(adding_, resources_, ImportancePush{pixels(), 0, next_}, gpu::groups_for(pixels(), 64),
-                  k_stage);
+                  k_counting_reads);
   stream.run();
   const WideSum* const sums = static_cast<const WideSum*>(sums_.mapped());
   const float pixel = 1.0f / (float(k_importance_steps) * float(frame_.height) * float(frame_.height));

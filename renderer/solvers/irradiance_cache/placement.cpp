@@ -13,7 +13,7 @@ using namespace shared;
 
 namespace {
 
-constexpr const char* k_stage = "placement";
+constexpr const char* k_placing = "placement";
 /// Maximum number of rounds of choosing. The first cuts clusters by size, and clusters cut apart cannot see
 /// each other's candidates.
 constexpr uint32_t k_rounds = 6;
@@ -63,7 +63,7 @@ struct Sums {
   Sums(gpu::Device& device, gpu::ShaderCompiler& compiler)
       : prefix_sum(device, compiler), total(small_buffer(device, "candidates' sum", 16)) {}
   void encode(gpu::Stream& stream, const gpu::Buffer& flags, const gpu::Buffer& before, uint32_t count) {
-    prefix_sum.encode(stream, flags, before, {.most = count}, &total, 0, k_stage);
+    prefix_sum.encode(stream, flags, before, {.most = count}, &total, 0, k_placing);
   }
   /// Valid once the stream has run.
   uint32_t sum() const { return *static_cast<const uint32_t*>(total.mapped()); }
@@ -157,7 +157,7 @@ struct Collector {
     resources.set("Places", to.places);
     resources.set("Facings", to.facings);
     resources.set("Media", to.media);
-    stream.dispatch(kernel, resources, push, gpu::groups_for(push.count, 64), k_stage);
+    stream.dispatch(kernel, resources, push, gpu::groups_for(push.count, 64), k_placing);
     stream.run();
     to.size += added;
     return added;
@@ -248,12 +248,12 @@ struct Chooser {
     const auto dispatch = [&](const gpu::Kernel& kernel, uint32_t items) {
       push.count = &kernel == &kernels.choose ? items : n;
       stream.dispatch(kernel, resources, &push, kernel.push_constant_bytes(), gpu::groups_for(items, 64),
-                      k_stage);
+                      k_placing);
     };
     dispatch(kernels.bounds, k_bounds_runs);
     dispatch(kernels.grid, 1);
     dispatch(kernels.keys, n);
-    sorted = &sorter.encode(stream, b.entries[0], b.entries[1], {.most = n}, 3 * k_morton_bits, k_stage);
+    sorted = &sorter.encode(stream, b.entries[0], b.entries[1], {.most = n}, 3 * k_morton_bits, k_placing);
     const gpu::Buffer* from = sorted;
     const gpu::Buffer& spare = from == &b.entries[0] ? b.entries[1] : b.entries[0];
     for (uint32_t round = 0;; ++round) {
@@ -355,7 +355,7 @@ std::vector<std::array<uint32_t, 3>> Placement::collect(gpu::Stream& stream, con
   c.resources.set("Taken", c.taken);
   c.resources.set("CandidateCounts", c.counts);
   stream.fill(c.counts, 0);
-  stream.dispatch(c.count_candidates, c.resources, push, gpu::groups_for(slots, 64), k_stage);
+  stream.dispatch(c.count_candidates, c.resources, push, gpu::groups_for(slots, 64), k_placing);
   c.append(stream, impl_->sums, impl_->candidates, c.from_paths, c.taken, push);
   c.counts.read(counts.data(), counts.size() * sizeof counts[0]);
   return counts;

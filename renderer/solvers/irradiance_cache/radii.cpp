@@ -8,7 +8,7 @@ using namespace shared;
 
 namespace {
 
-constexpr const char* k_stage = "records";
+constexpr const char* k_shaping = "records";
 /// Metric `hessian`: scale of `error`, so that it makes about as many records as the split-sphere metric.
 constexpr float k_hessian_reach = 0.5f;
 /// Metric `hessian`: bound over the nearest distance, for tried places. The first level has more rays, which
@@ -38,15 +38,15 @@ void Radii::pool(gpu::Stream& stream, const Bind& bind, uint32_t first, uint32_t
   resources_.set("pooled_texels", pooled_);
   const PoolPush push{first, count};
   const uint32_t groups = gpu::groups_for(count, 64);
-  stream.dispatch(pooling_, resources_, push, groups, k_stage);
-  stream.dispatch(pool_keep_, resources_, push, groups, k_stage);
+  stream.dispatch(pooling_, resources_, push, groups, k_shaping);
+  stream.dispatch(pool_keep_, resources_, push, groups, k_shaping);
   stream.run();
 }
 
 void Radii::set_by_distance(gpu::Stream& stream, const Bind& bind, const Wanted& wanted) {
   bind(resources_);
   const RadiusPush push{wanted.first, wanted.count, options_.error, wanted.most, tried_near(), wanted.crowd};
-  stream.dispatch(distance_, resources_, push, gpu::groups_for(wanted.count, 64), k_stage);
+  stream.dispatch(distance_, resources_, push, gpu::groups_for(wanted.count, 64), k_shaping);
   stream.run();
 }
 
@@ -57,7 +57,7 @@ void Radii::set_by_light(gpu::Stream& stream, const Bind& bind, const Wanted& wa
       wanted.first, wanted.count, k_hessian_reach * options_.error * std::sqrt(scene_radius),
       wanted.most,  dark,         options_.nearest,
       tried_near(), wanted.crowd};
-  stream.dispatch(ellipse_, resources_, push, gpu::groups_for(wanted.count, 64), k_stage);
+  stream.dispatch(ellipse_, resources_, push, gpu::groups_for(wanted.count, 64), k_shaping);
   stream.run();
 }
 
