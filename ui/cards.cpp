@@ -178,7 +178,7 @@ void draw_empty_state(Actions& actions, const commands::OpenScene& open,
     ImGui::PushID(static_cast<int>(i));
     const ImVec2 lo(std::floor(x - 0.5f * width), line), hi(lo.x + width, line + px(24));
     ImGui::SetCursorScreenPos(lo);
-    if (ImGui::InvisibleButton("##recent", {width, px(24)})) actions.act("scene.open", files[i]);
+    if (ImGui::InvisibleButton("##recent", {width, px(24)})) actions.act("window.open", files[i]);
     if (ImGui::IsItemHovered()) list->AddRectFilled(lo, hi, colour::field, px(3));
     draw_text(list, lo, hi, elided(files[i], width - px(16), nullptr, true),
               ImGui::IsItemHovered() ? colour::text : colour::text_dim, Align::centre);

@@ -149,7 +149,7 @@ void begin_panel(const char* name, const Area& area, ImU32 background, bool scro
 
 void draw_dialogs(Ui& ui) {
   draw_file_dialog(ui);
-  draw_closing_dialog(ui);
+  draw_leaving_dialog(ui);
   key_page(ui);
 }
 

@@ -39,7 +39,7 @@ Question question(const Dialog& dialog) {
     case Purpose::open:
       return {.title = "Open a scene",
               .note = "A .gltf or .glb file. Tab completes; arrows choose.",
-              .command = "scene.open",
+              .command = "window.open",
               .answer = "Open",
               .endings = {".gltf", ".glb"},
               .reads = true};

@@ -131,7 +131,7 @@ void file_menu(Ui& ui) {
   for (size_t i = 0; i < std::min<size_t>(files.size(), 5); ++i) {
     ImGui::PushID(static_cast<int>(i));
     const std::string name = std::filesystem::path(files[i]).filename().string();
-    if (entry(elided(name, px(240)).c_str(), nullptr, files[i].c_str())) ui.act("scene.open", files[i]);
+    if (entry(elided(name, px(240)).c_str(), nullptr, files[i].c_str())) ui.act("window.open", files[i]);
     ImGui::PopID();
   }
   divide();

@@ -141,12 +141,25 @@ std::string uncapitalised(std::string text) {
   return text;
 }
 
+void Ui::leave(const std::string& opens) {
+  leaving = {Leaving::Step::asks, opens};
+  if (!work.scene_file.unsaved()) finish_leaving();
+}
+
+void Ui::finish_leaving() {
+  const std::string opens = std::exchange(leaving, {}).opens;
+  if (opens.empty())
+    requests.status = 0;
+  else
+    act("scene.open", opens);
+}
+
 void Ui::drop(const std::string& file) {
   std::string ending = std::filesystem::path(file).extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   if (ending == ".gltf" || ending == ".glb")
-    act("scene.open", file);
+    act("window.open", file);
   else if (ending == ".exr" || ending == ".hdr")
     act("environment.load", file);
   else

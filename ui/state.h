@@ -116,8 +116,15 @@ struct Ui {
   LogView log;
   Dialog dialog;
   bool help = false;
-  /// The window is asked to close with edits that are not saved.
-  enum class Closing { no, asks, saves } closing = Closing::no;
+  /// The scene is to be left with edits that are not saved: a dialog asks what to do with them.
+  struct Leaving {
+    enum class Step { no, asks, saves } step = Step::no;
+    std::string opens;  ///< the scene that follows; "": the window closes
+  } leaving;
+  /// Leaves the scene for another one, or closes the window if `opens` is "". Asks before edits are lost.
+  void leave(const std::string& opens);
+  /// Leaves it, with or without edits, for leaving.opens.
+  void finish_leaving();
   std::vector<std::string> recent;  ///< files, newest first, from the root
   unsigned texture = 0;             ///< OpenGL name of the picture
   uint32_t texture_width = 0, texture_height = 0;
@@ -216,7 +223,7 @@ void keep_view(Ui& ui);
 void draw_splitters(Ui& ui, const Areas& areas);
 void draw_dialogs(Ui& ui);
 void draw_file_dialog(Ui& ui);     ///< part of draw_dialogs
-void draw_closing_dialog(Ui& ui);  ///< likewise
+void draw_leaving_dialog(Ui& ui);  ///< likewise
 void handle_keys(Ui& ui);
 
 /// GLFW's key and modifiers of a name such as "ctrl+z". Throws Error if there is none.

@@ -222,13 +222,11 @@ void add_dialog_commands(Ui& ui, const Add& add) {
       false);
   add(
       "window.close", "Closes the window; asks what to do with edits that are not saved.", {},
-      [&ui](const Arguments&) {
-        if (ui.work.scene_file.unsaved())
-          ui.closing = Ui::Closing::asks;
-        else
-          ui.requests.status = 0;
-      },
-      false);
+      [&ui](const Arguments&) { ui.leave(""); }, false);
+  add(
+      "window.open",
+      "Opens a scene, as scene.open does; asks first what to do with edits that are not saved.", {{"file"}},
+      [&ui](const Arguments& a) { ui.leave(a.text("file")); }, false);
   add(
       "dialog.reference", "Opens the dialog to load a reference.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::reference); }, false);

@@ -4,8 +4,6 @@
 
 namespace lucerna::session {
 
-const std::array<const char*, k_components> k_component_names = paths::k_component_names;
-
 Session::Session(const Options& options) : impl_(std::make_unique<Impl>()) {
   impl_->options = options;
   if (!options.idle) impl_->thread = std::thread([this] { impl_->run(); });

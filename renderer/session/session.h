@@ -13,6 +13,7 @@
 #include "film/exposure.h"
 #include "film/io/image_file.h"
 #include "film/shown_error.h"
+#include "paths/automaton.h"
 #include "plan/settings.h"
 #include "recording/noise.h"
 #include "recording/recording.h"
@@ -26,8 +27,8 @@
 
 namespace lucerna::session {
 
-inline constexpr int k_components = 4;  ///< primary, secondary, tertiary, caustic
-extern const std::array<const char*, k_components> k_component_names;
+inline constexpr int k_components = paths::k_component_count;
+using paths::k_component_names;
 
 /// Relative errors of tiles below which a picture is good enough to work with.
 inline constexpr film::ShownError k_usable_error{.median = 0.15, .worst_tenth = 0.3};

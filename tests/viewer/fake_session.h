@@ -1,9 +1,9 @@
 #pragma once
 // A session without a renderer: the same class, defined here with a moving gradient as picture, so that the
-// window can be run and tested alone. Included by one test file, which replaces the real one of its library.
-// Files with "missing" in their names fail to load and to save; those with "slow" load in three seconds and
-// save in half a second; "empty" is a scene without cameras and lights, "sheen" one that needs an unsupported
-// extension.
+// window can be run and tested alone. In a program that includes this file it replaces the real one of the
+// library. Files with "missing" in their names fail to load and to save; those with "slow" load in three
+// seconds and save in half a second; "empty" is a scene without cameras and lights, "sheen" one that needs an
+// unsupported extension.
 #include <atomic>
 #include <cmath>
 #include <condition_variable>
@@ -20,8 +20,6 @@
 #include "solvers/irradiance_cache/report.h"
 
 namespace lucerna::session {
-
-const std::array<const char*, k_components> k_component_names{"primary", "secondary", "tertiary", "caustic"};
 
 namespace fake {
 
@@ -455,13 +453,13 @@ struct Session::Impl {
   }
 };
 
-Session::Session(const Options&) : impl_(std::make_unique<Impl>()) {}
-Session::~Session() = default;
-void Session::load(const std::filesystem::path& file) {
+inline Session::Session(const Options&) : impl_(std::make_unique<Impl>()) {}
+inline Session::~Session() = default;
+inline void Session::load(const std::filesystem::path& file) {
   impl_->post([this, file, number = ++impl_->loads] { impl_->load(file, number); });
 }
 /// A light mix named "nonsense" is refused.
-void Session::set(const std::string& key, const std::string& value, SceneId scene) {
+inline void Session::set(const std::string& key, const std::string& value, SceneId scene) {
   impl_->post(
       [this, key, value] {
         if (key == "relight.mix" && value == "nonsense") throw Error(key, "no mix of lights");
@@ -470,27 +468,27 @@ void Session::set(const std::string& key, const std::string& value, SceneId scen
       },
       scene);
 }
-void Session::set_camera(const scene::Camera& camera, SceneId scene) {
+inline void Session::set_camera(const scene::Camera& camera, SceneId scene) {
   impl_->post([this, camera] { impl_->camera = camera, impl_->restart(), impl_->publish(); }, scene, true);
 }
 /// Pictures wider than 4096 pixels are refused.
-void Session::set_size(uint32_t width, uint32_t height) {
+inline void Session::set_size(uint32_t width, uint32_t height) {
   impl_->post([this, width, height] {
     if (width > 4096) throw Error("size", "too large");
     impl_->width = width, impl_->height = height, impl_->restart(), impl_->publish();
   });
 }
-void Session::set_window_scale(uint32_t scale) {
+inline void Session::set_window_scale(uint32_t scale) {
   (void)scale;
   impl_->post([] {});
 }
-void Session::set_light(uint32_t index, const scene::Light& light, SceneId scene) {
+inline void Session::set_light(uint32_t index, const scene::Light& light, SceneId scene) {
   impl_->post_edit([index, light](scene::Scene& s) { s.lights[index] = light; }, scene);
 }
-void Session::set_light_list(const std::vector<scene::Light>& lights, SceneId scene) {
+inline void Session::set_light_list(const std::vector<scene::Light>& lights, SceneId scene) {
   impl_->post_edit([lights](scene::Scene& s) { s.lights = lights; }, scene);
 }
-void Session::set_environment_sky(const scene::SkyModel& sky, float scale, SceneId scene) {
+inline void Session::set_environment_sky(const scene::SkyModel& sky, float scale, SceneId scene) {
   impl_->post_edit(
       [sky, scale](scene::Scene& s) {
         s.environment.sky = sky, s.environment.scale = scale, s.environment.rotation = 0;
@@ -498,14 +496,14 @@ void Session::set_environment_sky(const scene::SkyModel& sky, float scale, Scene
       },
       scene);
 }
-void Session::set_environment(float scale, float rotation, SceneId scene) {
+inline void Session::set_environment(float scale, float rotation, SceneId scene) {
   impl_->post_edit(
       [scale, rotation](scene::Scene& s) { s.environment.scale = scale, s.environment.rotation = rotation; },
       scene);
 }
 /// Files named "broken" cannot be read.
-void Session::set_environment_file(const std::filesystem::path& file, std::optional<float> scale,
-                                   std::optional<float> rotation, SceneId scene) {
+inline void Session::set_environment_file(const std::filesystem::path& file, std::optional<float> scale,
+                                          std::optional<float> rotation, SceneId scene) {
   impl_->post_edit(
       [file, scale, rotation](scene::Scene& s) {
         if (file.string().find("broken") != std::string::npos)
@@ -518,7 +516,7 @@ void Session::set_environment_file(const std::filesystem::path& file, std::optio
       scene);
 }
 /// A grey of half of middle brightness, black at the left border; the whole picture needs 2.5 stops more.
-std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at, SceneId scene) {
+inline std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at, SceneId scene) {
   auto promise = std::make_shared<std::promise<film::Brightness>>();
   impl_->post(
       [at, promise] {
@@ -529,16 +527,16 @@ std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at, Sc
       scene);
   return promise->get_future().share();
 }
-std::shared_future<film::FilmImage> Session::layers(SceneId scene) {
+inline std::shared_future<film::FilmImage> Session::layers(SceneId scene) {
   auto promise = std::make_shared<std::promise<film::FilmImage>>();
   impl_->post(
       [this, promise] { promise->set_value(fake::layers(impl_->samples, impl_->width, impl_->height)); },
       scene);
   return promise->get_future().share();
 }
-std::shared_future<std::shared_ptr<const recording::Recording>> Session::trace_paths(const vec2& at,
-                                                                                     uint32_t samples,
-                                                                                     SceneId scene) {
+inline std::shared_future<std::shared_ptr<const recording::Recording>> Session::trace_paths(const vec2& at,
+                                                                                            uint32_t samples,
+                                                                                            SceneId scene) {
   auto promise = std::make_shared<std::promise<std::shared_ptr<const recording::Recording>>>();
   impl_->post(
       [this, promise, at, samples] {
@@ -548,18 +546,19 @@ std::shared_future<std::shared_ptr<const recording::Recording>> Session::trace_p
       scene);
   return promise->get_future().share();
 }
-void Session::show_paths(const ShownPaths&, SceneId scene) {
+inline void Session::show_paths(const ShownPaths&, SceneId scene) {
   impl_->post([] {}, scene);
 }
-std::shared_future<recording::NoiseReport> Session::explain_noise(const vec2&, const vec2&, SceneId scene) {
+inline std::shared_future<recording::NoiseReport> Session::explain_noise(const vec2&, const vec2&,
+                                                                         SceneId scene) {
   auto promise = std::make_shared<std::promise<recording::NoiseReport>>();
   impl_->post([promise] { promise->set_value(fake::noise()); }, scene);
   return promise->get_future().share();
 }
-void Session::set_material(uint32_t index, const scene::Material& material, SceneId scene) {
+inline void Session::set_material(uint32_t index, const scene::Material& material, SceneId scene) {
   impl_->post_edit([index, material](scene::Scene& s) { s.materials[index] = material; }, scene);
 }
-void Session::set_lights(const LightsEdit& edit, SceneId scene) {
+inline void Session::set_lights(const LightsEdit& edit, SceneId scene) {
   impl_->post_edit(
       [this, edit](scene::Scene& s) {
         for (const auto& [i, light] : edit.lights) s.lights[i] = light;
@@ -570,17 +569,17 @@ void Session::set_lights(const LightsEdit& edit, SceneId scene) {
       },
       scene, false);
 }
-void Session::set_paused(bool paused) {
+inline void Session::set_paused(bool paused) {
   impl_->post([this, paused] { impl_->paused = paused, impl_->publish(); });
 }
-void Session::restart() {
+inline void Session::restart() {
   impl_->post([this] { impl_->restart(), impl_->publish(); });
 }
-void Session::reload_shaders() {
+inline void Session::reload_shaders() {
   impl_->post(
       [] { log::error("surface.comp:42: 'throughputt' : undeclared identifier; the kernels in use stay"); });
 }
-void Session::set_reference(const std::filesystem::path& file, SceneId scene) {
+inline void Session::set_reference(const std::filesystem::path& file, SceneId scene) {
   impl_->post(
       [this, file] {
         if (file.string().find("missing") != std::string::npos)
@@ -590,13 +589,13 @@ void Session::set_reference(const std::filesystem::path& file, SceneId scene) {
       },
       scene);
 }
-void Session::clear_reference() {
+inline void Session::clear_reference() {
   impl_->post([this] { impl_->reference.clear(), impl_->publish(); });
 }
-void Session::inspect(std::optional<vec2> at, SceneId scene) {
+inline void Session::inspect(std::optional<vec2> at, SceneId scene) {
   impl_->post([this, at] { impl_->looked_at = at, impl_->publish(); }, scene);
 }
-void Session::measure_effects(SceneId scene) {
+inline void Session::measure_effects(SceneId scene) {
   impl_->post(
       [this] {
         EffectCosts costs{.width = impl_->width, .height = impl_->height, .sample_ms = 400};
@@ -607,8 +606,8 @@ void Session::measure_effects(SceneId scene) {
       },
       scene);
 }
-void Session::stop_measuring_effects() {}
-Saved Session::save(const std::filesystem::path& file, bool) {
+inline void Session::stop_measuring_effects() {}
+inline Saved Session::save(const std::filesystem::path& file, bool) {
   auto promise = std::make_shared<std::promise<void>>();
   impl_->post([file, promise] {
     const std::string name = file.filename().string();
@@ -624,11 +623,11 @@ Saved Session::save(const std::filesystem::path& file, bool) {
   });
   return promise->get_future().share();
 }
-Saved Session::save_reference(const std::filesystem::path& file) { return save(file); }
-Saved Session::solver_save(const std::string&, const std::filesystem::path& file, SceneId) {
+inline Saved Session::save_reference(const std::filesystem::path& file) { return save(file); }
+inline Saved Session::solver_save(const std::string&, const std::filesystem::path& file, SceneId) {
   return save(file);
 }
-void Session::solver_load(const std::string&, const std::filesystem::path& file, SceneId scene) {
+inline void Session::solver_load(const std::string&, const std::filesystem::path& file, SceneId scene) {
   impl_->post(
       [this, file] {
         if (file.string().find("missing") != std::string::npos)
@@ -638,7 +637,7 @@ void Session::solver_load(const std::string&, const std::filesystem::path& file,
       },
       scene);
 }
-void Session::solver_command(const std::string& solver, const std::string& command, SceneId scene) {
+inline void Session::solver_command(const std::string& solver, const std::string& command, SceneId scene) {
   impl_->post(
       [this, solver, command] {
         if (solver != "cache") log::info("{}: command {}", solver, command);
@@ -648,24 +647,24 @@ void Session::solver_command(const std::string& solver, const std::string& comma
       },
       scene);
 }
-uint64_t Session::commands() const {
+inline uint64_t Session::commands() const {
   std::lock_guard lock(impl_->mutex);
   return impl_->commands.given();
 }
-uint64_t Session::commands_done() const {
+inline uint64_t Session::commands_done() const {
   std::lock_guard lock(impl_->mutex);
   return impl_->done;
 }
-void Session::cancel() { impl_->given_up = impl_->loads.load(); }
-std::shared_ptr<const Snapshot> Session::snapshot() const {
+inline void Session::cancel() { impl_->given_up = impl_->loads.load(); }
+inline std::shared_ptr<const Snapshot> Session::snapshot() const {
   std::lock_guard lock(impl_->mutex);
   return impl_->snapshot;
 }
-State Session::state() const {
+inline State Session::state() const {
   std::lock_guard lock(impl_->mutex);
   return {impl_->scene_id, impl_->scene, impl_->loaded, impl_->settings};
 }
-void Session::on_publish(std::function<void()> call) {
+inline void Session::on_publish(std::function<void()> call) {
   std::lock_guard lock(impl_->mutex);
   impl_->call = std::move(call);
 }
