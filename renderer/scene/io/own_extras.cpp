@@ -71,7 +71,7 @@ void read_own_extras(const Item& node, Light& light) {
   const auto own = own_extras(node);
   if (!own) return;
   light.enabled = own->boolean("enabled", true);
-  if (const auto right = own->find("right"); right && has_shape(light.kind)) {
+  if (const auto right = own->find("right"); right && can_roll(light)) {
     const vec3 value = right->rgb();
     if (glm::distance(value, light.right) < glm::radians(0.01f)) light.right = value;
   }
