@@ -9,6 +9,7 @@
 #include "commands/light_words.h"
 #include "commands/workspace.h"
 #include "emitters.h"
+#include "lamp_outline.h"
 #include "mark_layout.h"
 #include "scene/projection.h"
 #include "session/pick.h"
@@ -34,6 +35,26 @@ LampHandle aim_of(const MarkedScene& marked, uint32_t index, const scene::Light&
     if (const auto hit = rays->nearest(light.position, light.direction)) far = hit->distance;
   aim.point += far * light.direction;
   return aim;
+}
+
+/// Length of drawn cones and distributions.
+float reach_of(const MarkedScene& marked) { return 0.6f * k_aim_of_extent * marked.camera.view->extent; }
+
+/// The outline of a selected lamp.
+void draw_outline(ImDrawList* list, const MarkedScene& marked, const Area& shown) {
+  const Selection& selection = marked.camera.selection;
+  if (selection.kind != Kind::light || selection.index >= marked.open.lights().size() ||
+      !marked.camera.view || !marked.open.snapshot)
+    return;
+  for (const std::vector<vec3>& line : lamp_outline(marked.open.light(selection.index), reach_of(marked)))
+    for (size_t i = 0; i + 1 < line.size(); ++i) {
+      ImVec2 from, to;
+      if (!project(marked.open.snapshot->camera, shown, line[i], from) ||
+          !project(marked.open.snapshot->camera, shown, line[i + 1], to))
+        continue;
+      list->AddLine(from, to, IM_COL32(0, 0, 0, 110), px(3));
+      list->AddLine(from, to, colour::accent, std::max(1.0f, px(1)));
+    }
 }
 
 /// Marks of what is selected stay where they belong; the others make room, or are left out. Surfaces of one
@@ -79,6 +100,9 @@ std::vector<LampHandle> lamp_handles(const MarkedScene& marked, const Area& show
     const bool selected = marked.camera.selection == Selection{Kind::light, i};
     const scene::Light light = marked.open.light(i);
     if ((!marked.all && !selected) || light.kind == scene::LightKind::directional) continue;
+    if (const auto at = size_handle(light, reach_of(marked), commands::eye_of(marked.open.snapshot->camera));
+        selected && at)
+      add({.light = i, .part = LampHandle::Part::size, .point = *at, .at = {}});
     if (selected && commands::can_be_aimed(light)) add(aim_of(marked, i, light));
     add({.light = i, .part = LampHandle::Part::place, .point = light.position, .at = {}});
   }
@@ -105,6 +129,7 @@ void draw_lamp_handles(const MarkedScene& marked, const Area& shown, const std::
     return hot && hot->light == h.light && hot->part == h.part;
   };
   const std::vector<LampHandle> handles = lamp_handles(marked, shown);
+  draw_outline(list, marked, shown);
   const auto line_to_lamp = [&](const LampHandle& aim) {
     const auto lamp = std::find_if(handles.begin(), handles.end(), [&](const LampHandle& h) {
       return h.light == aim.light && h.part == LampHandle::Part::place;
@@ -141,6 +166,14 @@ void draw_lamp_handles(const MarkedScene& marked, const Area& shown, const std::
         square(px(2), [&](auto lo, auto hi) { list->AddRectFilled(lo, hi, ink); });
       continue;
     }
+    if (handle.part == LampHandle::Part::size) {
+      const float half = 0.8f * r;
+      const ImVec2 lo(handle.mark.x - half, handle.mark.y - half),
+          hi(handle.mark.x + half, handle.mark.y + half);
+      list->AddRectFilled(lo, hi, IM_COL32(0, 0, 0, 160));
+      list->AddRect(lo, hi, ink, 0, 0, px(1.5f));
+      continue;
+    }
     if (handle.part == LampHandle::Part::aim) {
       line_to_lamp(handle);
       list->AddCircleFilled(handle.mark, r, IM_COL32(0, 0, 0, 110), 20);
@@ -163,6 +196,18 @@ void draw_lamp_handles(const MarkedScene& marked, const Area& shown, const std::
 void drag_lamp(Actions& actions, const MarkedScene& marked, const LampHandle& handle, const Area& shown) {
   if (!marked.open.scene || !marked.camera.view || handle.light >= marked.open.lights().size()) return;
   const ImGuiIO& io = ImGui::GetIO();
+  if (handle.part == LampHandle::Part::size) {
+    const session::PickRay ray = session::pick_ray(
+        marked.camera.view->camera, (io.MousePos.x - shown.lo.x) / std::max(1.0f, shown.width()),
+        (io.MousePos.y - shown.lo.y) / std::max(1.0f, shown.height()), marked.camera.aspect);
+    const auto sizes = size_by_ray(marked.open.light(handle.light),
+                                   commands::eye_of(marked.camera.view->camera), ray.origin, ray.direction);
+    if (sizes.size() == 1) actions.act("light.set", handle.light + 1, named(sizes[0].first, sizes[0].second));
+    if (sizes.size() == 2)
+      actions.act("light.set", handle.light + 1, named(sizes[0].first, sizes[0].second),
+                  named(sizes[1].first, sizes[1].second));
+    return;
+  }
   if (handle.part == LampHandle::Part::aim) {
     const vec2 at((io.MousePos.x - shown.lo.x) / std::max(1.0f, shown.width()),
                   (io.MousePos.y - shown.lo.y) / std::max(1.0f, shown.height()));

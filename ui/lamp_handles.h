@@ -19,7 +19,8 @@ struct MarkedScene {
 struct LampHandle {
   enum class Part {
     place,   ///< where the lamp is
-    aim,     ///< what the axis of a selected spot meets
+    aim,     ///< what the axis of a selected lamp meets that can be aimed
+    size,    ///< on the outline of a selected lamp: its size, or the angle of its cone
     surface  ///< the middle of a surface that emits; it is selected alone, not dragged
   };
   uint32_t light = 0;  ///< the lamp's number, or the surface's material
@@ -38,8 +39,8 @@ std::vector<LampHandle> lamp_handles(const MarkedScene& marked, const Area& show
 std::optional<LampHandle> lamp_handle_at(const MarkedScene& marked, const Area& shown, const ImVec2& at);
 /// `hot`: under the pointer, or dragged.
 void draw_lamp_handles(const MarkedScene& marked, const Area& shown, const std::optional<LampHandle>& hot);
-/// Moves a dragged handle with the pointer: a lamp along the picture, with Shift vertically; a spot's aim
-/// to the surface under the pointer.
+/// Moves a dragged handle with the pointer: a lamp along the picture, with Shift vertically; its aim to the
+/// surface under the pointer; its size.
 void drag_lamp(Actions& actions, const MarkedScene& marked, const LampHandle& handle, const Area& shown);
 
 }  // namespace lucerna::ui

@@ -125,6 +125,36 @@ void shape_rows(Actions& actions, size_t i, const scene::Light& light) {
   }
 }
 
+/// The distribution of a selected lamp: its web in two planes, and its numbers.
+void profile_rows(Actions& actions, size_t i, const scene::Light& light) {
+  const scene::LightProfile& p = *light.profile;
+  value_row("Distribution", p.name.empty() ? "unnamed" : p.name,
+            "File of the measured distribution (light.set profile=FILE).");
+  value_row("In the file", fmt::format("{:.0f} lm, {:.0f} cd", p.lumens(), p.peak),
+            "Flux and largest intensity that the file states.");
+  const float size = std::min(ImGui::CalcItemWidth(), px(150)), half = 0.5f * size;
+  const ImVec2 lo = ImGui::GetCursorScreenPos(), centre(lo.x + half, lo.y + half);
+  ImDrawList* list = ImGui::GetWindowDrawList();
+  for (const float share : {0.5f, 1.0f}) list->AddCircle(centre, share * 0.96f * half, colour::hairline, 48);
+  for (const int plane : {1, 0}) {
+    std::vector<ImVec2> points;
+    for (int k = 0; k <= 180; ++k) {
+      const float angle = float(k) * k_pi / 90, s = std::sin(angle), c = std::cos(angle);
+      const float r = 0.96f * half * p.along(plane == 0 ? vec3(s, 0, -c) : vec3(0, s, -c));
+      points.emplace_back(centre.x + r * s, centre.y + r * c);
+    }
+    list->AddPolyline(points.data(), int(points.size()), plane == 0 ? colour::accent : colour::text_dim, 0,
+                      px(1.5f));
+  }
+  ImGui::Dummy({size, size});
+  tooltip("Intensity by direction, down the lamp's axis: across its X axis (bright line) and its Y axis.");
+  float roll = scene::roll_of(light.direction, light.right);
+  if (slider("##roll", "Roll", roll,
+             {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0", .typed_lo = -360, .typed_hi = 360}))
+    actions.act("light.set", i + 1, named("roll", roll));
+  tooltip("Angle about the direction of its light; at 0 its X axis is level.");
+}
+
 /// Properties of a selected lamp besides its strength.
 void light_details(Actions& actions, const Box& core, size_t i, const scene::Light& light) {
   colour_rows(actions, "light.set", i + 1, "color", tint_of(light.intensity));
@@ -152,6 +182,7 @@ void light_details(Actions& actions, const Box& core, size_t i, const scene::Lig
     tooltip("Position of the lamp: x, y (up), z in metres.");
   }
   if (has_shape(light.kind)) shape_rows(actions, i, light);
+  if (light.profile) profile_rows(actions, i, light);
   if (light.kind != scene::LightKind::point && light.kind != scene::LightKind::sphere &&
       light.kind != scene::LightKind::tube) {
     const commands::Bearing bearing = commands::bearing_of(light.direction);

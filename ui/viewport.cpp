@@ -321,8 +321,11 @@ void click(Ui& ui, const Area& shown) {
 
 std::string help_of(Ui& ui, const LampHandle& handle) {
   switch (handle.part) {
+    case LampHandle::Part::size:
+      return "Drag it to change the lamp's size, or the angle of its cone. A lamp with a shape keeps its "
+             "power.";
     case LampHandle::Part::aim:
-      return "Aim of the spot: drag it over surfaces.";
+      return "Aim of the light: drag it over surfaces.";
     case LampHandle::Part::surface:
       return fmt::format(
           "{}. Emissive surface: click to select its material, which can be edited under Lights.",

@@ -79,7 +79,8 @@ constexpr NewKind k_new_kinds[] = {{"point", scene::LightKind::point, "Lamp"},
                                    {"sphere", scene::LightKind::sphere, "Globe"},
                                    {"rectangle", scene::LightKind::rectangle, "Panel"},
                                    {"disk", scene::LightKind::disk, "Disk"},
-                                   {"tube", scene::LightKind::tube, "Tube"}};
+                                   {"tube", scene::LightKind::tube, "Tube"},
+                                   {"profile", scene::LightKind::point, "Fixture"}};
 
 scene::Light new_light(Workspace& work, const Arguments& a) {
   scene::Light light;
@@ -90,6 +91,11 @@ scene::Light new_light(Workspace& work, const Arguments& a) {
   light.name = free_name(lights, kind.name);
   if (a.has("name")) check_name(lights, a.text("name")), light.name = a.text("name");
   place_new(room_of(work), light);
+  if (a.text("kind") == "profile") {
+    if (!a.has("profile")) throw Error("", "profile: its file is missing");
+    const vec3 way = looked_at(room_of(work)).point - light.position;
+    if (glm::length(way) > 0) light.direction = vec3(glm::normalize(glm::dvec3(way)));
+  }
   apply_light_words(a, light);
   return light;
 }
@@ -176,7 +182,8 @@ void add_light_label_commands(Registry& registry, OpenScene& open) {
 void add_light_place_commands(Workspace& work) {
   work.registry.add(
       {.name = "light.aim_at",
-       .help = "Points a spot, rectangle or disk at a point; without one, at the surface in the middle of "
+       .help = "Points a spot, rectangle, disk or profile at a point; without one, at the surface in the "
+               "middle of "
                "the picture.",
        .parameters = {which_light(work.open), point("at", "a point of the scene")},
        .run =

@@ -6,6 +6,7 @@
 #include "base/color.h"
 #include "base/error.h"
 #include "commands/light_edit.h"
+#include "scene/io/light_profile_file.h"
 #include "scene/lamp.h"
 #include "scene/range.h"
 
@@ -51,7 +52,9 @@ void check_kind(const Arguments& a, const scene::Light& light) {
   if (!has_shape(light.kind)) refuse("visible", "has no shape");
   if (light.kind != LightKind::rectangle && light.kind != LightKind::disk)
     refuse("two_sided", "has no second side");
-  if (light.kind != LightKind::rectangle && light.kind != LightKind::tube)
+  if (light.kind != LightKind::point && light.kind != LightKind::spot && light.kind != LightKind::profile)
+    refuse("profile", "takes no distribution");
+  if (light.kind != LightKind::rectangle && light.kind != LightKind::tube && light.kind != LightKind::profile)
     for (const char* name : {"right", "roll"}) refuse(name, "looks the same when it is rolled");
   if (light.kind != scene::LightKind::spot)
     for (const char* name : {"cone", "inner_cone"}) refuse(name, "has no cone");
@@ -158,14 +161,15 @@ vec3 requested_tint(const Arguments& a, const char* color, const vec3& before) {
 }
 
 const char* kind_of(const scene::Light& light) {
-  static constexpr const char* k_names[] = {"point lamp",     "spot lamp", "sun",      "sphere lamp",
-                                            "rectangle lamp", "disk lamp", "tube lamp"};
+  static constexpr const char* k_names[] = {"point lamp",     "spot lamp", "sun",       "sphere lamp",
+                                            "rectangle lamp", "disk lamp", "tube lamp", "profile lamp"};
   return k_names[static_cast<size_t>(light.kind)];
 }
 
 bool can_be_aimed(const scene::Light& light) {
   using scene::LightKind;
-  return light.kind == LightKind::spot || light.kind == LightKind::rectangle || light.kind == LightKind::disk;
+  return light.kind == LightKind::spot || light.kind == LightKind::rectangle ||
+         light.kind == LightKind::disk || light.kind == LightKind::profile;
 }
 
 std::vector<Parameter> light_parameters() {
@@ -224,6 +228,11 @@ std::vector<Parameter> light_parameters() {
        .type = Type::boolean,
        .help = "a rectangle or disk shines to both sides",
        .optional = true},
+      {.name = "profile",
+       .type = Type::file,
+       .help = "measured distribution of a point or spot, IES LM-63 or EULUMDAT; the lamp keeps its power",
+       .choices = {".ies", ".ldt"},
+       .optional = true},
       {.name = "visible",
        .type = Type::boolean,
        .help = "the camera sees the shape; mirrors show it in any case",
@@ -238,6 +247,7 @@ void check_light_words(const Arguments& a) {
 
 void apply_light_words(const Arguments& a, scene::Light& light) {
   check_kind(a, light);
+  if (a.has("profile")) set_profile(light, scene::load_light_profile(a.text("profile")));
   aim(a, light);
   shape(a, light);
   shine(a, light);

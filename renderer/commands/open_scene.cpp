@@ -60,6 +60,8 @@ void OpenScene::begin_scene() {
   pending_lights_.reset(), pending_materials_.clear(), pending_environment_.reset();
   own_environment_ = {scene->environment.scale, scene->environment.rotation};
   dark_.clear(), sources_sent_.clear();
+  for (uint32_t i = 0; i < scene->materials.size(); ++i)
+    if (const vec3 off = scene->materials[i].off_emission; off != vec3(0)) dark_[i] = off;
   source_ = source_in_force_ = {};
   next_light_id_ = scene::k_first_added;
   solo_ = -1;
@@ -367,7 +369,11 @@ std::optional<scene::SkyModel> OpenScene::sky() const {
 scene::Scene OpenScene::edited_scene() const {
   scene::Scene edited = *scene;
   edited.lights = lights();
-  for (uint32_t i = 0; i < edited.materials.size(); ++i) edited.materials[i] = material(i);
+  for (uint32_t i = 0; i < edited.materials.size(); ++i) {
+    edited.materials[i] = material(i);
+    const auto off = dark_.find(i);
+    edited.materials[i].off_emission = off != dark_.end() ? off->second : vec3(0);
+  }
   scene::Environment& e = edited.environment;
   e = loaded->environment;
   if (source_.sky || !source_.file.empty()) {

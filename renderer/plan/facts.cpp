@@ -214,6 +214,8 @@ std::vector<Row> light_rows() {
        drop_lamps<LightKind::spot>},
       {"directional", "Distant lamps", group, "light table", "none is on", of_lamps<LightKind::directional>,
        drop_lamps<LightKind::directional>},
+      {"profile", "Lamps with a measured distribution", group, "table of the distribution", "none is on",
+       of_lamps<LightKind::profile>, drop_lamps<LightKind::profile>},
       {"shaped", "Lamps with a shape", group, "light table; rays may meet the lamps", "none is on",
        shaped_lamps, drop_shaped_lamps},
       {"emission", "Emitting surfaces", group, "triangles in the light table", "no surface emits",

@@ -73,15 +73,16 @@ uint64_t materials(const Scene& scene, Images& images) {
   Hash hash;
   for (const Material& m : scene.materials) {
     const auto& [name, base_color, base_color_texture, metallic, roughness, metallic_roughness_texture,
-                 normal_texture, normal_scale, emission, emission_texture, alpha_mode, alpha_cutoff,
-                 double_sided, unlit, ior, specular, specular_texture, specular_color, specular_color_texture,
-                 transmission, transmission_texture, thickness, attenuation_color, attenuation_distance,
-                 dispersion, diffuse_transmission, diffuse_transmission_texture, diffuse_transmission_color,
-                 diffuse_transmission_color_texture, clearcoat, clearcoat_texture, clearcoat_roughness,
-                 clearcoat_roughness_texture, clearcoat_normal_texture, clearcoat_normal_scale, sheen_color,
-                 sheen_color_texture, sheen_roughness, sheen_roughness_texture, anisotropy,
-                 anisotropy_rotation, anisotropy_texture, iridescence, iridescence_texture, iridescence_ior,
-                 iridescence_minimum, iridescence_maximum, iridescence_thickness_texture, group] = m;
+                 normal_texture, normal_scale, emission, off_emission, emission_texture, alpha_mode,
+                 alpha_cutoff, double_sided, unlit, ior, specular, specular_texture, specular_color,
+                 specular_color_texture, transmission, transmission_texture, thickness, attenuation_color,
+                 attenuation_distance, dispersion, diffuse_transmission, diffuse_transmission_texture,
+                 diffuse_transmission_color, diffuse_transmission_color_texture, clearcoat, clearcoat_texture,
+                 clearcoat_roughness, clearcoat_roughness_texture, clearcoat_normal_texture,
+                 clearcoat_normal_scale, sheen_color, sheen_color_texture, sheen_roughness,
+                 sheen_roughness_texture, anisotropy, anisotropy_rotation, anisotropy_texture, iridescence,
+                 iridescence_texture, iridescence_ior, iridescence_minimum, iridescence_maximum,
+                 iridescence_thickness_texture, group] = m;
     add_all(hash, base_color, metallic, roughness, normal_scale, emission, alpha_mode, alpha_cutoff,
             double_sided, unlit, ior, specular, specular_color, transmission, thickness, attenuation_color,
             attenuation_distance, dispersion, diffuse_transmission, diffuse_transmission_color, clearcoat,
@@ -96,9 +97,13 @@ uint64_t lights(const Scene& scene) {
   Hash hash;
   for (const Light& light : scene.lights) {
     const auto& [name, kind, intensity, position, direction, inner_cone, outer_cone, enabled, group, id, sun,
-                 right, width, height, radius, two_sided, visible] = light;
+                 profile, right, width, height, radius, two_sided, visible] = light;
     hash.add_value(enabled);
     if (enabled) add_all(hash, kind, intensity, position, direction, inner_cone, outer_cone);
+    if (enabled && profile) {
+      add_all(hash, right, profile->rows, profile->columns);
+      hash.add_values(profile->intensity);
+    }
     if (enabled && has_shape(kind)) add_all(hash, right, width, height, radius, two_sided, visible);
   }
   return hash.low();

@@ -24,6 +24,8 @@ double solid_angle(const Light& lamp) {
       return std::numbers::pi * (lamp.two_sided ? 2 : 1);
     case LightKind::tube:
       return std::numbers::pi * std::numbers::pi;
+    case LightKind::profile:
+      return lamp.profile ? lamp.profile->solid_angle : 4 * std::numbers::pi;
     case LightKind::directional:
       break;
   }
@@ -72,7 +74,7 @@ float roll_of(const vec3& direction, const vec3& right) {
 }
 
 void turn_to(Light& light, const vec3& direction) {
-  if (has_shape(light.kind)) {
+  if (can_roll(light)) {
     const glm::dvec3 from(light.direction), to(direction), axis = glm::cross(from, to);
     const double cosine = glm::dot(from, to);
     glm::dvec3 right(light.right);
@@ -84,9 +86,18 @@ void turn_to(Light& light, const vec3& direction) {
   light.direction = direction;
 }
 
+bool can_roll(const Light& light) { return has_shape(light.kind) || light.kind == LightKind::profile; }
+
+void set_profile(Light& light, std::shared_ptr<const LightProfile> profile) {
+  const double power = solid_angle(light);
+  if (light.kind != LightKind::profile) light.right = level_right(light.direction);
+  light.kind = LightKind::profile, light.profile = std::move(profile);
+  light.intensity *= float(power / solid_angle(light));
+}
+
 const char* kind_name(LightKind kind) {
   static constexpr const char* k_names[] = {"point",     "spot", "directional", "sphere",
-                                            "rectangle", "disk", "tube"};
+                                            "rectangle", "disk", "tube",        "profile"};
   return k_names[static_cast<size_t>(kind)];
 }
 

@@ -82,6 +82,11 @@ void check_range(const Light& l) {
   if (!(l.inner_cone >= 0 && l.inner_cone <= l.outer_cone && l.outer_cone <= 0.5001f * k_pi))
     throw_error(where, "its cones are {:.4g} and {:.4g} radians, expected 0 <= inner <= outer <= pi/2",
                 l.inner_cone, l.outer_cone);
+  if (!can_roll(l)) return;
+  const bool across = finite(l.right) && std::abs(glm::length(l.right) - 1) < 1e-3f &&
+                      std::abs(glm::dot(l.right, l.direction)) < 1e-3f;
+  if (!across) throw_error(where, "the direction of its width is not unit and perpendicular to its own");
+  if (l.kind == LightKind::profile && !l.profile) throw_error(where, "it has no distribution");
   if (!has_shape(l.kind)) return;
   const vec2 half = half_size(l);
   const char* size = l.kind == LightKind::rectangle ? "its width and height are"
@@ -91,9 +96,6 @@ void check_range(const Light& l) {
     if (!within(value, k_least_lamp, k_max_lamp))
       throw_error(where, "{} {:.4g} and {:.4g} m, expected {:g} to {:g}", size, 2 * half.x, 2 * half.y,
                   k_least_lamp, k_max_lamp);
-  const bool across = finite(l.right) && std::abs(glm::length(l.right) - 1) < 1e-3f &&
-                      std::abs(glm::dot(l.right, l.direction)) < 1e-3f;
-  if (!across) throw_error(where, "the direction of its width is not unit and perpendicular to its own");
 }
 
 void check_range(const Material& m) {

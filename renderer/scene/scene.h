@@ -11,6 +11,7 @@
 
 #include "base/math.h"
 #include "base/shared_vector.h"
+#include "scene/light_profile.h"
 #include "scene/sky_model.h"
 #include "scene/sun_time.h"
 
@@ -60,6 +61,7 @@ struct Material {
   TextureUse normal_texture;
   float normal_scale = 1;
   vec3 emission{0};  ///< emitted radiance: emissiveFactor * emissiveStrength
+  vec3 off_emission{0};  ///< kept while emission is switched off, and 0: extras.lucerna.off_emission
   TextureUse emission_texture;
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;
@@ -206,9 +208,9 @@ struct Camera {
   bool perspective() const { return !orthographic && wide == Wide::none; }
 };
 
-/// The kinds from sphere on are lamps with a shape.
-enum class LightKind : uint32_t { point, spot, directional, sphere, rectangle, disk, tube };
-inline bool has_shape(LightKind kind) { return kind >= LightKind::sphere; }
+/// Sphere to tube are lamps with a shape; profile: a point with a measured distribution.
+enum class LightKind : uint32_t { point, spot, directional, sphere, rectangle, disk, tube, profile };
+inline bool has_shape(LightKind kind) { return kind >= LightKind::sphere && kind <= LightKind::tube; }
 
 /// KHR_lights_punctual, or a lamp with a shape that emits the same radiance everywhere; shines down its -Z.
 /// Only lamps with a shape are seen; they block no light. `intensity`: W/sr (W/m^2 of directional lights), of
@@ -225,8 +227,9 @@ struct Light {
   /// Identifies the light among all that the scene had and will have: its node in the file, or
   /// k_first_added and more for lights added by hand. k_none: not known.
   Id id = k_none;
-  std::optional<SunTime> sun{};  ///< of a directional light: its direction follows from this
-  /// Of a rectangle's width or a tube's length: unit, perpendicular to the direction.
+  std::optional<SunTime> sun{};                   ///< of a directional light: its direction follows from this
+  std::shared_ptr<const LightProfile> profile{};  ///< of its kind; the intensity is then the largest one
+  /// Of a rectangle's width, a tube's length, or a profile's +X: unit, perpendicular to the direction.
   vec3 right{1, 0, 0};
   float width = 0.5f;      ///< of a rectangle; length of a tube; metres
   float height = 0.5f;     ///< of a rectangle

@@ -67,6 +67,7 @@ LightBuffers::LightBuffers(gpu::Device& device, const FlatLights& flat, const Li
       alias(upload(device, "light table", joined(flat.light_alias, flat.lamp_alias))),
       pmf(upload(device, "light probabilities", flat.primitive_light_pmf, false)),
       groups(upload(device, "groups of lights", whole_texels(flat.emissive_groups))),
+      profiles(upload(device, "distributions of lamps", flat.profiles)),
       sun_density(upload(device, "sun densities", flat.sun_density)),
       portals(upload(device, "portals", flat.portals.portals)),
       portal_sums(upload<uint32_t>(device, "portal tables", flat.portals.sums)),
@@ -123,6 +124,7 @@ void DeviceScene::bind(gpu::Resources& r) const {
   r.set("light_alias", lights_.alias);
   r.set("PrimitiveLightPmf", lights_.pmf);
   r.set("emissive_groups", lights_.groups);
+  r.set("light_profiles", lights_.profiles);
   r.set("environment_texels", lights_.environment->texels);
   r.set("environment_alias", lights_.environment->alias);
   r.set("sun_cells", lights_.environment->sun_cells);
@@ -143,6 +145,7 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_LIGHTS", e.lights);
   set("LUCERNA_EMISSIVE", e.emissive);
   set("LUCERNA_SHAPES", e.shapes);
+  set("LUCERNA_PROFILES", e.profiles);
   set("LUCERNA_PLAIN_EMITTERS", e.plain_emitters);
   set("LUCERNA_ENVIRONMENT_MAP", e.environment_map);
   set("LUCERNA_SEPARATE_SKY", e.separate_sky);

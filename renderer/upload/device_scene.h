@@ -25,7 +25,7 @@ struct LightBuffers {
   /// `before`: provides the environment if it is equal.
   LightBuffers(gpu::Device& device, const FlatLights& flat, const LightBuffers& before = {});
   explicit operator bool() const { return bool(lights); }
-  gpu::Buffer lights, alias, pmf, groups, sun_density, portals, portal_sums;
+  gpu::Buffer lights, alias, pmf, groups, profiles, sun_density, portals, portal_sums;
   std::shared_ptr<const EnvironmentBuffers> environment;
 };
 

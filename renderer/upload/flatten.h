@@ -30,7 +30,9 @@ struct Effects {
   bool plain_emitters = true;  ///< no emissive surface has an emission texture or alpha transparency
   /// Number of lamps from which a light sample is resampled by their light at the point; 0: few lamps.
   uint32_t lamp_candidates = 0;
-  bool shapes = false;                     ///< there are lamps with a shape, on or off
+  bool shapes = false;    ///< there are lamps with a shape, on or off
+  bool profiles = false;  ///< there are lamps with a measured distribution, on or off
+
   bool separate_sky = false, sun = false;  ///< FlatScene::sun_threshold; there are brighter texels
   uint32_t media = 0;                      ///< number of media, if a solid absorbs (upload/media.h)
   uint32_t light_groups = 1;               ///< number of separate groups (FlatScene::groups)
@@ -89,6 +91,7 @@ struct LightDistribution {
 struct Emission {
   std::vector<vec4> lights;                                ///< the light table
   std::vector<uint8_t> emissive_groups;                    ///< by primitive; empty: groups are not separate
+  std::vector<vec4> profiles;                              ///< light_profiles
   SharedVector<vec3> environment_texels;                   ///< radiance, without the factor
   std::optional<EnvironmentSource> environment_source;     ///< source of the texels
   uint32_t environment_width = 0, environment_height = 0;  ///< 0: dark

@@ -1,9 +1,12 @@
 // Emission of the lights of a flattened scene.
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 #include "scene/lamp.h"
+#include "upload/alias_table.h"
 #include "upload/environment_map.h"
 #include "upload/flatten.h"
 
@@ -26,7 +29,39 @@ LightTexels triangle_texels(const scene::Scene& scene, const FlatScene& flat, ui
           vec4(m.emission, as_float(sides))};
 }
 
-LightTexels lamp_texels(const scene::Light& l, uint32_t kind) {
+/// Profiles of the scene's lamps, each once.
+using Profiles = std::vector<std::shared_ptr<const scene::LightProfile>>;
+uint32_t number_of(Profiles& profiles, const std::shared_ptr<const scene::LightProfile>& profile) {
+  const auto found = std::find(profiles.begin(), profiles.end(), profile);
+  const auto number = uint32_t(found - profiles.begin());
+  if (found == profiles.end()) profiles.push_back(profile);
+  return number;
+}
+
+/// The table of profiles (shaders/shared/scene.h).
+std::vector<vec4> profile_texels(const Profiles& profiles) {
+  std::vector<vec4> texels(profiles.size());
+  for (size_t p = 0; p < profiles.size(); ++p) {
+    const scene::LightProfile& profile = *profiles[p];
+    texels[p] = vec4(as_float(uint32_t(texels.size())), as_float(profile.rows), as_float(profile.columns), 0);
+    const std::vector<double> cells = profile.cells();
+    const std::vector<vec4> alias = build_alias_table(cells);
+    const double step = std::numbers::pi / (profile.rows - 1), width = 2 * std::numbers::pi / profile.columns;
+    for (size_t i = 0; i < profile.intensity.size(); ++i) {
+      vec4 texel(profile.intensity[i], 1, as_float(uint32_t(i)), 0);
+      if (i < cells.size()) {
+        const auto row = double(i / profile.columns);
+        const double angle = width * (std::cos(step * row) - std::cos(step * (row + 1)));
+        texel = vec4(profile.intensity[i], alias[i].x, alias[i].y, double(alias[i].z) / angle);
+      }
+      texels.push_back(texel);
+    }
+  }
+  return texels;
+}
+
+/// `profile`: number of its profile.
+LightTexels lamp_texels(const scene::Light& l, uint32_t kind, uint32_t profile) {
   const vec3 intensity = l.enabled ? l.intensity : vec3(0);
   if (l.kind == scene::LightKind::directional)
     return {vec4(vec3(0), as_float(kind)), vec4(intensity, 0), vec4(l.direction, 0), vec4(0)};
@@ -36,6 +71,9 @@ LightTexels lamp_texels(const scene::Light& l, uint32_t kind) {
     return {vec4(l.position, as_float(kind)), vec4(intensity, half.x), vec4(l.direction, half.y),
             vec4(scene::right_across(l.direction, l.right), as_float(bits))};
   }
+  if (l.kind == scene::LightKind::profile)
+    return {vec4(l.position, as_float(kind)), vec4(intensity, 0), vec4(l.direction, 0),
+            vec4(scene::right_across(l.direction, l.right), as_float(profile << k_light_profile_shift))};
   return {vec4(l.position, as_float(kind)), vec4(intensity, std::cos(l.inner_cone)),
           vec4(l.direction, std::cos(l.outer_cone)), vec4(0)};
 }
@@ -62,7 +100,8 @@ std::vector<uint8_t> surface_groups(const scene::Scene& scene, const FlatScene& 
   return groups;
 }
 
-LightTexels texels_of(const scene::Scene& scene, const FlatScene& flat, const LightEntry& entry) {
+LightTexels texels_of(const scene::Scene& scene, const FlatScene& flat, const LightEntry& entry,
+                      Profiles& profiles) {
   if (entry.kind == k_light_triangle) return triangle_texels(scene, flat, entry.index);
   const vec4 only_kind(vec3(0), as_float(entry.kind));
   if (entry.kind == k_light_environment) {
@@ -70,7 +109,8 @@ LightTexels texels_of(const scene::Scene& scene, const FlatScene& flat, const Li
     return {only_kind, vec4(as_float(sun_cells), 0, 0, 0), vec4(0), vec4(0)};
   }
   if (entry.index == scene::k_none) return {only_kind, vec4(0), vec4(0), vec4(0)};
-  return lamp_texels(scene.lights[entry.index], entry.kind);
+  const scene::Light& lamp = scene.lights[entry.index];
+  return lamp_texels(lamp, entry.kind, lamp.profile ? number_of(profiles, lamp.profile) : 0);
 }
 
 }  // namespace
@@ -79,13 +119,15 @@ void flatten_emission(const scene::Scene& scene, FlatScene& flat) {
   Emission e;
   if (flat.effects.light_groups > 1) e.emissive_groups = surface_groups(scene, flat);
   e.lights.reserve(flat.entries.size() * k_light_texels);
+  Profiles profiles;
   for (const LightEntry& entry : flat.entries) {
-    LightTexels texels = texels_of(scene, flat, entry);
+    LightTexels texels = texels_of(scene, flat, entry, profiles);
     if (flat.effects.light_groups > 1)
       texels[3].w = as_float(std::bit_cast<uint32_t>(texels[3].w) | group_of(flat, entry, e.emissive_groups)
                                                                         << k_light_group_shift);
     e.lights.insert(e.lights.end(), texels.begin(), texels.end());
   }
+  e.profiles = profile_texels(profiles);
   e.environment_rotation = scene.environment.rotation * k_pi / 180;
   if (flat.effects.environment_map) {
     const EnvironmentMap map(scene);

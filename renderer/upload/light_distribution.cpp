@@ -69,6 +69,9 @@ void add_lamps(const scene::Scene& scene, double disk, Choice& choice) {
     } else if (l.kind == scene::LightKind::spot) {
       const float inner = std::cos(l.inner_cone), outer = std::cos(l.outer_cone);
       choice.add(k_light_spot, i, y * (2 * k_pi * (1 - 0.5 * (inner + outer))), y * scene::solid_angle(l));
+    } else if (l.kind == scene::LightKind::profile) {
+      const double flux = y * scene::solid_angle(l);
+      choice.add(k_light_profile, i, flux, flux);
     } else {
       choice.add(k_light_point, i, y * (4 * k_pi), y * scene::solid_angle(l));
     }
@@ -195,6 +198,10 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   if (emissive) d.primitive_light_pmf = triangle_densities(flat, d);
   flat.effects.lights = !d.entries.empty();
   flat.effects.emissive = emissive;
+  flat.effects.profiles =
+      flat.effects.lights && std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& l) {
+        return l.kind == scene::LightKind::profile;
+      });
   flat.effects.shapes =
       flat.effects.lights && std::any_of(scene.lights.begin(), scene.lights.end(),
                                          [](const scene::Light& l) { return has_shape(l.kind); });

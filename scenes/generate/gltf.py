@@ -137,6 +137,7 @@ class Scene:
         self.material_ids, self.mesh_ids, self.geometry, self.triangles = {}, {}, {}, {}
         self.total = 0
         self.variant_names = []
+        self.profiles = []
         self.extras = None
 
     # ---- materials -------------------------------------------------------------------------------------------------
@@ -383,6 +384,17 @@ class Scene:
                            "extensions": {"KHR_lights_punctual": {"light": len(self.lights) - 1}}})
         self.used.add("KHR_lights_punctual")
 
+    def fixture(self, name, at, direction, file, multiplier, color=(1, 1, 1)):
+        """A lamp of the measured distribution in an LM-63 file of the scene's folder; multiplier: of its candela."""
+        if file not in self.profiles:
+            self.profiles.append(file)
+        at, d = np.asarray(at, float), np.asarray(direction, float)
+        m = self.look(at, at + d, (0, 1, 0) if abs(d[1]) < 0.999 * np.linalg.norm(d) else (0, 0, -1))
+        self.nodes.append({"name": name, "matrix": _numbers(m.T, 7),
+                           "extensions": {"EXT_lights_ies": {"light": self.profiles.index(file), "multiplier": multiplier,
+                                                             "color": _numbers(color, 4)}}})
+        self.used.add("EXT_lights_ies")
+
     # ---- output ----------------------------------------------------------------------------------------------------
     def write(self, about, settings=None):
         doc = {"asset": {"version": "2.0", "generator": "lucerna scenes/generate"}}
@@ -390,6 +402,8 @@ class Scene:
             doc["extensionsUsed"] = sorted(self.used)
         if self.lights:
             doc["extensions"] = {"KHR_lights_punctual": {"lights": self.lights}}
+        if self.profiles:
+            doc.setdefault("extensions", {})["EXT_lights_ies"] = {"lights": [{"uri": f} for f in self.profiles]}
         if self.variant_names:
             doc.setdefault("extensions", {})["KHR_materials_variants"] = {
                 "variants": [{"name": v} for v in self.variant_names]}

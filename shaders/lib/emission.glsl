@@ -198,7 +198,7 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
   float spread = 4.0 * k_pi;
   // Aimed: towards the caster, unless the light is inside its box.
   vec3 aimed_direction = e.direction;
-  bool has_area = kind == k_light_triangle || kind >= k_light_sphere;
+  bool has_area = kind == k_light_triangle || (kind >= k_light_sphere && kind <= k_light_tube);
   bool aims = stratum > 0u && !has_area && aim_sample(box, a.xyz, u_direction, aimed_direction);
   vec3 place = a.xyz;
   if (kind == k_light_point) e.direction = aims ? aimed_direction : e.direction;
@@ -207,6 +207,16 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
     e.direction = aims ? aimed_direction : e.direction;
     e.pdf_direction = spot_share(dot(e.direction, c.xyz), b.w, c.w) / spread;
   }
+#if LUCERNA_PROFILES
+  if (kind == k_light_profile) {
+    vec4 d = texelFetch(scene_lights, at + 3);
+    Profile profile = light_profile(floatBitsToUint(d.w));
+    vec3 own = sample_profile(profile, c.xyz, d.xyz, uvec2(coin, hash_mix(coin)), u_direction);
+    e.direction = aims ? aimed_direction : own;
+    float share = profile_share(profile, c.xyz, d.xyz, e.direction, e.pdf_direction);
+    spread = e.pdf_direction > 0.0 ? share / e.pdf_direction : 0.0;
+  }
+#endif
   bool afar = kind == k_light_directional || kind == k_light_environment;
   e.afar = afar;
   if (kind == k_light_directional) {

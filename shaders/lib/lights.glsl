@@ -16,6 +16,9 @@
 #if LUCERNA_SHAPES
 #include "lib/shapes.glsl"
 #endif
+#if LUCERNA_PROFILES
+#include "lib/profiles.glsl"
+#endif
 
 #if LUCERNA_LIGHTS
 uniform samplerBuffer scene_lights;
@@ -223,6 +226,13 @@ float lamp_sends(uint lamp, vec3 position, vec3 normal) {
     return luminance(b.xyz) * shape_facing(shape, -direction) / (d2 + extent2) * max(dot(direction, normal), 0.05);
   }
 #endif
+#if LUCERNA_PROFILES
+  if (kind == k_light_profile) {
+    vec4 d = texelFetch(scene_lights, at + 3);
+    float density, share = profile_share(light_profile(floatBitsToUint(d.w)), c.xyz, d.xyz, -direction, density);
+    return luminance(b.xyz) * share / d2 * max(dot(direction, normal), 0.05);
+  }
+#endif
   float fall = directional ? 1.0 : (kind == k_light_spot ? spot_share(dot(-direction, c.xyz), b.w, c.w) : 1.0) / d2;
   return luminance(b.xyz) * fall * max(dot(direction, normal), 0.05);
 }
@@ -414,6 +424,13 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
     s.distance = k_infinity;
     s.radiance = b.xyz;
   }
+#if LUCERNA_PROFILES
+  if (kind == k_light_profile) {
+    vec4 d = texelFetch(scene_lights, at + 3);
+    float density;
+    s.radiance *= profile_share(light_profile(floatBitsToUint(d.w)), c.xyz, d.xyz, -s.direction, density);
+  }
+#endif
 #if LUCERNA_SHAPES
   if (is_shape(kind)) {
     // Rays may meet it too: MIS uses the density without candidates.

@@ -25,7 +25,7 @@ struct LampShape {
   vec3 radiance;
 };
 
-bool is_shape(uint kind) { return kind >= k_light_sphere; }
+bool is_shape(uint kind) { return kind >= k_light_sphere && kind <= k_light_tube; }
 
 // Texels a, b, c, d of the table of lights.
 LampShape lamp_shape(vec4 a, vec4 b, vec4 c, vec4 d) {

@@ -14,6 +14,10 @@
 #ifndef LUCERNA_SHAPES
 #define LUCERNA_SHAPES 0
 #endif
+// Lamps with a measured distribution (lib/profiles.glsl).
+#ifndef LUCERNA_PROFILES
+#define LUCERNA_PROFILES 0
+#endif
 // All emissive surfaces are opaque and emit uniformly.
 #ifndef LUCERNA_PLAIN_EMITTERS
 #define LUCERNA_PLAIN_EMITTERS 0

@@ -85,6 +85,9 @@ LUCERNA_CONST uint k_light_texels = 4u;
 // Lamps with a shape (shaders/lib/shapes.glsl): texels 0 to 2 as punctual, with half the width and half the height [m] in place
 // of the cosines (rectangle; sphere and disk: radius in both; tube: half the length, radius); texel 3: direction of the width,
 // or of a tube's length, unit and perpendicular to the direction, bits.
+// A lamp with a measured distribution: texels 0 to 2 as punctual, with the largest intensity; texel 3: direction of the
+// distribution's +X, bits: number of the distribution << k_light_profile_shift, group.
+LUCERNA_CONST uint k_light_profile_shift = 16u;
 LUCERNA_CONST uint k_light_both_sides = 1u;       ///< the back side emits as well
 LUCERNA_CONST uint k_light_flipped = 2u;          ///< the front is the clockwise side
 LUCERNA_CONST uint k_light_hidden = 4u;           ///< a lamp with a shape that the camera does not see
@@ -98,8 +101,13 @@ LUCERNA_CONST uint k_light_environment = 4u;
 LUCERNA_CONST uint k_light_sphere = 5u;           ///< the first kind with a shape
 LUCERNA_CONST uint k_light_rectangle = 6u;
 LUCERNA_CONST uint k_light_disk = 7u;
-LUCERNA_CONST uint k_light_tube = 8u;
+LUCERNA_CONST uint k_light_tube = 8u;             ///< the last one
+LUCERNA_CONST uint k_light_profile = 9u;          ///< a point with a measured distribution
 
+// light_profiles: a texel a distribution (bits: first texel of its grid, rows, columns, 0), then the grids, a row of polar
+// angles after the other (renderer/scene/light_profile.h): a texel a point (relative intensity; of the cell from it to the next
+// row and column: threshold and bits of the alias of an alias table of the cells, density of its directions per solid angle).
+//
 // light_alias: one texel a light: (threshold, bits alias, pmf of this light, pmf of the alias). It is followed by a table of
 // the lamps alone, numbered from Frame::first_lamp.
 // environment_texels: one a texel: (radiance rgb, density of the directions through it as environment_alias chooses

@@ -133,6 +133,13 @@ TEST_CASE("photons and light tracing find the light of shapes") {
   check_alike(shapes_by_paths().image, light.image, 0.01);
 }
 
+TEST_CASE("records hold the light of shapes once") {
+  const test::Result cached = test::render(
+      with_shapes(),
+      test::dense_records({{"components.secondary", "cache"}, {"components.tertiary", "cache"}}), 32, k_side);
+  check_alike(shapes_by_paths().image, cached.image, 0.03);
+}
+
 TEST_CASE("the camera sees a lamp's radiance, through glass and mirrors too, unless it is hidden") {
   scene::Scene s;
   s.name = "seen";

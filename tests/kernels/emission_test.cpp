@@ -243,6 +243,45 @@ TEST_CASE("shapes emit their power, equal per path, evenly from their surface, c
     }
 }
 
+TEST_CASE("a measured distribution emits its flux, in proportion to its intensity") {
+  scene::Scene s = floor();
+  s.lights = {lamp(scene::LightKind::profile, {3, 2, 1})};
+  scene::Light& l = s.lights[0];
+  l.right = scene::rolled(l.direction, 40);
+  l.profile = std::make_shared<scene::LightProfile>(scene::sampled_profile(
+      [](double polar, double around) {
+        const double c = std::cos(polar * k_pi_d / 180);
+        return c < -0.5 ? 0 : (1 + c) * (1.2 + std::sin(2 * around * k_pi_d / 180));
+      },
+      false));
+  const Emitted e(s);
+  const vec3 mean = mean_flux(e);
+  for (int c = 0; c < 3; ++c)
+    CHECK(mean[c] == Approx(float(scene::solid_angle(l)) * l.intensity[c]).epsilon(2e-3));
+  constexpr uint32_t k_rows = 18, k_columns = 12;
+  const auto bin = [&](uint32_t row, uint32_t column) {
+    return size_t{row * k_rows / (l.profile->rows - 1)} * k_columns + column * k_columns / l.profile->columns;
+  };
+  std::vector<double> observed(size_t{k_rows} * k_columns, 0.0), expected(observed.size(), 0.0);
+  const std::vector<double> cells = l.profile->cells();
+  for (size_t i = 0; i < cells.size(); ++i)
+    expected[bin(uint32_t(i / l.profile->columns), uint32_t(i % l.profile->columns))] +=
+        cells[i] / l.profile->solid_angle * double(e.paths.size());
+  const glm::dvec3 x(l.right), n(l.direction), y = glm::cross(x, n);
+  size_t dark = 0;
+  for (const Beginning& b : e.paths) {
+    const glm::dvec3 d(b.direction);
+    double around = std::atan2(glm::dot(d, y), glm::dot(d, x)) / (2 * k_pi_d);
+    around -= std::floor(around);
+    const double polar = std::acos(std::clamp(glm::dot(d, n), -1.0, 1.0)) / k_pi_d;
+    observed[bin(std::min(uint32_t(polar * (l.profile->rows - 1)), l.profile->rows - 2),
+                 std::min(uint32_t(around * l.profile->columns), l.profile->columns - 1))] += 1;
+    dark += !(b.flux.x > 0);
+  }
+  CHECK(chi_square(observed, expected).p > 1e-4);
+  CHECK(dark < e.paths.size() / 1000);
+}
+
 TEST_CASE("a sun emits its irradiance through a disk that covers the whole scene") {
   scene::Scene s = floor();
   s.lights = {lamp(scene::LightKind::directional, {3, 2, 1})};

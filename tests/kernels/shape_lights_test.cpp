@@ -264,6 +264,33 @@ TEST_CASE("shapes send their power: intensity in front, behind only with two sid
   }
 }
 
+TEST_CASE("candela of a measured distribution arrive at the angles where they were measured") {
+  scene::Light l = lamp(LightKind::rectangle);
+  l.kind = LightKind::profile;
+  l.profile = std::make_shared<scene::LightProfile>(scene::sampled_profile(
+      [](double polar, double around) {
+        return polar > 150 ? 0 : 200 + polar + 50 * std::cos(around * k_pi_d / 180);
+      },
+      false));
+  l.intensity = vec3(float(l.profile->peak));
+  scene::Light other = l;
+  other.position += vec3(3, 0, 0), other.profile = std::make_shared<scene::LightProfile>(*l.profile);
+  const glm::dvec3 x(l.right), n(l.direction), y = glm::cross(x, n);
+  for (const double polar : {0.0, 17.5, 60.0, 90.0, 120.0, 170.0})
+    for (const double around : {0.0, 45.0, 133.0, 271.0}) {
+      const double a = polar * k_pi_d / 180, b = around * k_pi_d / 180;
+      const glm::dvec3 to = std::sin(a) * (std::cos(b) * x + std::sin(b) * y) + std::cos(a) * n;
+      const double candela = polar > 150 ? 0 : 200 + polar + 50 * (polar > 0 ? std::cos(b) : 0);
+      Lights lights(with({l, other}));
+      INFO("polar " << polar << ", around " << around);
+      for (const Draw& d : lights.draw(vec3(glm::dvec3(l.position) + 2.0 * to), 64, 2)) {
+        if (std::abs(d.distance - 2) > 1e-4f) continue;
+        CHECK(double(d.radiance.x) == Approx(candela / 4).epsilon(1e-3).margin(1e-6));
+        CHECK(d.delta == 1);
+      }
+    }
+}
+
 TEST_CASE("there were no validation messages: shape lights") { CHECK(device().validation_messages() == 0); }
 
 }  // namespace shape_lights_tests

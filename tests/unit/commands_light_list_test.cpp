@@ -101,6 +101,36 @@ TEST_CASE("a new lamp stands before the surface that is looked at, strong enough
   CHECK(b.work.open.lights().back().name == "Sun 2");
 }
 
+TEST_CASE("lamps with a shape are added, sized, turned and hidden, and keep their power") {
+  WorkspaceBench b;
+  b.open();
+  const Document before = b.work.open.document();
+  b.run("light.add rectangle name=Panel power=40 width=1 height=0.5 direction=0,-1,0 right=0,0,1");
+  scene::Light l = b.work.open.lights().back();
+  CHECK(l.kind == scene::LightKind::rectangle);
+  CHECK(l.right == vec3(0, 0, 1));
+  CHECK(l.intensity.x * k_pi == Approx(40));
+  b.run("light.set Panel width=2");
+  b.run("light.set Panel two_sided=true visible=false roll=90");
+  l = b.work.open.lights().back();
+  CHECK(l.width == 2);
+  CHECK(l.intensity.x * k_pi == Approx(40));
+  CHECK(l.two_sided);
+  CHECK_FALSE(l.visible);
+  CHECK(std::abs(glm::dot(l.right, l.direction)) < 1e-6f);
+  b.run("light.aim_at Panel at=0,0,0");
+  l = b.work.open.lights().back();
+  CHECK(std::abs(glm::dot(l.right, l.direction)) < 1e-6f);
+  b.run("light.add tube radius=0.02 length=1.5 right=0,1,0");
+  l = b.work.open.lights().back();
+  CHECK(l.right == vec3(0, 1, 0));
+  CHECK(std::abs(l.direction.y) < 1e-6f);
+  b.run("light.add sphere radius=0.2"), b.run("light.add disk radius=0.1");
+  REQUIRE(b.settled());
+  for (int i = 0; i < 7; ++i) b.run("undo");
+  CHECK(b.work.open.document() == before);
+}
+
 TEST_CASE("lights are named, grouped, aimed and moved") {
   WorkspaceBench b;
   b.open();
@@ -168,6 +198,12 @@ TEST_CASE("invalid edits of lights are refused and change nothing") {
   refused("light.add point name=" + std::string(65, 'x'), "65 bytes are too long; at most 64");
   refused("light.add point cone=20", "cone: a point lamp has no cone");
   refused("light.add sun position=0,0,0", "is infinitely far");
+  refused("light.add sphere radius=0", "radius");
+  refused("light.add point radius=1", "a point lamp has no radius");
+  refused("light.add sphere two_sided=true", "a sphere lamp has no second side");
+  refused("light.add rectangle direction=0,0,1 right=0,0,2", "right: it is 0 or along the light's direction");
+  refused("light.add profile", "profile: its file is missing");
+  refused("light.add profile profile=/nowhere.ies", "/nowhere.ies: cannot be read");
   refused("light.add spot direction=0,0,0", "its length is 0");
   refused("light.add point intensity=-1", "intensity");
   refused("light.duplicate Sun by=1,0,0", "a sun is infinitely far");

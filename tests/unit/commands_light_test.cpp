@@ -110,12 +110,14 @@ TEST_CASE("a surface's emission is edited like a lamp, and switched off without 
   CHECK_FALSE(b.work.open.emits(4));
   CHECK(b.work.open.material(4).emission == vec3(0));
   CHECK(b.work.open.emission(4) == vec3(0, 80, 40));
+  CHECK(b.work.open.edited_scene().materials[4].off_emission == vec3(0, 80, 40));
   REQUIRE(b.settled());
   CHECK(b.session.scene()->materials[4].emission == vec3(0));
   b.run("material.set Filament strength=8");  // while it is off
   CHECK(b.work.open.material(4).emission == vec3(0));
   b.run("material.set Filament on=on");
   CHECK(b.work.open.material(4).emission == vec3(0, 8, 4));
+  CHECK(b.work.open.edited_scene().materials[4].off_emission == vec3(0));
   REQUIRE(b.settled());
   CHECK(b.session.scene()->materials[4].emission == vec3(0, 8, 4));
   for (int i = 0; i < 3; ++i) b.run("undo");

@@ -125,8 +125,8 @@ TEST_CASE("without an effect, a scene no longer calls for it, and keeps all othe
   glass.transmission = 1, glass.thickness = 1, glass.attenuation_distance = 1, glass.roughness = 0.3f;
   glass.dispersion = 0.3f, glass.attenuation_color = vec3(0.5f), glass.alpha_mode = scene::AlphaMode::blend;
   glass.transmission_texture.texture = 0;
-  full.lights.resize(4);
-  full.lights[3].kind = scene::LightKind::disk;
+  full.lights.resize(5);
+  full.lights[3].kind = scene::LightKind::disk, full.lights[4].kind = scene::LightKind::profile;
   full.lights[1].kind = scene::LightKind::spot, full.lights[2].kind = scene::LightKind::directional;
   full.environment.radiance = vec3(1);
   full.portals.resize(1);

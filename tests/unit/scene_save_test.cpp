@@ -8,6 +8,8 @@
 #include "base/color.h"
 #include "base/file.h"
 #include "scene/io/json_edit.h"
+#include "scene/io/light_profile_file.h"
+#include "scene/lamp.h"
 #include "scene/sky_image.h"
 #include "scene/solar.h"
 #include "unit/scene_support.h"
@@ -179,6 +181,91 @@ TEST_CASE("lights in every direction and of many colours read back exactly") {
   check_equal(b.edited->lights, back.lights);
 }
 
+TEST_CASE("lamps with a shape or a measured distribution read back exactly") {
+  Asset a;
+  a.triangle();
+  Bench b(a);
+  uint32_t state = 9;
+  const auto random = [&] { return float((state = state * 1664525u + 1013904223u) >> 8) / float(1 << 24); };
+  const auto profile = std::make_shared<LightProfile>(
+      parse_ies("IES:LM-63-2019\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n700 500.5 3\n", "x"));
+  profile->name = "downlight.ies";
+  for (Id i = 0; i < 150; ++i) {
+    Light l;
+    l.name = fmt::format("lamp {}", i), l.id = k_first_added + i;
+    l.kind = static_cast<LightKind>(static_cast<uint32_t>(LightKind::sphere) + i % 5);
+    if (l.kind == LightKind::profile) l.profile = profile;
+    l.position = 10.0f * vec3(random(), random(), random()) - 5.0f;
+    l.intensity = 100.0f * vec3(random(), random(), random());
+    if (l.kind != LightKind::sphere) {
+      l.direction = vec3(glm::normalize(glm::dvec3(random() - 0.5, random() - 0.5, random() - 0.5)));
+      l.right = rolled(l.direction, 360 * random());
+    }
+    if (l.kind == LightKind::rectangle) l.height = 0.01f + random();
+    if (l.kind == LightKind::rectangle || l.kind == LightKind::tube) l.width = 0.01f + 3 * random();
+    if (has_shape(l.kind) && l.kind != LightKind::rectangle) l.radius = 0.01f + random();
+    l.two_sided = has_shape(l.kind) && i % 3 == 0, l.visible = !has_shape(l.kind) || i % 7 != 0;
+    b.edited->lights.push_back(l);
+  }
+  const auto same_profiles = [](std::vector<Light> lights, const std::vector<Light>& as) {
+    for (size_t i = 0; i < lights.size(); ++i)
+      if (lights[i].profile && as[i].profile) {
+        CHECK(lights[i].profile->intensity == as[i].profile->intensity);
+        CHECK(lights[i].profile->name == as[i].profile->name);
+        lights[i].profile = as[i].profile;
+      }
+    return lights;
+  };
+  Scene back = b.saved();
+  check_equal(b.edited->lights, same_profiles(back.lights, b.edited->lights));
+  const json doc = b.document();
+  CHECK(doc["extensions"]["EXT_lights_ies"]["lights"].size() == 1);
+  // Edits of what was saved.
+  b.source = b.folder / "b.gltf";
+  b.read();
+  for (Light& l : b.edited->lights) {
+    l.intensity *= 1.7f;
+    if (l.kind == LightKind::profile || l.kind == LightKind::rectangle) l.right = rolled(l.direction, 77);
+    if (has_shape(l.kind)) l.visible = !l.visible;
+    if (l.kind == LightKind::disk) l.radius *= 0.3f;
+  }
+  b.edited->lights.erase(b.edited->lights.begin() + 4, b.edited->lights.begin() + 9);
+  back = b.saved(b.folder / "c.gltf");
+  check_equal(b.edited->lights, same_profiles(back.lights, b.edited->lights));
+}
+
+TEST_CASE("shapes and distributions that cannot be used: a warning with the place, and the rest is read") {
+  Asset a;
+  a.triangle();
+  a.doc["extensionsUsed"] = {"KHR_lights_punctual", "EXT_lights_ies"};
+  const auto shape = [](json own) {
+    return json{{"type", "point"}, {"extras", {{"lucerna", std::move(own)}}}};
+  };
+  a.doc["extensions"]["KHR_lights_punctual"]["lights"] = {
+      shape({{"shape", "sphere"}, {"radius", 0}}), shape({{"shape", "lantern"}}),
+      shape({{"shape", "rectangle"}, {"width", "wide"}, {"height", 1}}),
+      shape({{"shape", "disk"}, {"radius", 0.25}})};
+  a.doc["extensions"]["EXT_lights_ies"]["lights"] = {{{"uri", "gone.ies"}}, {{"uri", "cut.ies"}}};
+  for (int i = 0; i < 4; ++i)
+    a.doc["scenes"][0]["nodes"].push_back(
+        a.add("nodes", {{"extensions", {{"KHR_lights_punctual", {{"light", i}}}}}}));
+  for (int i = 0; i < 2; ++i)
+    a.doc["scenes"][0]["nodes"].push_back(
+        a.add("nodes", {{"extensions", {{"EXT_lights_ies", {{"light", i}}}}}}));
+  TempFolder folder;
+  write_file(folder / "cut.ies",
+             "IES:LM-63-2019\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n700 500");
+  const Scene s = load(a.gltf(folder, "a.gltf"));
+  REQUIRE(s.lights.size() == 4);
+  CHECK(s.lights[0].kind == LightKind::point);
+  CHECK(s.lights[3].kind == LightKind::disk);
+  CHECK(s.lights[3].radius == 0.25f);
+  const std::string all = fmt::format("{}", fmt::join(s.warnings, "\n"));
+  CHECK_THAT(all, Contains("radius: 0 m is not between 0.0001 and 10000"));
+  CHECK_THAT(all, Contains("gone.ies"));
+  CHECK_THAT(all, Contains("cut.ies") && Contains("the file ends before"));
+}
+
 TEST_CASE("added and deleted lights") {
   Bench b(room());
   Light lamp{.name = "new",
@@ -231,6 +318,30 @@ TEST_CASE("two nodes of one light are edited apart") {
   const Scene back = b.saved();
   check_equal(b.edited->lights, back.lights);
   CHECK(back.lights[0].intensity == vec3(1));
+}
+
+TEST_CASE("emission that is switched off is saved beside black") {
+  Asset a = room();
+  a.doc["materials"][0]["emissiveFactor"] = {1, 0.5, 0.25};
+  Bench b(a);
+  REQUIRE(b.loaded->materials[0].emission == vec3(1, 0.5f, 0.25f));
+  Material& m = b.edited->materials[0];
+  m.off_emission = m.emission, m.emission = vec3(0);
+  CHECK(b.saved().materials[0] == m);
+  CHECK(b.document()["materials"][0]["emissiveFactor"] == json::parse("[0, 0, 0]"));
+  // Switched on again, nothing of it is left in the file.
+  b.source = b.folder / "b.gltf";
+  b.read();
+  Material& again = b.edited->materials[0];
+  again.emission = again.off_emission, again.off_emission = vec3(0);
+  CHECK(b.saved(b.folder / "c.gltf").materials[0] == b.edited->materials[0]);
+  CHECK(read_file(b.folder / "c.gltf").find("off_emission") == std::string::npos);
+  for (const char* bad : {"[1, 2]", "[-1, 0, 0]", "\"red\"", "[1e60, 0, 0]"}) {
+    INFO(bad);
+    Asset broken = room();
+    broken.doc["materials"][0]["extras"]["lucerna"]["off_emission"] = json::parse(bad);
+    CHECK_THROWS_WITH(load(broken.gltf(b.folder, "bad.gltf")), Catch::Contains("off_emission"));
+  }
 }
 
 TEST_CASE("materials' factors read back exactly, also of the default material") {

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <random>
 
+#include "scene/lamp.h"
 #include "shaders/shared/film.h"
+#include "ui/lamp_outline.h"
 #include "ui/legend.h"
 #include "ui/mark_layout.h"
 
@@ -78,6 +80,37 @@ TEST_CASE("layers that are no light and marks of lights have a legend in words")
   CHECK(!ui::window_legends({}, true)[0].note.empty());
   REQUIRE(ui::window_legends({}, false, true).size() == 1);
   CHECK(ui::window_legends({}, false, true)[0].marks.size() == 1);
+}
+
+TEST_CASE("the handle for a lamp's size lies on its outline, and a ray through it gives the same size") {
+  const vec3 eye(1, 1.5f, 6);
+  using scene::LightKind;
+  for (const LightKind kind :
+       {LightKind::spot, LightKind::sphere, LightKind::rectangle, LightKind::disk, LightKind::tube}) {
+    scene::Light l{.name = "lamp", .kind = kind};
+    l.position = {0.3f, 1, -0.4f};
+    l.direction = vec3(glm::normalize(glm::dvec3(0.3, -1, 0.5)));
+    l.right = scene::rolled(l.direction, 30);
+    l.width = 0.9f, l.height = 0.4f, l.radius = 0.2f, l.outer_cone = 0.5f;
+    INFO(scene::kind_name(kind));
+    const auto handle = ui::size_handle(l, 1.5f, eye);
+    REQUIRE(handle);
+    CHECK_FALSE(ui::lamp_outline(l, 1.5f).empty());
+    const vec3 ray = glm::normalize(*handle - eye);
+    for (const auto& [name, value] : ui::size_by_ray(l, eye, eye, ray)) {
+      const float expected = name == "width" || name == "length" ? l.width
+                             : name == "height"                  ? l.height
+                             : name == "radius"                  ? l.radius
+                                                                 : l.outer_cone * 180 / k_pi;
+      INFO(name << " " << value);
+      CHECK(value == Approx(expected).epsilon(0.02));
+    }
+    CHECK(ui::size_by_ray(l, eye, eye, ray).size() == (kind == LightKind::rectangle ? 2u : 1u));
+    // A ray away from the lamp says nothing.
+    CHECK(ui::size_by_ray(l, eye, eye, -ray).empty());
+  }
+  CHECK(ui::lamp_outline({.name = "point"}, 1).empty());
+  CHECK_FALSE(ui::size_handle({.name = "point"}, 1, eye));
 }
 
 }  // namespace marks_tests

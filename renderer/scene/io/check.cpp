@@ -21,6 +21,7 @@ const std::set<std::string_view> k_known_extensions{"KHR_materials_emissive_stre
                                                     "KHR_materials_transmission",
                                                     "KHR_materials_volume",
                                                     "KHR_materials_unlit",
+                                                    "EXT_lights_ies",
                                                     "KHR_lights_punctual",
                                                     "KHR_texture_transform",
                                                     "KHR_materials_diffuse_transmission",

@@ -67,6 +67,10 @@ Json describe_lights(const Scene& scene) {
     if (light.kind != LightKind::directional) item["position"] = rgb(light.position);
     if (light.kind != LightKind::point && light.kind != LightKind::sphere)
       item["direction"] = rgb(light.direction);
+    if (light.profile) {
+      item["profile"] = light.profile->name;
+      item["profile_lumens"] = light.profile->lumens();
+    }
     if (has_shape(light.kind)) item["size"] = {2 * half_size(light).x, 2 * half_size(light).y};
     if (light.kind == LightKind::spot)
       item["cone_degrees"] = {glm::degrees(light.inner_cone), glm::degrees(light.outer_cone)};

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "scene/io/images.h"
+#include "scene/io/own_extras.h"
 #include "scene/range.h"
 
 namespace lucerna::scene {
@@ -201,8 +202,9 @@ void MaterialLoader::read(const Item& item, Material& m, MaterialNeeds& needs) {
   m.alpha_cutoff = factor(item, "alphaCutoff", 0.5f, 0, k_huge);
   m.double_sided = item.boolean("doubleSided", false);
   if (const auto extensions = item.find("extensions")) read_extensions(*extensions, m, needs);
+  read_own_emission(item, m);
   // Black light needs no texture.
-  if (m.emission == vec3(0)) m.emission_texture = TextureUse();
+  if (m.emission == vec3(0) && m.off_emission == vec3(0)) m.emission_texture = TextureUse();
 }
 
 void MaterialLoader::read_extensions(const Item& extensions, Material& m, MaterialNeeds& needs) {

@@ -5,9 +5,9 @@
 #include <map>
 
 #include "scene/io/accessor.h"
+#include "scene/io/node_lights.h"
 #include "scene/io/node_matrix.h"
 #include "scene/io/own_extras.h"
-#include "scene/lamp.h"
 #include "scene/range.h"
 
 namespace lucerna::scene {
@@ -42,16 +42,10 @@ Kind kind_of(const dmat4& m) {
   return area < 1e-12 ? Kind::nothing : Kind::flat;
 }
 
-// An axis of a matrix of rank 2 or 3; where it has no length, what the two others give.
-dvec3 axis(const dmat4& m, int i) {
-  const dvec3 column(m[i]);
-  const dvec3 across = glm::cross(dvec3(m[(i + 1) % 3]), dvec3(m[(i + 2) % 3]));
-  return glm::normalize(glm::length(column) > 0 ? column : across);
-}
-
 class Walker {
  public:
-  Walker(Document& document, Scene& scene) : document_(document), scene_(scene), root_(document.root()) {}
+  Walker(Document& document, Scene& scene)
+      : document_(document), scene_(scene), root_(document.root()), lights_(document) {}
 
   Placement walk() {
     std::vector<std::pair<uint32_t, dmat4>> stack;
@@ -208,10 +202,11 @@ class Walker {
     const bool portal = is_portal(item, node.mesh);
     if (portal && node.mesh < 0)
       document_.warnings.add("{} nodes with extras.portal but without a mesh: no portals", item.path());
-    if (node.mesh < 0 && node.camera < 0 && !light) return;
+    const auto profile = extensions ? extensions->find("EXT_lights_ies") : std::nullopt;
+    if (node.mesh < 0 && node.camera < 0 && !light && !profile) return;
     const auto skin = node.mesh >= 0 ? item.find("skin") : std::nullopt;
     const Kind kind = kind_of(world);
-    if (kind == Kind::endless && (!skin || node.camera >= 0 || light))
+    if (kind == Kind::endless && (!skin || node.camera >= 0 || light || profile))
       item.fail("the node's matrix in the world is not finite");
     const std::string name = node.name.empty() ? fmt::format("node {}", index) : node.name;
     const std::string group = light_group(item);
@@ -233,12 +228,21 @@ class Walker {
         scene_.instances[i].group = group;
       if (portal) make_portals(before, item.path());
     }
-    if ((node.camera >= 0 || light) && kind == Kind::nothing) {
+    if ((node.camera >= 0 || light || profile) && kind == Kind::nothing) {
       document_.warnings.add("{} cameras or lamps in nodes of scale 0: left out", item.path());
       return;
     }
     if (node.camera >= 0) add_camera(name, static_cast<size_t>(node.camera), world);
-    if (light) add_light(*light, index, name, world, group);
+    // A punctual light beside a profile is for programs that do not read profiles.
+    std::optional<Light> read;
+    if (profile)
+      read = lights_.with_profile(*profile, {index, name, group, world});
+    else if (light)
+      read = lights_.punctual(*light, {index, name, group, world});
+    if (read) {
+      scene_.lights.push_back(*std::move(read));
+      placement_.lights.emplace_back(world[3]);
+    }
   }
 
   bool is_portal(const Item& node, int mesh) const {
@@ -413,66 +417,10 @@ class Walker {
     }
   }
 
-  void add_light(const Item& reference, uint32_t index, const std::string& node, const dmat4& world,
-                 const std::string& group) {
-    const auto extensions = root_.find("extensions");
-    const auto punctual = extensions ? extensions->find("KHR_lights_punctual") : std::nullopt;
-    const auto lights = punctual ? punctual->find("lights") : std::nullopt;
-    if (!lights) reference.fail("the file has no extensions.KHR_lights_punctual.lights");
-    const Item item = lights->at(reference.at("light").index(lights->size(), "lights"));
-    Light light;
-    light.name = item.text("name", node);
-    if (light.name.empty()) light.name = node;
-    light.group = group.empty() ? light_group(item) : group;
-    light.id = index;
-    const std::string& type = item.at("type").text();
-    if (type == "point") {
-      light.kind = LightKind::point;
-    } else if (type == "spot") {
-      light.kind = LightKind::spot;
-    } else if (type == "directional") {
-      light.kind = LightKind::directional;
-    } else {
-      item.at("type").fail("'{}', expected point, spot or directional", type);
-    }
-    const auto color = item.find("color");
-    const vec3 value = (color ? color->rgb() : vec3(1)) * static_cast<float>(item.number("intensity", 1));
-    light.intensity = glm::clamp(value, vec3(0), vec3(1e30f));
-    if (value != light.intensity)
-      document_.warnings.add("{} lights with a negative or endless intensity: clamped", item.path());
-    dvec3 forward = -axis(world, 2);
-    // What rotations as quaternions leave of 0 is 0.
-    for (int k = 0; k < 3; ++k)
-      if (std::abs(forward[k]) < 1e-12) forward[k] = 0;
-    light.direction = vec3(forward);
-    if (const auto spot = item.find("spot"); spot && light.kind == LightKind::spot) {
-      const double outer = spot->number("outerConeAngle", glm::radians(45.0));
-      const double inner = spot->number("innerConeAngle", 0);
-      const double half_turn = glm::radians(90.0);
-      light.outer_cone = static_cast<float>(std::clamp(outer, 1e-4, half_turn));
-      light.inner_cone = std::clamp(static_cast<float>(inner), 0.0f, light.outer_cone);
-      // A float pi / 2 written in decimal may lie a rounding above pi / 2.
-      if (outer <= 0 || outer > half_turn + 1e-6 || inner < 0 || inner > outer)
-        document_.warnings.add("{} spot lights whose cone angles are not 0 <= inner < outer <= pi/2: clamped",
-                               spot->path());
-    }
-    try {
-      read_own_shape(item, light);
-    } catch (const Error& error) {
-      document_.warnings.add("{} shapes of lamps that cannot be used: lamps without a shape", error.what());
-    }
-    if (has_shape(light.kind)) {
-      light.inner_cone = Light().inner_cone, light.outer_cone = Light().outer_cone;
-      light.right = right_across(light.direction, vec3(axis(world, 0)));
-    }
-    read_own_extras(root_.at("nodes").at(index), light);
-    scene_.lights.push_back(light);
-    placement_.lights.emplace_back(world[3]);
-  }
-
   Document& document_;
   Scene& scene_;
   Item root_;
+  NodeLights lights_;
   Placement placement_;
   std::map<std::pair<uint32_t, std::vector<float>>, Id> shared_;
   std::vector<std::optional<dmat4>> globals_;  // by node, computed on demand

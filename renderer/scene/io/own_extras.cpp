@@ -67,11 +67,21 @@ void read_own_shape(const Item& definition, Light& light) {
   light = shaped;
 }
 
+void read_own_emission(const Item& item, Material& material) {
+  const auto own = own_extras(item);
+  const auto off = own ? own->find("off_emission") : std::nullopt;
+  if (!off) return;
+  const vec3 value = off->rgb();
+  for (int i = 0; i < 3; ++i)
+    if (!(value[i] >= 0 && value[i] < k_infinity)) off->fail("{} is not positive and finite", value[i]);
+  if (material.emission == vec3(0)) material.off_emission = value;
+}
+
 void read_own_extras(const Item& node, Light& light) {
   const auto own = own_extras(node);
   if (!own) return;
   light.enabled = own->boolean("enabled", true);
-  if (const auto right = own->find("right"); right && has_shape(light.kind)) {
+  if (const auto right = own->find("right"); right && can_roll(light)) {
     const vec3 value = right->rgb();
     if (glm::distance(value, light.right) < glm::radians(0.01f)) light.right = value;
   }

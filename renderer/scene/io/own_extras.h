@@ -18,6 +18,9 @@ void read_own_extras(const Item& node, Light& light);
 /// types and values.
 void read_own_shape(const Item& definition, Light& light);
 
+/// Of a material {"off_emission": [r, g, b]}: emission that is switched off. Ignored beside other emission.
+void read_own_emission(const Item& item, Material& material);
+
 /// Of a camera: {"section": {"normal": [x, y, z], "offset": metres}}, in the file's coordinates.
 void read_own_section(const Item& camera, Camera& result);
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -19,6 +20,21 @@ using glm::dquat;
 using glm::dvec3;
 
 constexpr const char* k_punctual = "KHR_lights_punctual";
+constexpr const char* k_ies = "EXT_lights_ies";
+
+bool has_profile(const Light& light) { return light.kind == LightKind::profile; }
+const char* extension_of(const Light& light) { return has_profile(light) ? k_ies : k_punctual; }
+
+std::string base64(const std::string& bytes) {
+  static constexpr char k_digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t three = 0;
+    for (size_t k = 0; k < 3; ++k) three = three << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
+    for (size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : k_digits[three >> (18 - 6 * k) & 63u];
+  }
+  return text;
+}
 
 /// The rotation of a node whose -Z axis has that direction (unit).
 dquat turned_to(const dvec3& direction) {
@@ -89,6 +105,8 @@ class LightWriter {
                                        [&](const Light& l) { return l.id == light.id; });
       if (before == loaded_.lights.end())
         add(light);
+      else if (has_profile(*before) != has_profile(light))
+        remove(before->id), add(light);
       else if (*before != light)
         change(*before, light);
     }
@@ -120,7 +138,7 @@ class LightWriter {
   }
 
   void remove(Id index) {
-    remove_extension(node(index), k_punctual);
+    for (const char* extension : {k_punctual, k_ies}) remove_extension(node(index), extension);
     for (const char* key : {"enabled", "sun", "right"}) remove_own(node(index), key);
   }
 
@@ -129,10 +147,14 @@ class LightWriter {
     if (!light.name.empty()) made["name"] = light.name;
     if (light.kind != LightKind::directional) place(made, dmat4(1), light);
     if (has_direction(light)) turn(made, dmat4(1), light);
-    EditedJson& list = definitions();
-    list.push_back(definition(light, EditedJson::object()));
-    const size_t index = list.size() - 1;
-    extension_at(root_, made, k_punctual)["light"] = index;
+    if (has_profile(light)) {
+      refer_to_profile(made, light, true);
+    } else {
+      EditedJson& list = definitions();
+      list.push_back(definition(light, EditedJson::object()));
+      const size_t index = list.size() - 1;
+      extension_at(root_, made, k_punctual)["light"] = index;
+    }
     if (!light.group.empty()) object_at(made, "extras")["light_group"] = light.group;
     write_own(made, light);
     add_root_node(root_, std::move(made));
@@ -143,12 +165,18 @@ class LightWriter {
     const bool moved = before.position != after.position && after.kind != LightKind::directional;
     const bool turned =
         (before.direction != after.direction || before.right != after.right) && has_direction(after);
-    if ((moved || turned) && !holds_light_only(index)) index = move_to_own_node(index, after.name);
+    if ((moved || turned) && !holds_light_only(index)) index = move_to_own_node(index, after);
     const dmat4 parent = world_of(index < parents_.size() ? parents_[index] : k_none);
     if (turned) turn(node(index), parent, after);
     if (moved) place(node(index), parent, after);
     if (before.group != after.group) regroup(index, after.group);
     write_own(node(index), after);
+    if (has_profile(after)) {
+      if (before.name != after.name) node(index)["name"] = after.name;
+      if (before.intensity != after.intensity || before.profile != after.profile)
+        refer_to_profile(node(index), after, before.profile != after.profile);
+      return;
+    }
     const bool defined = before.name != after.name || before.kind != after.kind ||
                          before.intensity != after.intensity || before.inner_cone != after.inner_cone ||
                          before.outer_cone != after.outer_cone || before.width != after.width ||
@@ -180,10 +208,10 @@ class LightWriter {
   }
 
   /// Moves the light to a new first child of its node, which keeps its place in the order of lights.
-  Id move_to_own_node(Id index, const std::string& name) {
+  Id move_to_own_node(Id index, const Light& light) {
     EditedJson made = EditedJson::object();
-    made["name"] = name;
-    made["extensions"][k_punctual] = node(index)["extensions"][k_punctual];
+    made["name"] = light.name;
+    made["extensions"][extension_of(light)] = node(index)["extensions"][extension_of(light)];
     if (const auto extras = node(index).find("extras"); extras != node(index).end() && extras->is_object())
       if (const auto group = extras->find("light_group"); group != extras->end())
         made["extras"]["light_group"] = *group;
@@ -215,7 +243,7 @@ class LightWriter {
     // A scale may turn the axis; a light has none.
     n.erase("matrix"), n.erase("scale");
     if (translation != dvec3(0)) n["translation"] = json_of(translation);
-    if (has_shape(light.kind))
+    if (can_roll(light))
       n["rotation"] = json_of(turned_to(local, glm::inverse(dmat3(parent)) * dvec3(light.right)));
     else
       n["rotation"] = json_of(turned_to(local));
@@ -227,6 +255,7 @@ class LightWriter {
       return;
     }
     remove_from(node(index), "extras", "light_group");
+    if (!node(index)["extensions"].contains(k_punctual)) return;
     own_definition(index);
     remove_from(definitions()[reference(index).get<size_t>()], "extras", "light_group");
   }
@@ -236,7 +265,7 @@ class LightWriter {
       remove_own(n, "enabled");
     else
       set_own(n, "enabled", false);
-    if (has_shape(light.kind) && has_direction(light))
+    if (can_roll(light) && has_direction(light))
       set_own(n, "right", vector_json(light.right));
     else
       remove_own(n, "right");
@@ -249,6 +278,24 @@ class LightWriter {
              {"latitude", t.latitude},
              {"longitude", t.longitude},
              {"north", t.north}});
+  }
+
+  /// Writes the node's multiplier and colour; `fresh`: with a new definition of the distribution.
+  void refer_to_profile(EditedJson& n, const Light& light, bool fresh) {
+    const auto [color, strength] = split_strength(light.intensity);
+    if (fresh) {
+      EditedJson& list = extension_at(root_, root_, k_ies)["lights"];
+      if (!list.is_array()) list = EditedJson::array();
+      const auto [place, is_new] = written_.try_emplace(light.profile, list.size());
+      if (is_new)
+        list.push_back({{"uri", "data:application/x-ies-lm-63;base64," + base64(light.profile->text)},
+                        {"mimeType", "application/x-ies-lm-63"},
+                        {"name", light.profile->name}});
+      extension_at(root_, n, k_ies)["light"] = place->second;
+    }
+    EditedJson& reference = extension_at(root_, n, k_ies);
+    reference["multiplier"] = double{strength} / light.profile->peak;
+    reference["color"] = vector_json(color);
   }
 
   /// Gives the light a definition that no other node uses.
@@ -284,7 +331,7 @@ class LightWriter {
   static EditedJson definition(const Light& light, EditedJson from) {
     // Of shapes, the kind whose light is the most like theirs.
     static constexpr const char* k_types[] = {"point", "spot", "directional", "point",
-                                              "spot",  "spot", "point"};
+                                              "spot",  "spot", "point",       "point"};
     if (!light.name.empty()) from["name"] = light.name;
     from["type"] = k_types[static_cast<size_t>(light.kind)];
     write_shape(from, light);
@@ -343,7 +390,8 @@ class LightWriter {
 
   EditedJson& root_;
   const Scene &loaded_, &edited_;
-  std::vector<Id> parents_;  // by node; k_none: a root
+  std::vector<Id> parents_;                                        // by node; k_none: a root
+  std::map<std::shared_ptr<const LightProfile>, size_t> written_;  // their definitions
 };
 
 }  // namespace

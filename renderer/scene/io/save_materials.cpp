@@ -29,6 +29,11 @@ void write_material(EditedJson& root, EditedJson& m, const Material& before, con
   if (before.roughness != after.roughness) pbr()["roughnessFactor"] = number_json(after.roughness);
   if (before.metallic != after.metallic) pbr()["metallicFactor"] = number_json(after.metallic);
   if (before.emission != after.emission) write_emission(root, m, after.emission);
+  if (before.off_emission == after.off_emission) return;
+  if (after.off_emission == vec3(0))
+    remove_own(m, "off_emission");
+  else
+    set_own(m, "off_emission", vector_json(after.off_emission));
 }
 
 /// Coat, sheen, brushing and thin film.

@@ -1,0 +1,132 @@
+#include "scene/io/node_lights.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "scene/io/light_profile_file.h"
+#include "scene/io/node_matrix.h"
+#include "scene/io/own_extras.h"
+#include "scene/lamp.h"
+
+namespace lucerna::scene {
+namespace {
+
+/// Direction and `right` of the node.
+void set_frame(Light& light, const glm::dmat4& world) {
+  glm::dvec3 forward = -axis(world, 2);
+  // What rotations as quaternions leave of 0 is 0.
+  for (int k = 0; k < 3; ++k)
+    if (std::abs(forward[k]) < 1e-12) forward[k] = 0;
+  light.direction = vec3(forward);
+  if (can_roll(light)) light.right = right_across(light.direction, vec3(axis(world, 0)));
+}
+
+}  // namespace
+
+// Each is read once.
+std::shared_ptr<const LightProfile> NodeLights::profile_of(const Item& reference) {
+  const auto extensions = root_.find("extensions");
+  const auto ies = extensions ? extensions->find("EXT_lights_ies") : std::nullopt;
+  const auto lights = ies ? ies->find("lights") : std::nullopt;
+  if (!lights) reference.fail("the file has no extensions.EXT_lights_ies.lights");
+  const auto number = reference.at("light").index(lights->size(), "lights");
+  const auto [place, fresh] = profiles_.try_emplace(number);
+  if (!fresh) return place->second;
+  const Item item = lights->at(number);
+  std::vector<uint8_t> bytes;
+  std::string name = item.text("name", "");
+  if (const auto uri = item.find("uri")) {
+    if (is_data_uri(uri->text())) {
+      bytes = decode_data_uri(*uri);
+    } else {
+      const std::filesystem::path file = resolve_uri(document_, *uri);
+      bytes = read_file(document_, file, uri->where());
+      name = file.filename().string();
+    }
+  } else {
+    const auto view = item.at("bufferView").index(document_.model.bufferViews.size(), "bufferViews");
+    const tinygltf::BufferView& v = document_.model.bufferViews[view];
+    const std::vector<unsigned char>& data = document_.model.buffers[size_t(v.buffer)].data;
+    bytes.assign(data.begin() + std::ptrdiff_t(v.byteOffset),
+                 data.begin() + std::ptrdiff_t(v.byteOffset + v.byteLength));
+  }
+  place->second = light_profile_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name,
+                                   name.empty() ? item.where() : fmt::format("{} ({})", item.where(), name));
+  return place->second;
+}
+
+Light NodeLights::punctual(const Item& reference, const Place& place) {
+  const auto extensions = root_.find("extensions");
+  const auto punctual = extensions ? extensions->find("KHR_lights_punctual") : std::nullopt;
+  const auto lights = punctual ? punctual->find("lights") : std::nullopt;
+  if (!lights) reference.fail("the file has no extensions.KHR_lights_punctual.lights");
+  const Item item = lights->at(reference.at("light").index(lights->size(), "lights"));
+  Light light;
+  light.name = item.text("name", place.name);
+  if (light.name.empty()) light.name = place.name;
+  light.group = place.group.empty() ? light_group(item) : place.group;
+  light.id = place.node;
+  const std::string& type = item.at("type").text();
+  if (type == "point") {
+    light.kind = LightKind::point;
+  } else if (type == "spot") {
+    light.kind = LightKind::spot;
+  } else if (type == "directional") {
+    light.kind = LightKind::directional;
+  } else {
+    item.at("type").fail("'{}', expected point, spot or directional", type);
+  }
+  const auto color = item.find("color");
+  const vec3 value = (color ? color->rgb() : vec3(1)) * static_cast<float>(item.number("intensity", 1));
+  light.intensity = glm::clamp(value, vec3(0), vec3(1e30f));
+  if (value != light.intensity)
+    document_.warnings.add("{} lights with a negative or endless intensity: clamped", item.path());
+  set_frame(light, place.world);
+  if (const auto spot = item.find("spot"); spot && light.kind == LightKind::spot) {
+    const double outer = spot->number("outerConeAngle", glm::radians(45.0));
+    const double inner = spot->number("innerConeAngle", 0);
+    const double half_turn = glm::radians(90.0);
+    light.outer_cone = static_cast<float>(std::clamp(outer, 1e-4, half_turn));
+    light.inner_cone = std::clamp(static_cast<float>(inner), 0.0f, light.outer_cone);
+    // A float pi / 2 written in decimal may lie a rounding above pi / 2.
+    if (outer <= 0 || outer > half_turn + 1e-6 || inner < 0 || inner > outer)
+      document_.warnings.add("{} spot lights whose cone angles are not 0 <= inner < outer <= pi/2: clamped",
+                             spot->path());
+  }
+  try {
+    read_own_shape(item, light);
+  } catch (const Error& error) {
+    document_.warnings.add("{} shapes of lamps that cannot be used: lamps without a shape", error.what());
+  }
+  if (has_shape(light.kind)) {
+    light.inner_cone = Light().inner_cone, light.outer_cone = Light().outer_cone;
+    set_frame(light, place.world);
+  }
+  read_own_extras(root_.at("nodes").at(place.node), light);
+  return light;
+}
+
+std::optional<Light> NodeLights::with_profile(const Item& reference, const Place& place) {
+  Light light{.name = place.name, .kind = LightKind::profile, .group = place.group, .id = place.node};
+  try {
+    light.profile = profile_of(reference);
+  } catch (const OverBudget&) {
+    throw;
+  } catch (const OutsideFolder&) {
+    throw;
+  } catch (const Error& error) {
+    document_.warnings.add("{} lamps whose distribution cannot be read: left out", error.what());
+  }
+  if (!light.profile) return std::nullopt;
+  const auto color = reference.find("color");
+  const double multiplier = reference.number("multiplier", 1) * light.profile->peak;
+  const vec3 value = (color ? color->rgb() : vec3(1)) * static_cast<float>(multiplier);
+  light.intensity = glm::clamp(value, vec3(0), vec3(1e30f));
+  if (value != light.intensity)
+    document_.warnings.add("{} lights with a negative or endless intensity: clamped", reference.path());
+  set_frame(light, place.world);
+  read_own_extras(root_.at("nodes").at(place.node), light);
+  return light;
+}
+
+}  // namespace lucerna::scene

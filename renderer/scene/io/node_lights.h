@@ -1,0 +1,36 @@
+#pragma once
+// Lights of a glTF file's nodes: KHR_lights_punctual with shapes of extras.lucerna, and EXT_lights_ies.
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "scene/io/document.h"
+
+namespace lucerna::scene {
+
+class NodeLights {
+ public:
+  explicit NodeLights(Document& document) : document_(document), root_(document.root()) {}
+
+  struct Place {
+    uint32_t node;
+    const std::string &name, &group;  ///< of the node; the group may be empty
+    const glm::dmat4& world;
+  };
+  /// The light of a node's KHR_lights_punctual. Throws a located Error; a shape that cannot be used is a
+  /// warning.
+  Light punctual(const Item& reference, const Place& place);
+  /// The light of a node's EXT_lights_ies, its intensity the file's largest times multiplier and colour; a
+  /// warning and nothing if its file cannot be read.
+  std::optional<Light> with_profile(const Item& reference, const Place& place);
+
+ private:
+  std::shared_ptr<const LightProfile> profile_of(const Item& reference);
+
+  Document& document_;
+  Item root_;
+  std::map<size_t, std::shared_ptr<const LightProfile>> profiles_;  // by number; null: cannot be read
+};
+
+}  // namespace lucerna::scene
