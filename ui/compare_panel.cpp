@@ -25,24 +25,24 @@ float share_of_width(int parts) {
                     static_cast<float>(parts));
 }
 
-/// "12 s · 64 samples · 2.1 %"
+/// "12 s · 2.1 %"
 std::string cost_text(const session::HeldPicture& p) {
-  std::string text;
-  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : " \xC2\xB7 ") + part; };
-  if (p.seconds > 0) add(about_text(p.seconds));
-  if (p.samples > 0) add(fmt::format("{:.4g} sample{}", p.samples, p.samples == 1 ? "" : "s"));
-  if (p.error && *p.error > 0) add(percent_text(*p.error));
-  return text;
+  const std::string error = held_error_text(p);
+  if (p.seconds <= 0) return error;
+  return error.empty() ? about_text(p.seconds) : about_text(p.seconds) + " \xC2\xB7 " + error;
 }
 
 /// What it shows besides its name.
 std::string content_text(const HeldResult& held) {
   const session::HeldPicture& p = *held.picture;
   const std::string methods = session::methods_text(p.methods);
-  std::string text = methods.empty() ? "from a file" : held.name == methods ? held.camera : methods;
-  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  std::string text;
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : " \xC2\xB7 ") + part; };
+  if (p.samples > 0) add(fmt::format("{:.3g} sample{}", p.samples, p.samples == 1 ? "" : "s"));
+  if (methods.empty()) add("from a file");
   if (!p.shows.empty()) add(p.shows + " only");
-  if (p.filtered) add("filtered");
+  if (!methods.empty() && !held.name.starts_with(methods)) add(methods);
+  if (!held.camera.empty()) add(held.camera);
   return text;
 }
 
@@ -231,6 +231,7 @@ void draw_compare_plot(const commands::Workspace& work, float width) {
   }
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   std::string hovered;
+  std::vector<std::function<void()>> marks;  // above all lines
   for (const CompareLine& line : lines) {
     const bool live = line.mark.empty();
     const ImU32 ink = live ? colour::text : line.compared ? colour::accent : colour::grey(140);
@@ -239,19 +240,21 @@ void draw_compare_plot(const commands::Workspace& work, float width) {
     if (points.size() > 1)
       list->AddPolyline(points.data(), static_cast<int>(points.size()), ink, 0, px(live ? 2.0f : 1.5f));
     const ImVec2 end = points.back();
-    for (const ImVec2& p : points)
-      if (std::hypot(p.x - mouse.x, p.y - mouse.y) < px(8))
-        hovered = fmt::format("{}: {} after {}", capitalised(line.name),
-                              percent_text(line.points[size_t(&p - points.data())].second),
-                              about_text(line.points[size_t(&p - points.data())].first));
+    for (size_t i = 0; i < points.size(); ++i)
+      if (std::hypot(points[i].x - mouse.x, points[i].y - mouse.y) < px(8))
+        hovered = fmt::format("{}: {} after {}", capitalised(line.name), percent_text(line.points[i].second),
+                              about_text(line.points[i].first));
     if (live)
       list->AddCircleFilled(end, px(3), ink, 12);
     else
-      draw_mark(list,
-                {std::clamp(end.x - px(0.5f * k_mark), plot.lo.x, plot.hi.x - px(k_mark)),
-                 std::clamp(end.y - px(0.5f * k_mark), plot.lo.y, plot.hi.y - px(k_mark))},
-                line.mark, line.compared);
+      marks.emplace_back([&, end] {
+        draw_mark(list,
+                  {std::clamp(end.x - px(0.5f * k_mark), plot.lo.x, plot.hi.x - px(k_mark)),
+                   std::clamp(end.y - px(0.5f * k_mark), plot.lo.y, plot.hi.y - px(k_mark))},
+                  line.mark, line.compared);
+      });
   }
+  for (const auto& mark : marks) mark();
   if (!hovered.empty()) tooltip(hovered);
   paragraph("Estimated error as seen over seconds of rendering. White: the live picture.",
             colour::text_faint);

@@ -19,16 +19,30 @@ CompareLine line_of(const stats::Ledger& ledger, double seconds, std::optional<d
   return line;
 }
 
-std::string result_text(const std::string& what, double seconds, std::optional<double> error, bool filtered) {
-  std::string text = what;
+/// Appends what a result took, and how far it is off.
+std::string result_text(std::string text, const session::HeldPicture& p) {
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
-  if (seconds > 0) add(about_text(seconds));
-  if (error && *error > 0) add(percent_text(*error));
-  if (filtered) add("filtered");
+  if (!p.shows.empty()) add(p.shows + " only");
+  if (p.seconds > 0) add(about_text(p.seconds));
+  if (const std::string error = held_error_text(p); !error.empty()) add(error);
   return text;
 }
 
 }  // namespace
+
+std::string held_error_text(const session::HeldPicture& p) {
+  constexpr double k_least_former = 0.005;
+  std::string text;
+  const auto add = [&](const std::string& part) { text += (text.empty() ? "" : ", ") + part; };
+  if (p.filtered) {
+    add(p.shown_error ? percent_text(*p.shown_error) + " off" : "");
+    add("filtered");
+    if (p.former > k_least_former) add(fmt::format("{:.0f} % former light", 100 * p.former));
+  } else if (p.error && *p.error > 0) {
+    add(percent_text(*p.error));
+  }
+  return text;
+}
 
 std::string held_mark(size_t index) { return std::string(1, static_cast<char>('A' + index)); }
 
@@ -68,18 +82,18 @@ std::string held_text(const commands::HeldResult& held) {
   std::string what = held.name;
   // A default name is the methods, perhaps with a number.
   if (!methods.empty() && !what.starts_with(methods)) what += ": " + methods;
-  if (!p.shows.empty()) what += ", " + p.shows + " only";
-  return result_text(what, p.seconds, p.error, p.filtered);
+  return result_text(what, p);
 }
 
 std::string live_text(const session::Snapshot& live) {
-  session::ComponentMethods methods;
-  for (size_t c = 0; c < methods.size(); ++c) methods[c] = live.components[c].solver;
-  std::optional<double> error;
+  session::HeldPicture p;
+  for (size_t c = 0; c < p.methods.size(); ++c) p.methods[c] = live.components[c].solver;
+  p.seconds = live.seconds, p.filtered = live.filtered > 0 || live.stale > 0, p.former = live.stale;
+  if (live.shown_error) p.shown_error = live.shown_error->median;
   if (live.accuracy && !live.accuracy->ledger.entries().empty() &&
       live.accuracy->ledger.entries().back().has_error)
-    error = live.accuracy->ledger.entries().back().sum();
-  return result_text(session::methods_text(methods), live.seconds, error, live.filtered >= 1);
+    p.error = live.accuracy->ledger.entries().back().sum();
+  return result_text(session::methods_text(p.methods), p);
 }
 
 }  // namespace lucerna::ui

@@ -86,8 +86,10 @@ void difference_legend(const commands::Comparing& compare, const HeldResult& hel
   const auto& figures = compare.live.figures();
   std::vector<std::string> texts{"Now: " + live_text(live), "Held: " + held_text(held)};
   if (figures)
-    texts.push_back(fmt::format("Squared error {:.3g}, as seen {}, FLIP {:.3g}", figures->relative_squared,
-                                percent_text(figures->as_seen), figures->flip));
+    for (const std::string& text :
+         {fmt::format("Relative squared error {:.3g}", figures->relative_squared),
+          fmt::format("Error as seen {}, FLIP {:.3g}", percent_text(figures->as_seen), figures->flip)})
+      texts.push_back(text);
   const float height = 2 * px(6) + line * static_cast<float>(texts.size() + 3) + bar + px(10);
   if (height + 2 * px(k_edge) > picture.height() || width + 2 * px(k_edge) > picture.width()) return;
   const ImVec2 lo(picture.lo.x + px(k_edge), picture.lo.y + px(k_edge));

@@ -15,16 +15,20 @@ using ComponentMethods = std::array<std::string, paths::k_component_count>;
 
 struct HeldPicture {
   uint32_t width = 0, height = 0;
-  /// Linear Rec.709 radiance of the shown components, top row first; filtered where the window shows the
-  /// result of its filter (WindowFilter), else the means of the samples.
+  /// Linear Rec.709 radiance of the shown components, top row first: what the window shows, that is the
+  /// preview while there are few samples, then the result of its filter (WindowFilter), else the means of the
+  /// samples.
   std::vector<vec3> light;
-  bool filtered = false;
-  std::string shows;         ///< "", or which components if not all: "secondary + tertiary"
+  bool filtered = false;  ///< it is a preview or filtered
+  double former = 0;  ///< share of it that is light from before an edit, or before data was complete, 0..1
+  std::string shows;  ///< "", or which components if not all: "secondary + tertiary"
   ComponentMethods methods;  ///< solver of each component, or "off"; all empty: not known
   double samples = 0;        ///< a pixel, on average; 0: not known
   double seconds = 0;        ///< of rendering (Snapshot::seconds); 0: not known
   /// Estimated error of the samples as seen, like Entry::sum(); nullopt: not known.
   std::optional<double> error;
+  /// Estimated error of a filtered picture: of the median tile (film::ShownError); nullopt: not known.
+  std::optional<double> shown_error;
   stats::Ledger ledger;  ///< error over time until then
   std::string scene;     ///< its name; "": not known
   /// The camera as text, as in the metadata of files; "": not known. Equal texts: the same view.

@@ -176,14 +176,21 @@ HeldPicture Renderer::held_picture() {
     throw_error("", "the layer '{}' shows no light; choose beauty or a component",
                 setup_.settings.text("film.layer"));
   settle_mix();
-  const Filtered* filtered = shown_filtered(v);
-  const film::Image image = filtered ? filtered->film->read() : setup_.film->read();
   const uint32_t shown = shown_components(v);
-  HeldPicture held{.width = image.width,
-                   .height = image.height,
-                   .light = sum_of(image, shown),
-                   .filtered = filtered != nullptr,
-                   .samples = double(stats().paths) / (double(image.width) * image.height),
+  const uint32_t width = setup_.film->width(), height = setup_.film->height();
+  const Filtered* filtered = shown_filtered(v);
+  bool preview = !filtered && previewed(v);
+  if (preview) {
+    // Of the present samples; if that fails, previews are off from now on.
+    shown_picture(true);
+    preview = previewed(v);
+  }
+  HeldPicture held{.width = width,
+                   .height = height,
+                   .light = preview ? display_->shown_light(shown)
+                                    : sum_of((filtered ? *filtered->film : *setup_.film).read(), shown),
+                   .filtered = filtered || preview,
+                   .samples = double(stats().paths) / (double(width) * height),
                    .seconds = seconds(),
                    .ledger = ledger(),
                    .scene = setup_.world.scene->name,
@@ -192,6 +199,11 @@ HeldPicture Renderer::held_picture() {
     held.methods[c] = choices()[c].solver;
     if (shown != (1u << paths::k_component_count) - 1 && (shown >> c & 1u))
       held.shows += (held.shows.empty() ? "" : " + ") + std::string(paths::k_component_names[c]);
+  }
+  if (held.filtered) {
+    const film::PreviewShares shares = preview_shares();
+    held.former = shares.stale;
+    if (shares.error) held.shown_error = shares.error->median;
   }
   if (samples() >= 2) {
     const film::ImageError e = image_error();

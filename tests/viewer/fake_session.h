@@ -453,13 +453,13 @@ struct Session::Impl {
   }
 };
 
-inline Session::Session(const Options&) : impl_(std::make_unique<Impl>()) {}
-inline Session::~Session() = default;
-inline void Session::load(const std::filesystem::path& file) {
+[[gnu::weak]] Session::Session(const Options&) : impl_(std::make_unique<Impl>()) {}
+[[gnu::weak]] Session::~Session() = default;
+[[gnu::weak]] void Session::load(const std::filesystem::path& file) {
   impl_->post([this, file, number = ++impl_->loads] { impl_->load(file, number); });
 }
 /// A light mix named "nonsense" is refused.
-inline void Session::set(const std::string& key, const std::string& value, SceneId scene) {
+[[gnu::weak]] void Session::set(const std::string& key, const std::string& value, SceneId scene) {
   impl_->post(
       [this, key, value] {
         if (key == "relight.mix" && value == "nonsense") throw Error(key, "no mix of lights");
@@ -468,27 +468,27 @@ inline void Session::set(const std::string& key, const std::string& value, Scene
       },
       scene);
 }
-inline void Session::set_camera(const scene::Camera& camera, SceneId scene) {
+[[gnu::weak]] void Session::set_camera(const scene::Camera& camera, SceneId scene) {
   impl_->post([this, camera] { impl_->camera = camera, impl_->restart(), impl_->publish(); }, scene, true);
 }
 /// Pictures wider than 4096 pixels are refused.
-inline void Session::set_size(uint32_t width, uint32_t height) {
+[[gnu::weak]] void Session::set_size(uint32_t width, uint32_t height) {
   impl_->post([this, width, height] {
     if (width > 4096) throw Error("size", "too large");
     impl_->width = width, impl_->height = height, impl_->restart(), impl_->publish();
   });
 }
-inline void Session::set_window_scale(uint32_t scale) {
+[[gnu::weak]] void Session::set_window_scale(uint32_t scale) {
   (void)scale;
   impl_->post([] {});
 }
-inline void Session::set_light(uint32_t index, const scene::Light& light, SceneId scene) {
+[[gnu::weak]] void Session::set_light(uint32_t index, const scene::Light& light, SceneId scene) {
   impl_->post_edit([index, light](scene::Scene& s) { s.lights[index] = light; }, scene);
 }
-inline void Session::set_light_list(const std::vector<scene::Light>& lights, SceneId scene) {
+[[gnu::weak]] void Session::set_light_list(const std::vector<scene::Light>& lights, SceneId scene) {
   impl_->post_edit([lights](scene::Scene& s) { s.lights = lights; }, scene);
 }
-inline void Session::set_environment_sky(const scene::SkyModel& sky, float scale, SceneId scene) {
+[[gnu::weak]] void Session::set_environment_sky(const scene::SkyModel& sky, float scale, SceneId scene) {
   impl_->post_edit(
       [sky, scale](scene::Scene& s) {
         s.environment.sky = sky, s.environment.scale = scale, s.environment.rotation = 0;
@@ -496,13 +496,13 @@ inline void Session::set_environment_sky(const scene::SkyModel& sky, float scale
       },
       scene);
 }
-inline void Session::set_environment(float scale, float rotation, SceneId scene) {
+[[gnu::weak]] void Session::set_environment(float scale, float rotation, SceneId scene) {
   impl_->post_edit(
       [scale, rotation](scene::Scene& s) { s.environment.scale = scale, s.environment.rotation = rotation; },
       scene);
 }
 /// Files named "broken" cannot be read.
-inline void Session::set_environment_file(const std::filesystem::path& file, std::optional<float> scale,
+[[gnu::weak]] void Session::set_environment_file(const std::filesystem::path& file, std::optional<float> scale,
                                           std::optional<float> rotation, SceneId scene) {
   impl_->post_edit(
       [file, scale, rotation](scene::Scene& s) {
@@ -516,7 +516,7 @@ inline void Session::set_environment_file(const std::filesystem::path& file, std
       scene);
 }
 /// A grey of half of middle brightness, black at the left border; the whole picture needs 2.5 stops more.
-inline std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at, SceneId scene) {
+[[gnu::weak]] std::shared_future<film::Brightness> Session::measure(std::optional<vec2> at, SceneId scene) {
   auto promise = std::make_shared<std::promise<film::Brightness>>();
   impl_->post(
       [at, promise] {
@@ -527,14 +527,14 @@ inline std::shared_future<film::Brightness> Session::measure(std::optional<vec2>
       scene);
   return promise->get_future().share();
 }
-inline std::shared_future<film::FilmImage> Session::layers(SceneId scene) {
+[[gnu::weak]] std::shared_future<film::FilmImage> Session::layers(SceneId scene) {
   auto promise = std::make_shared<std::promise<film::FilmImage>>();
   impl_->post(
       [this, promise] { promise->set_value(fake::layers(impl_->samples, impl_->width, impl_->height)); },
       scene);
   return promise->get_future().share();
 }
-inline std::shared_future<std::shared_ptr<const recording::Recording>> Session::trace_paths(const vec2& at,
+[[gnu::weak]] std::shared_future<std::shared_ptr<const recording::Recording>> Session::trace_paths(const vec2& at,
                                                                                             uint32_t samples,
                                                                                             SceneId scene) {
   auto promise = std::make_shared<std::promise<std::shared_ptr<const recording::Recording>>>();
@@ -546,10 +546,10 @@ inline std::shared_future<std::shared_ptr<const recording::Recording>> Session::
       scene);
   return promise->get_future().share();
 }
-inline void Session::show_paths(const ShownPaths&, SceneId scene) {
+[[gnu::weak]] void Session::show_paths(const ShownPaths&, SceneId scene) {
   impl_->post([] {}, scene);
 }
-inline std::shared_future<recording::NoiseReport> Session::explain_noise(const vec2&, const vec2&,
+[[gnu::weak]] std::shared_future<recording::NoiseReport> Session::explain_noise(const vec2&, const vec2&,
                                                                          SceneId scene) {
   auto promise = std::make_shared<std::promise<recording::NoiseReport>>();
   impl_->post([promise] { promise->set_value(fake::noise()); }, scene);
@@ -557,7 +557,7 @@ inline std::shared_future<recording::NoiseReport> Session::explain_noise(const v
 }
 /// Every pixel is 0.5; by path tracing, or as the settings name other methods. Half of the light is missing
 /// if the cache computes secondary light.
-inline std::shared_future<std::shared_ptr<const HeldPicture>> Session::held_picture(SceneId scene) {
+[[gnu::weak]] std::shared_future<std::shared_ptr<const HeldPicture>> Session::held_picture(SceneId scene) {
   auto promise = std::make_shared<std::promise<std::shared_ptr<const HeldPicture>>>();
   impl_->post(
       [this, promise] {
@@ -582,10 +582,10 @@ inline std::shared_future<std::shared_ptr<const HeldPicture>> Session::held_pict
       scene);
   return promise->get_future().share();
 }
-inline void Session::set_material(uint32_t index, const scene::Material& material, SceneId scene) {
+[[gnu::weak]] void Session::set_material(uint32_t index, const scene::Material& material, SceneId scene) {
   impl_->post_edit([index, material](scene::Scene& s) { s.materials[index] = material; }, scene);
 }
-inline void Session::set_lights(const LightsEdit& edit, SceneId scene) {
+[[gnu::weak]] void Session::set_lights(const LightsEdit& edit, SceneId scene) {
   impl_->post_edit(
       [this, edit](scene::Scene& s) {
         for (const auto& [i, light] : edit.lights) s.lights[i] = light;
@@ -596,17 +596,17 @@ inline void Session::set_lights(const LightsEdit& edit, SceneId scene) {
       },
       scene, false);
 }
-inline void Session::set_paused(bool paused) {
+[[gnu::weak]] void Session::set_paused(bool paused) {
   impl_->post([this, paused] { impl_->paused = paused, impl_->publish(); });
 }
-inline void Session::restart() {
+[[gnu::weak]] void Session::restart() {
   impl_->post([this] { impl_->restart(), impl_->publish(); });
 }
-inline void Session::reload_shaders() {
+[[gnu::weak]] void Session::reload_shaders() {
   impl_->post(
       [] { log::error("surface.comp:42: 'throughputt' : undeclared identifier; the kernels in use stay"); });
 }
-inline void Session::set_reference(const std::filesystem::path& file, SceneId scene) {
+[[gnu::weak]] void Session::set_reference(const std::filesystem::path& file, SceneId scene) {
   impl_->post(
       [this, file] {
         if (file.string().find("missing") != std::string::npos)
@@ -616,13 +616,13 @@ inline void Session::set_reference(const std::filesystem::path& file, SceneId sc
       },
       scene);
 }
-inline void Session::clear_reference() {
+[[gnu::weak]] void Session::clear_reference() {
   impl_->post([this] { impl_->reference.clear(), impl_->publish(); });
 }
-inline void Session::inspect(std::optional<vec2> at, SceneId scene) {
+[[gnu::weak]] void Session::inspect(std::optional<vec2> at, SceneId scene) {
   impl_->post([this, at] { impl_->looked_at = at, impl_->publish(); }, scene);
 }
-inline void Session::measure_effects(SceneId scene) {
+[[gnu::weak]] void Session::measure_effects(SceneId scene) {
   impl_->post(
       [this] {
         EffectCosts costs{.width = impl_->width, .height = impl_->height, .sample_ms = 400};
@@ -633,8 +633,8 @@ inline void Session::measure_effects(SceneId scene) {
       },
       scene);
 }
-inline void Session::stop_measuring_effects() {}
-inline Saved Session::save(const std::filesystem::path& file, bool) {
+[[gnu::weak]] void Session::stop_measuring_effects() {}
+[[gnu::weak]] Saved Session::save(const std::filesystem::path& file, bool) {
   auto promise = std::make_shared<std::promise<void>>();
   impl_->post([file, promise] {
     const std::string name = file.filename().string();
@@ -650,11 +650,11 @@ inline Saved Session::save(const std::filesystem::path& file, bool) {
   });
   return promise->get_future().share();
 }
-inline Saved Session::save_reference(const std::filesystem::path& file) { return save(file); }
-inline Saved Session::solver_save(const std::string&, const std::filesystem::path& file, SceneId) {
+[[gnu::weak]] Saved Session::save_reference(const std::filesystem::path& file) { return save(file); }
+[[gnu::weak]] Saved Session::solver_save(const std::string&, const std::filesystem::path& file, SceneId) {
   return save(file);
 }
-inline void Session::solver_load(const std::string&, const std::filesystem::path& file, SceneId scene) {
+[[gnu::weak]] void Session::solver_load(const std::string&, const std::filesystem::path& file, SceneId scene) {
   impl_->post(
       [this, file] {
         if (file.string().find("missing") != std::string::npos)
@@ -664,7 +664,7 @@ inline void Session::solver_load(const std::string&, const std::filesystem::path
       },
       scene);
 }
-inline void Session::solver_command(const std::string& solver, const std::string& command, SceneId scene) {
+[[gnu::weak]] void Session::solver_command(const std::string& solver, const std::string& command, SceneId scene) {
   impl_->post(
       [this, solver, command] {
         if (solver != "cache") log::info("{}: command {}", solver, command);
@@ -674,24 +674,24 @@ inline void Session::solver_command(const std::string& solver, const std::string
       },
       scene);
 }
-inline uint64_t Session::commands() const {
+[[gnu::weak]] uint64_t Session::commands() const {
   std::lock_guard lock(impl_->mutex);
   return impl_->commands.given();
 }
-inline uint64_t Session::commands_done() const {
+[[gnu::weak]] uint64_t Session::commands_done() const {
   std::lock_guard lock(impl_->mutex);
   return impl_->done;
 }
-inline void Session::cancel() { impl_->given_up = impl_->loads.load(); }
-inline std::shared_ptr<const Snapshot> Session::snapshot() const {
+[[gnu::weak]] void Session::cancel() { impl_->given_up = impl_->loads.load(); }
+[[gnu::weak]] std::shared_ptr<const Snapshot> Session::snapshot() const {
   std::lock_guard lock(impl_->mutex);
   return impl_->snapshot;
 }
-inline State Session::state() const {
+[[gnu::weak]] State Session::state() const {
   std::lock_guard lock(impl_->mutex);
   return {impl_->scene_id, impl_->scene, impl_->loaded, impl_->settings};
 }
-inline void Session::on_publish(std::function<void()> call) {
+[[gnu::weak]] void Session::on_publish(std::function<void()> call) {
   std::lock_guard lock(impl_->mutex);
   impl_->call = std::move(call);
 }
