@@ -36,6 +36,8 @@ std::vector<std::pair<std::string, std::string>> key_rows() {
       {"Drag on a lamp's mark",
        "move it parallel to the picture, with Shift vertically; a spot's aim follows surfaces"},
       {"T", "show the state of tiles"},
+      {"Ctrl + H", "hold the picture, to compare later ones with it"},
+      {"Y", "while it is held down: the held result in place of the picture, or the reverse"},
       {"1 \xE2\x80\x93 9", "scene cameras"},
       {"Ctrl + B", "bookmark this view, see the Camera menu"},
       {"B", "pick middle grey for the exposure with a click"}};
@@ -185,9 +187,17 @@ void solver_keys(Ui& ui) {
                               solver->title));
 }
 
+/// Holds the picture, and shows the panel of held results.
+void hold_picture(Ui& ui) {
+  ui.act("compare.hold");
+  ui.act("window.side", k_compare_side);
+}
+
 }  // namespace
 
 void handle_keys(Ui& ui) {
+  ui.compare.flipped = ImGui::GetIO().KeysDown[GLFW_KEY_Y] && !ImGui::GetIO().WantTextInput;
+  if (ui.compare.flipped) ui.wake(2);
   const bool popup = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
   if (ui.pressed(GLFW_KEY_F12)) ui.act("screenshot");
   if (ui.pressed(GLFW_KEY_F5)) ui.act("shaders.reload");
@@ -237,6 +247,9 @@ void handle_keys(Ui& ui) {
   }
   if (ui.pressed(GLFW_KEY_L)) ui.act("view.lamps", !ui.light_marks);
   if (ui.pressed(GLFW_KEY_T)) ui.toggle("overlay.tiles");
+  if (ui.pressed(GLFW_KEY_H, GLFW_MOD_CONTROL) && ui.open.scene) hold_picture(ui);
+  if (ui.pressed(GLFW_KEY_Y) && !ui.work.compare.results.compared())
+    ui.notice("No held result is chosen. Ctrl+H holds the picture.");
   if (ui.pressed(GLFW_KEY_U))
     ui.act("set", "preview.filter", ui.open.setting("preview.filter") == "off" ? "auto" : "off");
   solver_keys(ui);

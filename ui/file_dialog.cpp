@@ -78,6 +78,13 @@ Question question(const Dialog& dialog) {
               .answer = "Load",
               .endings = {".exr"},
               .reads = true};
+    case Purpose::held:
+      return {.title = "Hold the picture of a file",
+              .note = "An .exr of this size, such as a saved picture or a reference.",
+              .command = "compare.load",
+              .answer = "Hold",
+              .endings = {".exr"},
+              .reads = true};
     case Purpose::solver_load:
       return {.title = "Load a " + uncapitalised(dialog.solver->label),
               .note = fmt::format("A {} file {}.", dialog.solver->file->extension, dialog.solver->file->fits),
@@ -398,7 +405,8 @@ void Ui::start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver
                                std::any_of(gallery().begin(), gallery().end(), [&](const GalleryScene& own) {
                                  return fs::equivalent(own.file, open.scene->file, error);
                                }));
-  } else if (purpose == Dialog::Purpose::reference || purpose == Dialog::Purpose::solver_load) {
+  } else if (purpose == Dialog::Purpose::reference || purpose == Dialog::Purpose::held ||
+             purpose == Dialog::Purpose::solver_load) {
     dialog.path = fs::current_path(error).string() + "/";
   } else if (purpose == Dialog::Purpose::script || purpose == Dialog::Purpose::test) {
     dialog.path = (open.scene ? open.scene->name : "session") + ".lucerna";

@@ -261,6 +261,7 @@ void view_menu(Ui& ui) {
   };
   side("Scene", nullptr, "Cameras, lights, environment, materials.", k_scene_side);
   side("Paths", nullptr, "Paths of a pixel, and what the noise comes from.", k_paths_side);
+  side("Compare", nullptr, "Held results, and the picture against them.", k_compare_side);
   const std::string next = ui.next_side();
   for (const solvers::SolverInfo* solver : solvers::registered())
     if (solver->has_panel())

@@ -318,7 +318,8 @@ std::string capitals(std::string text) {
 
 }  // namespace
 
-Area draw_side_tabs(Actions& actions, const std::string& side, bool paths, bool expanded, const Area& area) {
+Area draw_side_tabs(Actions& actions, const std::string& side, bool paths, bool compare, bool expanded,
+                    const Area& area) {
   struct Tab {
     std::string side, label, help;
   };
@@ -326,6 +327,7 @@ Area draw_side_tabs(Actions& actions, const std::string& side, bool paths, bool 
   for (const SolverInfo* solver : solvers::registered())
     if (solver->has_panel()) tabs.push_back({solver->name, solver->label, panel_help(*solver) + " K."});
   if (paths) tabs.push_back({k_paths_side, "Paths", "Paths of a pixel, and what the noise comes from."});
+  if (compare) tabs.push_back({k_compare_side, "Compare", "Held results, and the picture against them."});
   if (!expanded) {
     begin_panel("##side_folded", area, colour::panel, false);
     const auto shown = std::find_if(tabs.begin(), tabs.end(), [&](const Tab& t) { return t.side == side; });
@@ -337,10 +339,13 @@ Area draw_side_tabs(Actions& actions, const std::string& side, bool paths, bool 
   const Area strip{area.lo, {area.hi.x, area.lo.y + px(k_tabs_height)}};
   begin_panel("##side_tabs", strip, colour::panel, false);
   ImDrawList* list = ImGui::GetWindowDrawList();
+  // Tabs share what their labels leave.
+  std::vector<float> ends{0};
+  for (const Tab& tab : tabs)
+    ends.push_back(ends.back() + text_width(capitals(tab.label), theme().fonts.caps));
+  const float rest = (strip.width() - ends.back()) / static_cast<float>(tabs.size());
   const auto border = [&](size_t i) {
-    return i == tabs.size() ? strip.hi.x
-                            : strip.lo.x + std::floor(strip.width() * static_cast<float>(i) /
-                                                      static_cast<float>(tabs.size()));
+    return i == tabs.size() ? strip.hi.x : strip.lo.x + std::floor(ends[i] + rest * static_cast<float>(i));
   };
   for (size_t i = 0; i < tabs.size(); ++i) {
     const Tab& tab = tabs[i];

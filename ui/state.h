@@ -11,6 +11,7 @@
 #include "actions.h"
 #include "cards_view.h"
 #include "commands/workspace.h"
+#include "compare_panel.h"
 #include "controls.h"
 #include "lamp_handles.h"
 #include "layout.h"
@@ -34,7 +35,7 @@ inline constexpr const char* k_scene_side = "scene";
 inline constexpr size_t k_recent_files = 8;  ///< number of recent files kept
 
 struct Dialog {
-  enum class Purpose { none, open, save, scene, script, test, reference, solver_load, solver_save };
+  enum class Purpose { none, open, save, scene, script, test, reference, held, solver_load, solver_save };
   Purpose purpose = Purpose::none;
   const solvers::SolverInfo* solver = nullptr;  ///< for solver_load and solver_save
   std::string path;
@@ -92,6 +93,7 @@ struct Ui {
   /// ... does not select: it sets the exposure or the plane of focus, or traces paths.
   bool click_taken() const { return dropper || scene_view.focusing || paths.pick != PathsView::Pick::none; }
   PathsView paths;
+  CompareState compare{open};
 
   HeldPixel held_pixel;
 
@@ -144,7 +146,7 @@ struct Ui {
 
   // Solvers.
   std::string side =
-      k_scene_side;  ///< what the right panel shows: the scene, paths, or the solver of that name
+      k_scene_side;  ///< what the right panel shows: the scene, paths, held results, or that solver
   /// The panel that K shows next: those of solvers in use, then the scene.
   std::string next_side() const;
   /// True if a view is on that inspects the place under the pointer.
@@ -195,8 +197,9 @@ void draw_light_panel(Controls& controls, bool expanded, const Area& area);
 /// The light mix, into a section of that panel.
 void draw_mix(Actions& actions, commands::OpenScene& open);
 /// The tabs of the right panel; returns the area below them.
-/// `paths`: there is a tab for the panel of paths.
-Area draw_side_tabs(Actions& actions, const std::string& side, bool paths, bool expanded, const Area& area);
+/// `paths`, `compare`: there is a tab for the panel of paths, of held results.
+Area draw_side_tabs(Actions& actions, const std::string& side, bool paths, bool compare, bool expanded,
+                    const Area& area);
 void draw_scene_panel(Controls& controls, const commands::Navigation& camera, SceneView& view,
                       const std::function<void()>& keep_view, const Area& area);
 void draw_solver_panel(Controls& controls, const solvers::SolverInfo& solver, const Area& area);

@@ -39,6 +39,10 @@ class Viewer {
     }
     if (!theme().font_note.empty()) log::warning("{}", theme().font_note);
     ui_.picture_of = [this](const std::string& file) { return texture_of(file); };
+    ui_.compare.pictures.texture = [this](const std::string& slot, const std::string& content, bool smooth,
+                                          const std::function<PictureBytes()>& make) {
+      return pictures_.get(slot, content, smooth, make);
+    };
     session.on_publish([] { Window::wake(); });
     if (!options.scene.empty()) ui_.act("scene.open", options.scene.string());
     for (const std::string& line : settings_) ui_.act_line(line);
@@ -180,6 +184,7 @@ class Viewer {
     if (ui_.frames_to_settle > 0) --ui_.frames_to_settle, ui_.wake(1);
     ImGui::PopFont();
     window_.end_frame();
+    pictures_.end_frame();
     const bool grabs = ui_.requests.grab && ui_.requests.grab->rgba.empty();
     if (!ui_.requests.shot.file.empty() || grabs) {
       ui_.wake(2);
@@ -260,6 +265,7 @@ class Viewer {
   Runner runner_;
   std::vector<std::string> settings_;
   Window window_;
+  TextureCache pictures_{window_};
   std::string title_;
   bool fresh_picture_ = false;
   double last_draw_ = -1, last_present_ = 0, hovering_since_ = -10;
@@ -281,11 +287,14 @@ void draw_parts(Ui& ui) {
     draw_toolbar(ui, areas.toolbar);
     const Area side =
         draw_side_tabs(ui.actions, ui.side, ui.work.traced || ui.work.noise || ui.side == k_paths_side,
+                       !ui.work.compare.results.list().empty() || ui.side == k_compare_side,
                        ui.shown.right_open, areas.right);
     if (const solvers::SolverInfo* solver = solvers::find(ui.side); solver && ui.shown.right_open)
       draw_solver_panel(ui.controls, *solver, side);
     else if (ui.side == k_paths_side && ui.shown.right_open)
       draw_paths_panel(ui.controls, ui.work, ui.paths, side);
+    else if (ui.side == k_compare_side && ui.shown.right_open)
+      draw_compare_panel(ui.controls, ui.work, ui.compare, side);
     else if (ui.shown.right_open)
       draw_scene_panel(
           ui.controls, ui.camera, ui.scene_view, [&ui] { keep_view(ui); }, side);

@@ -461,6 +461,7 @@ void draw_picture(Ui& ui, const Area& area) {
     list->AddImage(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(ui.texture)), lo,
                    {lo.x + w, lo.y + h});
     frame = {lo, {lo.x + w, lo.y + h}};
+    draw_comparison(ui.work, ui.compare, frame);
     if (ImGui::IsMouseDown(0))
       hot = ui.drag.lamp;
     else if (ui.picture_hovered && !ui.click_taken())
@@ -486,6 +487,11 @@ void draw_picture(Ui& ui, const Area& area) {
                                ImGuiButtonFlags_MouseButtonMiddle);
     ui.picture_hovered = ImGui::IsItemHovered();
     active = ImGui::IsItemActive();
+    if (drag_wipe(ui.actions, ui.work, ui.compare, frame, active)) {
+      ui.wake(2);
+      ImGui::End();
+      return;
+    }
     if (ImGui::IsItemActivated()) begin_drag(ui, frame);
     if (hot && ui.picture_hovered && !active) tooltip(help_of(ui, *hot));
     if ((ui.click_taken() || hot) && ui.picture_hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);

@@ -277,7 +277,8 @@ unsigned Window::upload(const std::vector<uint8_t>& rgba, uint32_t width, uint32
   return texture_;
 }
 
-unsigned Window::make_texture(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height) {
+unsigned Window::make_texture(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height,
+                              bool smooth) {
   unsigned texture = 0;
   glGenTextures(1, &texture);
   glBindTexture(GL_TEXTURE_2D, texture);
@@ -285,12 +286,17 @@ unsigned Window::make_texture(const std::vector<uint8_t>& rgba, uint32_t width, 
   glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, static_cast<GLsizei>(width), static_cast<GLsizei>(height), 0,
                GL_RGBA, GL_UNSIGNED_BYTE, rgba.data());
-  for (const unsigned filter : {GL_TEXTURE_MIN_FILTER, GL_TEXTURE_MAG_FILTER})
-    glTexParameteri(GL_TEXTURE_2D, filter, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, smooth ? GL_LINEAR : GL_NEAREST);
   for (const unsigned wrap : {GL_TEXTURE_WRAP_S, GL_TEXTURE_WRAP_T})
     glTexParameteri(GL_TEXTURE_2D, wrap, GL_CLAMP_TO_EDGE);
   textures_.push_back(texture);
   return texture;
+}
+
+void Window::drop_texture(unsigned texture) {
+  std::erase(textures_, texture);
+  glDeleteTextures(1, &texture);
 }
 
 void Window::move_mouse(float x, float y) {

@@ -34,8 +34,11 @@ class Window {
   void set_title(const std::string& title);
   /// Uploads a picture to the texture (recreated if the size changes). Returns its OpenGL name.
   unsigned upload(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height);
-  /// Creates a permanent texture with smooth scaling. Returns its OpenGL name.
-  unsigned make_texture(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height);
+  /// Creates a permanent texture, enlarged smoothly or in squares. Returns its OpenGL name.
+  unsigned make_texture(const std::vector<uint8_t>& rgba, uint32_t width, uint32_t height,
+                        bool smooth = true);
+  /// Removes such a texture.
+  void drop_texture(unsigned texture);
   /// A key that went down, with its modifiers (GLFW_MOD_*).
   struct Key {
     int key, mods;

@@ -14,16 +14,17 @@ const std::vector<std::string> k_levels{"debug", "info", "warning", "error"};
 
 /// The panels that the right side can show.
 std::vector<std::string> sides() {
-  std::vector<std::string> names{k_scene_side, k_paths_side};
+  std::vector<std::string> names{k_scene_side, k_paths_side, k_compare_side};
   for (const solvers::SolverInfo* solver : solvers::registered())
     if (solver->has_panel()) names.push_back(solver->name);
   return names;
 }
 
 std::vector<std::string> section_names(const Ui& ui) {
-  std::vector<std::string> names{"Light",           "Light mix",     "Render",  "Camera",  "Lights",
-                                 "Environment",     "Materials",     "Objects", "Options", "Paths of a pixel",
-                                 "Brightest paths", "Followed path", "Noise"};
+  std::vector<std::string> names{"Light",   "Light mix",        "Render",          "Camera",
+                                 "Lights",  "Environment",      "Materials",       "Objects",
+                                 "Options", "Paths of a pixel", "Brightest paths", "Followed path",
+                                 "Noise",   "Held results",     "Comparison",      "Accuracy in time"};
   const auto add = [&](const std::string& name) {
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   };
@@ -230,6 +231,9 @@ void add_dialog_commands(Ui& ui, const Add& add) {
   add(
       "dialog.reference", "Opens the dialog to load a reference.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::reference); }, false);
+  add(
+      "dialog.held", "Opens the dialog to hold the picture of a file.", {},
+      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::held); }, false);
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     if (!solver->file) continue;
     add(

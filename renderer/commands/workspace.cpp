@@ -40,6 +40,7 @@ Workspace::Workspace(session::Session& s, WorkspaceEvents e)
   add_inspect_commands(*this);
   add_effect_commands(registry, open);
   add_path_commands(*this);
+  add_compare_commands(*this);
   add_solver_commands(registry, open, files);
   add_values(*this);
 }
@@ -72,6 +73,7 @@ void Workspace::refresh(double time) {
   if (pixel) pixel->follow(open, camera);
   if (traced) traced->refresh();
   if (noise) noise->refresh();
+  compare.refresh(open);
   for (const std::string& name : files.take_written())
     if (events.written) events.written(name);
 }
@@ -85,7 +87,7 @@ void Workspace::follow_scene() {
   history.forget_steps();
   scene_file.begin_scene();
   exposure.begin_scene();
-  traced.reset(), noise.reset();
+  traced.reset(), noise.reset(), compare.holding.reset();
   if (open.loading()) history.record({"wait_scene", "wait_scene"});
   if (events.scene_changed) events.scene_changed();
 }

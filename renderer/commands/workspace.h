@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "base/log.h"
+#include "commands/comparing.h"
 #include "commands/exposure.h"
 #include "commands/history.h"
 #include "commands/navigation.h"
@@ -82,6 +83,7 @@ class Workspace {
   std::optional<PixelInquiry> pixel;   ///< by inspect.pixel
   std::optional<PathInquiry> traced;   ///< by inspect.trace
   std::optional<NoiseInquiry> noise;   ///< by inspect.noise
+  Comparing compare;                   ///< by compare.hold and others
   uint64_t inspections = 0;            ///< inspect.at commands so far
 
   /// Reads what the session has published since. Call before reading state and before running commands.

@@ -87,6 +87,9 @@ class Preview {
   /// Error of that picture, measured by samples added to the film since; none if show_filtered() was not the
   /// last call that showed a picture. Runs the stream.
   std::optional<ShownError> judge_filtered(gpu::Stream& stream, const Film& film);
+  /// The light of the picture that develop() or take() showed last, before exposure: the sum of these
+  /// components (bits), rounded to half floats. Throws Error if there is none.
+  std::vector<vec3> shown_light(uint32_t components) const;
   uint64_t bytes() const;  ///< of device memory
 
  private:

@@ -52,6 +52,8 @@ class Display {
   bool remembers() const { return preview_.has_history(); }
   /// Changes whenever the result of develop() does, apart from film samples and display settings.
   uint64_t version() const { return version_; }
+  /// film::Preview::shown_light of the latest developed picture.
+  std::vector<vec3> shown_light(uint32_t components) const { return preview_.shown_light(components); }
   /// Shares of the latest developed picture.
   film::PreviewShares shares() const { return shares_; }
   /// True if the former light is of this picture's preview, from before light_changed(); false: from before

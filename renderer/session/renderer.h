@@ -26,6 +26,7 @@
 #include "scene/scene.h"
 #include "session/display.h"
 #include "session/filtered.h"
+#include "session/held_picture.h"
 #include "session/image_progress.h"
 #include "session/lights_edit.h"
 #include "session/overlays.h"
@@ -216,6 +217,9 @@ class Renderer {
   /// Brightness of the picture, or at a point (0..1 to the right and down): of the coarse image while there
   /// is no other. Throws Error if there is none.
   film::Brightness measure(std::optional<vec2> at) const;
+  /// The light of the shown picture: of the layer and the components that view() shows. Throws Error if it
+  /// has no sample, or shows a layer that is no light.
+  HeldPicture held_picture();
   /// The image with its layers and metadata (including its noise), as in EXR files.
   film::FilmImage film_image();
   /// film_image() with what its noise is known by, for film::compare_stochastic(): the mean of the odd

@@ -140,22 +140,76 @@ std::vector<uint8_t> Renderer::picture_of(const Filtered& filtered, const film::
   return overlays_.finish(v, cancel);
 }
 
+namespace {
+
+/// Components (bits) of the light that a view shows: without hidden ones; a layer is one component.
+uint32_t shown_components(const film::View& v) {
+  const bool one = v.layer >= shared::k_layer_primary && v.layer < shared::k_layer_albedo;
+  return one ? 1u << (v.layer - shared::k_layer_primary) : v.show;
+}
+
+std::vector<vec3> sum_of(const film::Image& image, uint32_t components) {
+  std::vector<vec3> sum(image.samples.size(), vec3(0));
+  for (size_t c = 0; c < image.components.size(); ++c)
+    for (size_t i = 0; i < sum.size() && (components >> c & 1u); ++i) sum[i] += image.components[c][i];
+  return sum;
+}
+
+}  // namespace
+
 film::Brightness Renderer::measure(std::optional<vec2> at) const {
   if (!setup_.engine || !setup_.film) throw Error("", "there is no picture to measure");
   const film::Image image = samples() > 0 ? setup_.film->read() : setup_.coarse->read();
   const auto sampled = [](uint32_t n) { return n > 0; };
   if (std::none_of(image.samples.begin(), image.samples.end(), sampled))
     throw Error("", "there is no picture to measure yet");
-  // The shown light: without hidden components; a layer is one component. Other layers have no exposure; the
-  // picture is measured then.
-  const film::View v = view();
-  const bool one = v.layer >= shared::k_layer_primary && v.layer < shared::k_layer_albedo;
-  const uint32_t shown = one ? 1u << (v.layer - shared::k_layer_primary) : v.show;
-  std::vector<vec3> sum(image.samples.size(), vec3(0));
-  for (size_t c = 0; c < image.components.size(); ++c)
-    for (size_t i = 0; i < sum.size() && (shown >> c & 1u); ++i) sum[i] += image.components[c][i];
+  // Layers that are no light have no exposure; the picture is measured then.
+  const std::vector<vec3> sum = sum_of(image, shown_components(view()));
   return at ? film::measure_point(sum, image.width, image.height, *at)
             : film::measure_picture(sum, image.width, image.height);
+}
+
+HeldPicture Renderer::held_picture() {
+  if (!setup_.engine || samples() == 0) throw Error("", "the picture has no sample yet");
+  const film::View v = view();
+  if (v.layer >= shared::k_layer_albedo)
+    throw_error("", "the layer '{}' shows no light; choose beauty or a component",
+                setup_.settings.text("film.layer"));
+  settle_mix();
+  const uint32_t shown = shown_components(v);
+  const uint32_t width = setup_.film->width(), height = setup_.film->height();
+  const Filtered* filtered = shown_filtered(v);
+  bool preview = !filtered && previewed(v);
+  if (preview) {
+    // Of the present samples; if that fails, previews are off from now on.
+    shown_picture(true);
+    preview = previewed(v);
+  }
+  HeldPicture held{.width = width,
+                   .height = height,
+                   .light = preview ? display_->shown_light(shown)
+                                    : sum_of((filtered ? *filtered->film : *setup_.film).read(), shown),
+                   .filtered = filtered || preview,
+                   .samples = double(stats().paths) / (double(width) * height),
+                   .seconds = seconds(),
+                   .ledger = ledger(),
+                   .scene = setup_.world.scene->name,
+                   .view = setup_.view_text()};
+  for (size_t c = 0; c < held.methods.size(); ++c) {
+    held.methods[c] = choices()[c].solver;
+    if (shown != (1u << paths::k_component_count) - 1 && (shown >> c & 1u))
+      held.shows += (held.shows.empty() ? "" : " + ") + std::string(paths::k_component_names[c]);
+  }
+  if (held.filtered) {
+    const film::PreviewShares shares = preview_shares();
+    held.former = shares.stale;
+    if (shares.error) held.shown_error = shares.error->median;
+  }
+  if (samples() >= 2) {
+    const film::ImageError e = image_error();
+    held.error = error_sum(e.seen(0), e.seen_records, e.seen_interpolation);
+  }
+  return held;
 }
 
 namespace {

@@ -258,6 +258,12 @@ std::shared_future<recording::NoiseReport> Session::explain_noise(const vec2& lo
       [lo, hi](Renderer& r) { return r.explain_noise(lo, hi); }, "the noise of the picture", scene);
 }
 
+std::shared_future<std::shared_ptr<const HeldPicture>> Session::held_picture(SceneId scene) {
+  return impl_->when_pictured<std::shared_ptr<const HeldPicture>>(
+      [](Renderer& r) { return std::make_shared<const HeldPicture>(r.held_picture()); },
+      "the picture to be held", scene);
+}
+
 Saved Session::save(const std::filesystem::path& file, bool as_shown) {
   return impl_->post_save(file, "", k_any_scene, as_shown);
 }

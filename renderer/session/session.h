@@ -21,6 +21,7 @@
 #include "scene/scene.h"
 #include "session/accuracy.h"
 #include "session/command_queue.h"
+#include "session/held_picture.h"
 #include "session/lights_edit.h"
 #include "session/shown_paths.h"
 #include "solvers/report.h"
@@ -200,6 +201,8 @@ class Session {
   /// soon as there is a picture; get() throws on failure. Nothing is logged.
   std::shared_future<recording::NoiseReport> explain_noise(const vec2& lo, const vec2& hi,
                                                            SceneId scene = k_any_scene);
+  /// Renderer::held_picture, as soon as there is a picture; get() throws on failure. Nothing is logged.
+  std::shared_future<std::shared_ptr<const HeldPicture>> held_picture(SceneId scene = k_any_scene);
   /// Writes EXR or PNG as soon as every pixel has a sample, or at once if rendering rests without.
   /// `as_shown`: a PNG includes the preview's filter, like the snapshots.
   Saved save(const std::filesystem::path& file, bool as_shown = false);

@@ -7,6 +7,7 @@
 #include "film/film.h"
 #include "plan/settings.h"
 #include "scene/scene.h"
+#include "scene/view_text.h"
 #include "session/engine.h"
 #include "session/kept_solvers.h"
 #include "session/relight.h"
@@ -27,8 +28,7 @@ struct Setup {
   PictureView view(const paths::Automaton& automaton) const {
     return {automaton, settings, world, camera, width, height, relight.weights};
   }
-  /// Describes the camera: pictures of one scene with equal texts show the same.
-  std::string view_text() const;
+  std::string view_text() const { return scene::view_text(camera); }
   film::SeenRange seen_range() const;
   uint32_t tile_side() const;  ///< sampling.tile [pixels]
 };

@@ -555,6 +555,33 @@ struct Session::Impl {
   impl_->post([promise] { promise->set_value(fake::noise()); }, scene);
   return promise->get_future().share();
 }
+/// Every pixel is 0.5; by path tracing, or as the settings name other methods. Half of the light is missing
+/// if the cache computes secondary light.
+[[gnu::weak]] std::shared_future<std::shared_ptr<const HeldPicture>> Session::held_picture(SceneId scene) {
+  auto promise = std::make_shared<std::promise<std::shared_ptr<const HeldPicture>>>();
+  impl_->post(
+      [this, promise] {
+        if (impl_->settings.text("film.layer") == "albedo") {
+          promise->set_exception(std::make_exception_ptr(Error("", "the layer 'albedo' shows no light")));
+          return;
+        }
+        HeldPicture held{.width = impl_->width,
+                         .height = impl_->height,
+                         .light = {},
+                         .samples = double(impl_->samples),
+                         .seconds = 0.2 * impl_->samples,
+                         .error = 0.1,
+                         .ledger = impl_->accuracy()->ledger,
+                         .scene = impl_->scene->name,
+                         .view = fmt::format("{}", impl_->camera.to_world[3][2])};
+        for (size_t c = 0; c < k_components; ++c)
+          held.methods[c] = impl_->settings.text(std::string("components.") + k_component_names[c]);
+        held.light.assign(size_t{held.width} * held.height, vec3(impl_->cached() ? 0.25f : 0.5f));
+        promise->set_value(std::make_shared<const HeldPicture>(std::move(held)));
+      },
+      scene);
+  return promise->get_future().share();
+}
 [[gnu::weak]] void Session::set_material(uint32_t index, const scene::Material& material, SceneId scene) {
   impl_->post_edit([index, material](scene::Scene& s) { s.materials[index] = material; }, scene);
 }

@@ -339,6 +339,16 @@ TEST_CASE("no id is used twice in a frame, and every control of every panel rece
       }
     CHECK(clicked > 20);
   }
+  SECTION("the panel of held results") {
+    walk.act("compare.hold first");
+    walk.act("compare.hold second");
+    walk.act("compare.view difference");
+    walk.act("window.side compare");
+    REQUIRE(ui.work.compare.results.list().size() == 2);
+    const std::string panel = "##side_compare";
+    clicked += walk.click_all(panel, [&](const Control& c) { return c.window->Name == panel; });
+    CHECK(clicked >= 12);
+  }
   SECTION("the menus") {
     for (const char* line : {"set components.secondary cache", "set components.tertiary photons",
                              "set components.caustic light"})
@@ -360,8 +370,8 @@ TEST_CASE("no id is used twice in a frame, and every control of every panel rece
     CHECK(clicked > 45);
   }
   SECTION("the dialogs, the keys and the cards") {
-    for (const char* dialog :
-         {"dialog.open", "dialog.save", "dialog.scene", "dialog.reference", "dialog.script", "dialog.test"}) {
+    for (const char* dialog : {"dialog.open", "dialog.save", "dialog.scene", "dialog.reference",
+                               "dialog.script", "dialog.test", "dialog.held"}) {
       walk.act(dialog);
       if (std::string(dialog) == "dialog.save") ui.dialog.path = "a.png";
       clicked += walk.click_all(dialog, Walk::in_popup);
@@ -438,6 +448,30 @@ TEST_CASE("the panel's buttons add, copy, move and delete lights, each in one st
   REQUIRE(open.sky());
   use(walk, "##own");
   CHECK_FALSE(open.sky());
+}
+
+TEST_CASE("the panel of held results holds, compares, and forgets") {
+  Walk walk;
+  open_hall(walk);
+  const commands::HeldResults& results = walk.ui().work.compare.results;
+  walk.act("window.side compare");
+  use(walk, "##hold");
+  REQUIRE(results.list().size() == 1);
+  CHECK(results.compared() == &results.list()[0]);
+  for (const auto& [button, view] : {std::pair{"##wipe", commands::CompareView::wipe},
+                                     {"##flip", commands::CompareView::flip},
+                                     {"##difference", commands::CompareView::difference}}) {
+    use(walk, button);
+    CHECK(results.view() == view);
+  }
+  use(walk, "##difference");
+  CHECK(results.view() == commands::CompareView::off);
+  use(walk, "##held");
+  CHECK_FALSE(results.compared());
+  use(walk, "##held");
+  CHECK(results.compared());
+  use(walk, "##forget");
+  CHECK(results.list().empty());
 }
 
 TEST_CASE("closing asks if there is something to save") {

@@ -1,0 +1,27 @@
+#include "commands/comparing.h"
+
+#include <chrono>
+
+#include "base/error.h"
+#include "base/log.h"
+
+namespace lucerna::commands {
+
+void Comparing::refresh(const OpenScene& open) {
+  if (holding && holding->picture.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+    const Holding held = *holding;
+    holding.reset();
+    try {
+      results.add(held.name, "result", held.camera, held.picture.get());
+      const HeldResult& added = results.list().back();
+      log::info("held as '{}': {:.4g} samples, {:.3g} s{}", added.name, added.picture->samples,
+                added.picture->seconds,
+                added.picture->error ? fmt::format(", error {:.3g}", *added.picture->error) : "");
+    } catch (const std::exception& error) {
+      log::error("compare.hold: {}", error.what());
+    }
+  }
+  live.follow(open, results.compared());
+}
+
+}  // namespace lucerna::commands
