@@ -503,8 +503,9 @@ struct Session::Impl {
       scene);
 }
 /// Files named "broken" cannot be read.
-[[gnu::weak]] void Session::set_environment_file(const std::filesystem::path& file, std::optional<float> scale,
-                                          std::optional<float> rotation, SceneId scene) {
+[[gnu::weak]] void Session::set_environment_file(const std::filesystem::path& file,
+                                                 std::optional<float> scale, std::optional<float> rotation,
+                                                 SceneId scene) {
   impl_->post_edit(
       [file, scale, rotation](scene::Scene& s) {
         if (file.string().find("broken") != std::string::npos)
@@ -535,9 +536,8 @@ struct Session::Impl {
       scene);
   return promise->get_future().share();
 }
-[[gnu::weak]] std::shared_future<std::shared_ptr<const recording::Recording>> Session::trace_paths(const vec2& at,
-                                                                                            uint32_t samples,
-                                                                                            SceneId scene) {
+[[gnu::weak]] std::shared_future<std::shared_ptr<const recording::Recording>> Session::trace_paths(
+    const vec2& at, uint32_t samples, SceneId scene) {
   auto promise = std::make_shared<std::promise<std::shared_ptr<const recording::Recording>>>();
   impl_->post(
       [this, promise, at, samples] {
@@ -551,7 +551,7 @@ struct Session::Impl {
   impl_->post([] {}, scene);
 }
 [[gnu::weak]] std::shared_future<recording::NoiseReport> Session::explain_noise(const vec2&, const vec2&,
-                                                                         SceneId scene) {
+                                                                                SceneId scene) {
   auto promise = std::make_shared<std::promise<recording::NoiseReport>>();
   impl_->post([promise] { promise->set_value(fake::noise()); }, scene);
   return promise->get_future().share();
@@ -655,7 +655,8 @@ struct Session::Impl {
 [[gnu::weak]] Saved Session::solver_save(const std::string&, const std::filesystem::path& file, SceneId) {
   return save(file);
 }
-[[gnu::weak]] void Session::solver_load(const std::string&, const std::filesystem::path& file, SceneId scene) {
+[[gnu::weak]] void Session::solver_load(const std::string&, const std::filesystem::path& file,
+                                        SceneId scene) {
   impl_->post(
       [this, file] {
         if (file.string().find("missing") != std::string::npos)
@@ -665,7 +666,8 @@ struct Session::Impl {
       },
       scene);
 }
-[[gnu::weak]] void Session::solver_command(const std::string& solver, const std::string& command, SceneId scene) {
+[[gnu::weak]] void Session::solver_command(const std::string& solver, const std::string& command,
+                                           SceneId scene) {
   impl_->post(
       [this, solver, command] {
         if (solver != "cache") log::info("{}: command {}", solver, command);
