@@ -44,10 +44,15 @@ void LiveDifference::take_light() {
 
 void LiveDifference::take_figures() {
   if (!has_come(measuring_)) return;
-  const Measured measured = measuring_.get();
-  if (measured.held != held_ || measured.version < oldest_) return;
-  figures_ = measured.figures;
-  figures_version_ = measured.version;
+  try {
+    const Measured measured = measuring_.get();
+    if (measured.held != held_ || measured.version < oldest_) return;
+    figures_ = measured.figures;
+    figures_version_ = measured.version;
+  } catch (const std::exception& error) {  // memory
+    refused_ = true;
+    problem_ = error.what();
+  }
 }
 
 void LiveDifference::restart() {
@@ -82,7 +87,7 @@ void LiveDifference::follow(const OpenScene& open, const HeldResult* held) {
     asked_for_ = now;
     asked_ = open.session.held_picture(open.id());
   }
-  const bool fits = light_ && light_->light.size() == held->picture->light.size();
+  const bool fits = light_ && !refused_ && light_->light.size() == held->picture->light.size();
   const bool due =
       fits && (!figures_ || (figures_version_ < version_ &&
                              (light_->samples >= k_more_figures * figures_samples_ || rests(s))));
