@@ -74,13 +74,13 @@ void LiveDifference::follow(const OpenScene& open, const HeldResult* held) {
   if (!why_not.empty() || !refused_) problem_ = why_not;
   if (!why_not.empty()) return figures_.reset();
   comparable_ = true;
-  if (s.samples == 0 || !open.up_to_date()) return;
-
   const std::string now = shown_light(open);
   if (now != light_of_ && light_) {
     figures_.reset(), figures_samples_ = 0;
     light_.reset(), oldest_ = version_ + 1;
   }
+  if (s.samples == 0 || !open.up_to_date()) return;
+
   const bool old = now != light_of_ || (light_ && s.mean_samples > light_->samples &&
                                         (rests(s) || s.mean_samples >= k_more_light * light_->samples));
   if (old && !asked_.valid()) {
