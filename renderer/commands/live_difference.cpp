@@ -44,10 +44,15 @@ void LiveDifference::take_light() {
 
 void LiveDifference::take_figures() {
   if (!has_come(measuring_)) return;
-  const Measured measured = measuring_.get();
-  if (measured.held != held_ || measured.version < oldest_) return;
-  figures_ = measured.figures;
-  figures_version_ = measured.version;
+  try {
+    const Measured measured = measuring_.get();
+    if (measured.held != held_ || measured.version < oldest_) return;
+    figures_ = measured.figures;
+    figures_version_ = measured.version;
+  } catch (const std::exception& error) {  // memory
+    refused_ = true;
+    problem_ = error.what();
+  }
 }
 
 void LiveDifference::restart() {
@@ -69,20 +74,20 @@ void LiveDifference::follow(const OpenScene& open, const HeldResult* held) {
   if (!why_not.empty() || !refused_) problem_ = why_not;
   if (!why_not.empty()) return figures_.reset();
   comparable_ = true;
-  if (s.samples == 0 || !open.up_to_date()) return;
-
   const std::string now = shown_light(open);
   if (now != light_of_ && light_) {
     figures_.reset(), figures_samples_ = 0;
     light_.reset(), oldest_ = version_ + 1;
   }
+  if (s.samples == 0 || !open.up_to_date()) return;
+
   const bool old = now != light_of_ || (light_ && s.mean_samples > light_->samples &&
                                         (rests(s) || s.mean_samples >= k_more_light * light_->samples));
   if (old && !asked_.valid()) {
     asked_for_ = now;
     asked_ = open.session.held_picture(open.id());
   }
-  const bool fits = light_ && light_->light.size() == held->picture->light.size();
+  const bool fits = light_ && !refused_ && light_->light.size() == held->picture->light.size();
   const bool due =
       fits && (!figures_ || (figures_version_ < version_ &&
                              (light_->samples >= k_more_figures * figures_samples_ || rests(s))));

@@ -15,6 +15,7 @@
 
 #include "base/log.h"
 #include "base/timer.h"
+#include "scene/view_text.h"
 #include "session/effect_costs.h"
 #include "session/session.h"
 #include "solvers/irradiance_cache/report.h"
@@ -573,7 +574,7 @@ struct Session::Impl {
                          .error = 0.1,
                          .ledger = impl_->accuracy()->ledger,
                          .scene = impl_->scene->name,
-                         .view = fmt::format("{}", impl_->camera.to_world[3][2])};
+                         .view = scene::view_text(impl_->camera)};
         for (size_t c = 0; c < k_components; ++c)
           held.methods[c] = impl_->settings.text(std::string("components.") + k_component_names[c]);
         held.light.assign(size_t{held.width} * held.height, vec3(impl_->cached() ? 0.25f : 0.5f));
