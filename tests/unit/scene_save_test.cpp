@@ -262,8 +262,10 @@ TEST_CASE("shapes and distributions that cannot be used: a warning with the plac
   CHECK(s.lights[3].radius == 0.25f);
   const std::string all = fmt::format("{}", fmt::join(s.warnings, "\n"));
   CHECK_THAT(all, Contains("radius: 0 m is not between 0.0001 and 10000"));
-  CHECK_THAT(all, Contains("gone.ies"));
-  CHECK_THAT(all, Contains("cut.ies") && Contains("the file ends before"));
+  CHECK_THAT(all, Contains("2 lamps whose distribution cannot be read") && Contains("gone.ies"));
+  a.doc["extensions"]["EXT_lights_ies"]["lights"][0]["uri"] = "cut.ies";
+  CHECK_THAT(fmt::format("{}", fmt::join(load(a.gltf(folder, "b.gltf")).warnings, "\n")),
+             Contains("cut.ies") && Contains("the file ends before"));
 }
 
 TEST_CASE("added and deleted lights") {

@@ -508,7 +508,7 @@ TEST_CASE("opening another scene asks if there is something to save") {
   const auto steps = [&] { return walk.ui().leaving.step; };
   const std::string before = walk.ui().open.scene->name;
   walk.act("light.set 1 intensity=2");
-  walk.act("drop sheen-other.gltf");
+  walk.ui().drop("sheen-other.gltf");
   walk.frames(3);
   REQUIRE(steps() == ui::Ui::Leaving::Step::asks);
   CHECK(walk.ui().leaving.opens == "sheen-other.gltf");
