@@ -21,7 +21,8 @@ std::shared_ptr<session::HeldPicture> held(const char* method, double seconds, d
   picture->seconds = seconds, picture->samples = 10 * seconds, picture->error = error;
   for (const double part : {0.25, 0.5}) {
     stats::Entry e;
-    e.has_error = true, e.wall_s = part * seconds, e.error[0] = error / std::sqrt(part);
+    e.paths = uint64_t(1000 * part), e.has_error = true, e.wall_s = part * seconds,
+    e.error[0] = error / std::sqrt(part);
     picture->ledger.add(e);
   }
   return picture;
@@ -57,9 +58,9 @@ TEST_CASE("a result in words: name, methods, what it shows, time, error, filter"
   auto picture = held("path", 12, 0.021);
   results.add("", "", "", picture);
   CHECK(held_text(results.list()[0]) == "path, 12 s, 2.10 %");
-  picture->shows = "caustic", picture->filtered = true;
+  picture->shows = "caustic", picture->filtered = true, picture->shown_error = 0.05;
   results.rename("path", "before");
-  CHECK(held_text(results.list()[0]) == "before: path, caustic only, 12 s, 2.10 %, filtered");
+  CHECK(held_text(results.list()[0]) == "before: path, caustic only, 12 s, 5.00 % off, filtered");
   results.add("file", "", "", std::make_shared<session::HeldPicture>());
   CHECK(held_text(results.list()[1]) == "file");
 }
