@@ -13,7 +13,7 @@ namespace {
 
 constexpr uint32_t k_paths = 512, k_paths_for_one = 8192;  // the latter to find one lamp's paths among all
 constexpr uint32_t k_round = 0xfffffffeu;                  // differs from rounds of samples and of the pilot
-constexpr float k_least_part = 1e-3f;                     // lower end of the ramp
+constexpr float k_least_part = 1e-3f;                      // lower end of the ramp
 constexpr size_t k_most_lines = 256;
 
 /// Position of an entry of the light table, or the direction of its light.

@@ -60,7 +60,7 @@ struct Material {
   TextureUse metallic_roughness_texture;  ///< g = roughness, b = metallic
   TextureUse normal_texture;
   float normal_scale = 1;
-  vec3 emission{0};  ///< emitted radiance: emissiveFactor * emissiveStrength
+  vec3 emission{0};      ///< emitted radiance: emissiveFactor * emissiveStrength
   vec3 off_emission{0};  ///< kept while emission is switched off, and 0: extras.lucerna.off_emission
   TextureUse emission_texture;
   AlphaMode alpha_mode = AlphaMode::opaque;

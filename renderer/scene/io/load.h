@@ -20,8 +20,8 @@
 //
 // Supported extensions: KHR_materials_emissive_strength, _ior, _specular, _transmission, _volume,
 // _diffuse_transmission, _clearcoat (which does not dim emission below it), _sheen, _anisotropy,
-// _iridescence, _unlit, _variants, KHR_lights_punctual (range ignored), EXT_lights_ies, KHR_texture_transform,
-// KHR_mesh_quantization, EXT_mesh_gpu_instancing.
+// _iridescence, _unlit, _variants, KHR_lights_punctual (range ignored), EXT_lights_ies,
+// KHR_texture_transform, KHR_mesh_quantization, EXT_mesh_gpu_instancing.
 //
 // The environment comes from the scene's extras, {"environment": {"file": .., "scale": .., "rotation": ..}}
 // or {"environment": {"radiance": [r, g, b]}} (unknown keys are accepted there), or, overriding it as a

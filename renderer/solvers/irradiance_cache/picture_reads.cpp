@@ -35,7 +35,8 @@ void PictureReads::begin(const Frame& frame) {
   for (uint32_t k = 2; pixels() > k_most_pixels; ++k)
     frame_.width = std::max(frame.width / k, 1u), frame_.height = std::max(frame.height / k, 1u);
   done_ = 0;
-  gpu::make_texel_room(device_, places_, "places of lookups", uint64_t{pixels()} * k_read_paths * sizeof(vec4));
+  gpu::make_texel_room(device_, places_, "places of lookups",
+                       uint64_t{pixels()} * k_read_paths * sizeof(vec4));
   begun_ = true;
 }
 
