@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "base/base64.h"
 #include "base/file.h"
 #include "base/markup.h"
 #include "bench/folder.h"
@@ -34,18 +35,6 @@ std::string tag_of(const std::string& png, uint32_t width, uint32_t height, cons
 }
 
 }  // namespace
-
-std::string base64(std::string_view bytes) {
-  static constexpr char k_digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t group = 0;
-    for (size_t k = 0; k < 3; ++k) group = group << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
-    for (size_t k = 0; k < 4; ++k) text += i + k <= bytes.size() ? k_digits[group >> (18 - 6 * k) & 63] : '=';
-  }
-  return text;
-}
 
 std::array<uint8_t, 3> magma(double x) {
   const double at = std::clamp(x, 0.0, 1.0) * (k_magma.size() - 1);

@@ -10,8 +10,6 @@
 
 namespace lucerna::bench {
 
-std::string base64(std::string_view bytes);
-
 /// Magma: from black over purple and orange to pale yellow, uniform in lightness; x is clamped to 0..1.
 std::array<uint8_t, 3> magma(double x);
 /// Likewise, as a CSS gradient from left to right.

@@ -1,14 +1,13 @@
 #include "commands/comparing.h"
 
-#include <chrono>
-
 #include "base/error.h"
+#include "base/future.h"
 #include "base/log.h"
 
 namespace lucerna::commands {
 
 void Comparing::refresh(const OpenScene& open) {
-  if (holding && holding->picture.wait_for(std::chrono::seconds(0)) == std::future_status::ready) {
+  if (holding && is_ready(holding->picture)) {
     const Holding held = *holding;
     holding.reset();
     try {

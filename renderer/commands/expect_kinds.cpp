@@ -4,6 +4,7 @@
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/future.h"
 #include "commands/expectation.h"
 #include "commands/script.h"
 #include "commands/values.h"
@@ -256,7 +257,7 @@ void add_image(Workspace& work, Expectations& expectations) {
          return [&work, context, file, options,
                  layers = std::shared_future<film::FilmImage>()]() mutable -> std::optional<Verdict> {
            if (!layers.valid()) layers = work.session.layers(work.open.id());
-           if (layers.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return std::nullopt;
+           if (!is_ready(layers)) return std::nullopt;
            return judge_image(work, context, file, options, layers.get());
          };
        }});

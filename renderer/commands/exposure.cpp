@@ -1,11 +1,11 @@
 #include "commands/exposure.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <utility>
 
 #include "base/error.h"
+#include "base/future.h"
 #include "base/log.h"
 #include "commands/text.h"
 #include "plan/settings.h"
@@ -41,8 +41,7 @@ void Exposure::follow(bool interactive, const std::function<void(float ev, bool 
     if (interactive ? when != "never" : when == "always") measure(std::nullopt, true);
     due_ = 0;
   }
-  if (!measuring_ || measuring_->result.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    return;
+  if (!measuring_ || !is_ready(measuring_->result)) return;
   const Measuring requested = *measuring_;
   measuring_.reset();
   if (requested.scene != camera_.view_scene) return;

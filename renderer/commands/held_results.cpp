@@ -44,7 +44,11 @@ void HeldResults::needs_room(const std::string& name) const {
   if (list_.size() >= k_most)
     throw Error("", fmt::format("{} results are held already; forget one of them first (compare.forget {})",
                                 k_most, quote(list_.front().name)));
-  if (!name.empty() && taken(name))
+  if (!name.empty()) needs_free(name);
+}
+
+void HeldResults::needs_free(const std::string& name) const {
+  if (taken(name))
     throw Error("", fmt::format("a held result is named '{}' already; choose another name", name));
 }
 
@@ -72,8 +76,7 @@ void HeldResults::forget_all() { list_.clear(), compared_ = 0, view_ = CompareVi
 void HeldResults::rename(const std::string& from, const std::string& to) {
   const size_t index = static_cast<size_t>(&named(from) - list_.data());
   if (to.empty()) throw Error("", "expected a name");
-  if (to != from && taken(to))
-    throw Error("", fmt::format("a held result is named '{}' already; choose another name", to));
+  if (to != from) needs_free(to);
   list_[index].name = to;
 }
 

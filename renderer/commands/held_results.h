@@ -59,6 +59,7 @@ class HeldResults {
  private:
   size_t index_of(const std::string& name) const;
   bool taken(const std::string& name) const;
+  void needs_free(const std::string& name) const;  ///< throws Error if the name is taken
 
   std::vector<HeldResult> list_;
   uint64_t compared_ = 0;  ///< id; 0: none

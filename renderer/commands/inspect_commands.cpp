@@ -2,9 +2,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
 
 #include "base/error.h"
+#include "base/future.h"
 #include "base/log.h"
 #include "commands/command_list.h"
 #include "commands/pixel_report.h"
@@ -13,7 +13,7 @@
 namespace lucerna::commands {
 
 void PixelInquiry::follow(const OpenScene& open, const Navigation& camera) {
-  if (!lines.empty() || layers.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
+  if (!lines.empty() || !is_ready(layers)) return;
   try {
     lines = to_lines(report_pixel(layers.get(), at));
     if (open.scene && camera.view)

@@ -1,16 +1,11 @@
 #include "commands/live_difference.h"
 
-#include <chrono>
+#include "base/future.h"
 
 namespace lucerna::commands {
 namespace {
 
 constexpr double k_more_light = 1.25, k_more_figures = 2;  // factors on the samples
-
-template <class Future>
-bool has_come(const Future& future) {
-  return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-}
 
 bool rests(const session::Snapshot& s) { return s.resting || s.finished || s.paused; }
 
@@ -27,7 +22,7 @@ std::string LiveDifference::shown_light(const OpenScene& open) {
 }
 
 void LiveDifference::take_light() {
-  if (!has_come(asked_)) return;
+  if (!is_ready(asked_)) return;
   try {
     light_ = asked_.get();
     light_of_ = asked_for_;
@@ -43,7 +38,7 @@ void LiveDifference::take_light() {
 }
 
 void LiveDifference::take_figures() {
-  if (!has_come(measuring_)) return;
+  if (!is_ready(measuring_)) return;
   try {
     const Measured measured = measuring_.get();
     if (measured.held != held_ || measured.version < oldest_) return;

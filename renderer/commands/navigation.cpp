@@ -1,11 +1,11 @@
 #include "commands/navigation.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/future.h"
 #include "base/log.h"
 #include "commands/text.h"
 #include "scene/core.h"
@@ -31,8 +31,7 @@ void Navigation::begin_scene(std::shared_ptr<const scene::Scene> scene, const se
     if (same_view(scene->cameras[i], picture.camera)) scene_camera = static_cast<int>(i);
   // In another thread: it takes a second for a large scene. A running one is not waited for.
   probe_.reset();
-  std::erase_if(retired_,
-                [](auto& f) { return f.wait_for(std::chrono::seconds(0)) == std::future_status::ready; });
+  std::erase_if(retired_, [](auto& f) { return is_ready(f); });
   if (probing_.valid()) retired_.push_back(std::move(probing_));
   probing_ = std::async(std::launch::async,
                         [s = std::move(scene)] { return std::make_shared<const session::Probe>(s); });
@@ -83,7 +82,7 @@ std::string Navigation::place_line(const Viewpoint& v) {
 }
 
 const session::Probe* Navigation::probe(bool wait) {
-  if (probing_.valid() && (wait || probing_.wait_for(std::chrono::seconds(0)) == std::future_status::ready)) {
+  if (probing_.valid() && (wait || is_ready(probing_))) {
     try {
       probe_ = probing_.get();
     } catch (const std::exception& error) {

@@ -2,19 +2,10 @@
 
 #include <fmt/ranges.h>
 
-#include <chrono>
-
+#include "base/future.h"
 #include "base/log.h"
 
 namespace lucerna::commands {
-namespace {
-
-template <class T>
-bool is_ready(const std::shared_future<T>& future) {
-  return future.valid() && future.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-}
-
-}  // namespace
 
 void PathInquiry::refresh() {
   if (done() || !is_ready(traced)) return;

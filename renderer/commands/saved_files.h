@@ -1,11 +1,11 @@
 #pragma once
 // Files that the session is writing.
-#include <chrono>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "base/error.h"
+#include "base/future.h"
 #include "commands/session_saves.h"
 #include "session/session.h"
 
@@ -21,7 +21,8 @@ class SavedFiles {
   const session::Saved& latest() const { return latest_; }
   /// True if the latest file is written. Throws Error if it never will be.
   bool latest_written() const {
-    if (latest_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    if (!latest_.valid()) throw Error("", "nothing was written");
+    if (!is_ready(latest_)) return false;
     if (failed(latest_)) throw Error("", "nothing was written");
     return true;
   }
@@ -29,7 +30,7 @@ class SavedFiles {
   std::vector<std::string> take_written() {
     std::vector<std::string> written;
     std::erase_if(writing_, [&](const auto& file) {
-      if (file.second.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+      if (!is_ready(file.second)) return false;
       if (!failed(file.second)) written.push_back(file.first);
       return true;
     });

@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <set>
 #include <string_view>
 #include <tuple>
 
 #include "base/error.h"
 #include "base/file.h"
+#include "base/future.h"
 #include "base/log.h"
 #include "commands/session_saves.h"
 
@@ -79,7 +79,7 @@ session::Saved SceneFile::save(const std::string& file, bool replace, std::vecto
 
 void SceneFile::follow() {
   std::erase_if(writing_, [&](const Writing& w) {
-    if (w.saved.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+    if (!is_ready(w.saved)) return false;
     if (failed(w.saved)) return true;
     written_[w.file] = w.result->written;
     saved_at_ = w.position;

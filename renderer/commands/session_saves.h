@@ -1,13 +1,13 @@
 #pragma once
-#include <chrono>
 
+#include "base/future.h"
 #include "session/session.h"
 
 namespace lucerna::commands {
 
 /// True if the file has failed and will not be written.
 inline bool failed(const session::Saved& saved) {
-  if (!saved.valid() || saved.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return false;
+  if (!is_ready(saved)) return false;
   try {
     saved.get();
     return false;

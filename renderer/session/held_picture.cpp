@@ -3,15 +3,15 @@
 #include <algorithm>
 #include <cmath>
 
-#include "film/io/image_file.h"
+#include "film/io/planes.h"
 
 namespace lucerna::session {
 
 std::string methods_text(const ComponentMethods& methods) {
   constexpr std::array<const char*, paths::k_component_count> k_light = {"primary light", "secondary light",
                                                                          "tertiary light", "caustics"};
-  constexpr size_t k_primary = 0, k_caustic = 3;
-  constexpr std::array<size_t, 4> k_by_weight = {1, 2, k_caustic, k_primary};
+  constexpr std::array<size_t, paths::k_component_count> k_by_weight = {paths::k_secondary, paths::k_tertiary,
+                                                                        paths::k_caustic, paths::k_primary};
   const auto known = [&](size_t c) { return !methods[c].empty(); };
   if (std::none_of(k_by_weight.begin(), k_by_weight.end(), known)) return "";
   const auto main = std::find_if(k_by_weight.begin(), k_by_weight.end(),
@@ -19,7 +19,7 @@ std::string methods_text(const ComponentMethods& methods) {
   if (main == k_by_weight.end()) return "no light";
   std::string text = methods[*main];
   for (size_t c = 0; c < methods.size(); ++c) {
-    const bool usual = (c == k_primary || c == k_caustic) && methods[c] == "path";
+    const bool usual = (c == paths::k_primary || c == paths::k_caustic) && methods[c] == "path";
     if (!known(c) || methods[c] == methods[*main] || usual) continue;
     text += methods[c] == "off" ? ", without " + std::string(k_light[c])
                                 : ", " + methods[c] + " for " + k_light[c];
@@ -29,10 +29,7 @@ std::string methods_text(const ComponentMethods& methods) {
 
 HeldPicture read_held_picture(const std::string& file) {
   const film::FilmImage image = film::read_exr(file);
-  std::array<const std::vector<float>*, 3> planes{};
-  for (size_t k = 0; k < 3; ++k)
-    if (planes[k] = image.find(std::string(1, "RGB"[k])); !planes[k])
-      throw_error(file, "no channel '{}'; expected a picture with R, G and B", "RGB"[k]);
+  const film::RgbPlanes planes = film::rgb_planes(image, file, "a picture with R, G and B");
   HeldPicture held;
   held.width = image.width, held.height = image.height;
   held.light.resize(size_t{image.width} * image.height);

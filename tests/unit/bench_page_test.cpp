@@ -4,6 +4,7 @@
 #include <fstream>
 #include <regex>
 
+#include "base/base64.h"
 #include "bench/compare_reports.h"
 #include "bench/html.h"
 #include "bench/page.h"

@@ -1,24 +1,11 @@
 #include "film/io/picture_match.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "film/io/planes.h"
+
 namespace lucerna::film {
-namespace {
-
-using ColourPlanes = std::array<const std::vector<float>*, 3>;
-
-ColourPlanes planes_of(const FilmImage& image, const std::string& where) {
-  ColourPlanes planes{};
-  for (size_t k = 0; k < 3; ++k) {
-    planes[k] = image.find(std::string(1, "RGB"[k]));
-    if (!planes[k]) throw_error(where, "no channel '{}'; expected a colour picture", "RGB"[k]);
-  }
-  return planes;
-}
-
-}  // namespace
 
 FilmImage display_picture(uint32_t width, uint32_t height, const std::vector<uint8_t>& rgba) {
   FilmImage image{.width = width, .height = height};
@@ -35,7 +22,9 @@ PictureMatch match_pictures(const FilmImage& now, const FilmImage& reference, co
   if (now.width != reference.width || now.height != reference.height)
     throw_error(where, "is {}x{} pixels; the picture has {}x{}", reference.width, reference.height, now.width,
                 now.height);
-  const ColourPlanes a = planes_of(now, "the picture"), b = planes_of(reference, where);
+  constexpr const char* k_expected = "a colour picture";
+  const RgbPlanes a = rgb_planes(now, "the picture", k_expected),
+                  b = rgb_planes(reference, where, k_expected);
   PictureMatch match;
   size_t cells = 0, over = 0;
   for (uint32_t y0 = 0; y0 < now.height; y0 += options.cell)

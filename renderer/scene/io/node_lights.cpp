@@ -21,18 +21,33 @@ void set_frame(Light& light, const glm::dmat4& world) {
   if (can_roll(light)) light.right = right_across(light.direction, vec3(axis(world, 0)));
 }
 
+/// The list of lights of a file's extension, for a node that refers to it.
+Item lights_of(const Item& root, const char* extension, const Item& reference) {
+  const auto extensions = root.find("extensions");
+  const auto own = extensions ? extensions->find(extension) : std::nullopt;
+  const auto lights = own ? own->find("lights") : std::nullopt;
+  if (!lights) reference.fail("the file has no extensions.{}.lights", extension);
+  return *lights;
+}
+
+/// The intensity: `strength` times the colour of an item, white without.
+void set_intensity(Light& light, const Item& item, double strength, Document& document) {
+  const auto color = item.find("color");
+  const vec3 value = (color ? color->rgb() : vec3(1)) * static_cast<float>(strength);
+  light.intensity = glm::clamp(value, vec3(0), vec3(1e30f));
+  if (value != light.intensity)
+    document.warnings.add("{} lights with a negative or endless intensity: clamped", item.path());
+}
+
 }  // namespace
 
 // Each is read once.
 std::shared_ptr<const LightProfile> NodeLights::profile_of(const Item& reference) {
-  const auto extensions = root_.find("extensions");
-  const auto ies = extensions ? extensions->find("EXT_lights_ies") : std::nullopt;
-  const auto lights = ies ? ies->find("lights") : std::nullopt;
-  if (!lights) reference.fail("the file has no extensions.EXT_lights_ies.lights");
-  const auto number = reference.at("light").index(lights->size(), "lights");
+  const Item lights = lights_of(root_, "EXT_lights_ies", reference);
+  const auto number = reference.at("light").index(lights.size(), "lights");
   const auto [place, fresh] = profiles_.try_emplace(number);
   if (!fresh) return place->second;
-  const Item item = lights->at(number);
+  const Item item = lights.at(number);
   std::vector<uint8_t> bytes;
   std::string name = item.text("name", "");
   if (const auto uri = item.find("uri")) {
@@ -56,11 +71,8 @@ std::shared_ptr<const LightProfile> NodeLights::profile_of(const Item& reference
 }
 
 Light NodeLights::punctual(const Item& reference, const Place& place) {
-  const auto extensions = root_.find("extensions");
-  const auto punctual = extensions ? extensions->find("KHR_lights_punctual") : std::nullopt;
-  const auto lights = punctual ? punctual->find("lights") : std::nullopt;
-  if (!lights) reference.fail("the file has no extensions.KHR_lights_punctual.lights");
-  const Item item = lights->at(reference.at("light").index(lights->size(), "lights"));
+  const Item lights = lights_of(root_, "KHR_lights_punctual", reference);
+  const Item item = lights.at(reference.at("light").index(lights.size(), "lights"));
   Light light;
   light.name = item.text("name", place.name);
   if (light.name.empty()) light.name = place.name;
@@ -76,11 +88,7 @@ Light NodeLights::punctual(const Item& reference, const Place& place) {
   } else {
     item.at("type").fail("'{}', expected point, spot or directional", type);
   }
-  const auto color = item.find("color");
-  const vec3 value = (color ? color->rgb() : vec3(1)) * static_cast<float>(item.number("intensity", 1));
-  light.intensity = glm::clamp(value, vec3(0), vec3(1e30f));
-  if (value != light.intensity)
-    document_.warnings.add("{} lights with a negative or endless intensity: clamped", item.path());
+  set_intensity(light, item, item.number("intensity", 1), document_);
   set_frame(light, place.world);
   if (const auto spot = item.find("spot"); spot && light.kind == LightKind::spot) {
     const double outer = spot->number("outerConeAngle", glm::radians(45.0));
@@ -118,12 +126,7 @@ std::optional<Light> NodeLights::with_profile(const Item& reference, const Place
     document_.warnings.add("{} lamps whose distribution cannot be read: left out", error.what());
   }
   if (!light.profile) return std::nullopt;
-  const auto color = reference.find("color");
-  const double multiplier = reference.number("multiplier", 1) * light.profile->peak;
-  const vec3 value = (color ? color->rgb() : vec3(1)) * static_cast<float>(multiplier);
-  light.intensity = glm::clamp(value, vec3(0), vec3(1e30f));
-  if (value != light.intensity)
-    document_.warnings.add("{} lights with a negative or endless intensity: clamped", reference.path());
+  set_intensity(light, reference, reference.number("multiplier", 1) * light.profile->peak, document_);
   set_frame(light, place.world);
   read_own_extras(root_.at("nodes").at(place.node), light);
   return light;

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "base/base64.h"
 #include "scene/io/node_matrix.h"
 #include "scene/lamp.h"
 #include "scene/solar.h"
@@ -24,17 +25,6 @@ constexpr const char* k_ies = "EXT_lights_ies";
 
 bool has_profile(const Light& light) { return light.kind == LightKind::profile; }
 const char* extension_of(const Light& light) { return has_profile(light) ? k_ies : k_punctual; }
-
-std::string base64(const std::string& bytes) {
-  static constexpr char k_digits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  for (size_t i = 0; i < bytes.size(); i += 3) {
-    uint32_t three = 0;
-    for (size_t k = 0; k < 3; ++k) three = three << 8 | (i + k < bytes.size() ? uint8_t(bytes[i + k]) : 0u);
-    for (size_t k = 0; k < 4; ++k) text += i + k > bytes.size() ? '=' : k_digits[three >> (18 - 6 * k) & 63u];
-  }
-  return text;
-}
 
 /// The rotation of a node whose -Z axis has that direction (unit).
 dquat turned_to(const dvec3& direction) {
