@@ -16,7 +16,9 @@ struct FilterPush {
 
 /// Minimum surface colour by which light is divided before filtering.
 LUCERNA_CONST float k_filter_least_albedo = 0.04f;
-/// Maximum factor by which a half may exceed the maximum of the other half around it.
+/// Half side [pixels] of the window in which the other half confirms a bright pixel, and the maximum factor by which a half may
+/// exceed the maximum of the other there.
+LUCERNA_CONST int k_filter_near = 2;
 LUCERNA_CONST float k_filter_confirmed = 1.5f;
 /// Differences of light, in standard deviations, that count as 1.
 LUCERNA_CONST float k_filter_strength = 0.8f;
@@ -41,10 +43,18 @@ LUCERNA_CONST int k_filter_judged_reach = 6;
 LUCERNA_CONST float k_filter_judged_falloff = 0.025f;
 /// Inverse of the maximum evidence of a pixel.
 LUCERNA_CONST float k_filter_judged_most = 4.0f;
-/// Minimum probability at which both halves being bright in a pixel counts as chance, and the standard deviations above the
-/// mean around it that the pixel then keeps.
+/// Minimum probability at which both halves being bright in a pixel, or near it, counts as chance, and the standard deviations
+/// above the mean of less bright pixels around it that the pixel then keeps.
 LUCERNA_CONST float k_filter_chance = 0.1f;
 LUCERNA_CONST float k_filter_usual = 4.0f;
+/// Part of a pixel's brightness from which others count as bright there, and the number of pixels around that are bright in one
+/// half only at which a single one that is bright in both counts as chance.
+LUCERNA_CONST float k_filter_alike_bright = 0.5f;
+LUCERNA_CONST float k_filter_lone = 1.0f;
+/// Maximum number of pixels around that are expected to be bright in one half and near such a one of the other by chance, at which
+/// a pixel is limited by the less bright ones; where there are more, their mean is smooth. Likewise, of caustics.
+LUCERNA_CONST float k_filter_rare = 8.0f;
+LUCERNA_CONST float k_filter_rare_caustic = 0.5f;
 /// Maximum relative difference, due to rounding, of a chosen value that equals the samples.
 LUCERNA_CONST float k_filter_same = 0.004f;
 /// Light, over the colour of the surface and in the filter's scale, above which samples stay unfiltered.
@@ -52,7 +62,7 @@ LUCERNA_CONST float k_filter_largest = 50000.0f;
 /// Side of the blocks [pixels] in which the light that taming removes is summed, and the maximum factor on light by what is
 /// restored of it.
 LUCERNA_CONST uint k_filter_block = 16u;
-LUCERNA_CONST float k_filter_most_restored = 2.0f;
+LUCERNA_CONST float k_filter_most_restored = 1.0f;
 
 LUCERNA_SHARED_END
 #endif

@@ -162,6 +162,32 @@ TEST_CASE("the filter removes an outlier, and keeps light that both halves have"
     }
 }
 
+TEST_CASE("the filter removes rare bright samples that lie near each other in both halves by chance") {
+  // One sample of 800 is 600 times as bright as the others: one pixel of 50, and pixels of both halves within
+  // two pixels of each other at many places. A bright square of 3x3 pixels is light.
+  test::Stage stage(128, 96);
+  stage.component = 2;
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> u(0, 1);
+  const auto in_square = [](uint32_t x, uint32_t y) { return x >= 60 && x < 63 && y >= 40 && y < 43; };
+  stage.sample(stage.film, 16, [&](uint32_t x, uint32_t y) {
+    const float light = in_square(x, y) ? 40.0f : 1.0f;
+    return Sample{vec3(light * (0.5f + u(random)) + (u(random) < 1.0f / 800 ? 600.0f : 0.0f))};
+  });
+  const Filtered f = filter(stage);
+  const std::vector<double> red = Filtered::red(f.filtered);
+  size_t bright = 0;
+  for (uint32_t y = 0; y < 96; ++y)
+    for (uint32_t x = 0; x < 128; ++x) {
+      const bool near = x >= 52 && x < 71 && y >= 32 && y < 51;
+      bright += !near && red[y * 128 + x] > 4;
+    }
+  CHECK(bright == 0);
+  CHECK(red[41 * 128 + 61] > 30);
+  // Their light remains, spread: 1 and 600 / 800.
+  CHECK(mean(f.filtered) == Approx(mean(f.samples)).epsilon(0.1));
+}
+
 TEST_CASE("the filter removes noise from pixels that show two surfaces, unlike all around them") {
   // The edge of a near surface before a far one, oblique, so that pixels show different shares of both.
   test::Stage stage(64, 64);

@@ -11,6 +11,7 @@ using shared::FilterPush;
 Filter::Filter(gpu::Device& device, gpu::ShaderCompiler& compiler)
     : device_(device),
       pack_(device, compiler, "film/filter/pack.comp"),
+      spread_(device, compiler, "film/filter/spread.comp"),
       tame_(device, compiler, "film/filter/tame.comp"),
       outliers_(device, compiler, "film/filter/outliers.comp"),
       noise_(device, compiler, "film/filter/noise.comp"),
@@ -111,7 +112,8 @@ void Filter::plan_component(uint32_t component, Film& filtered) {
     });
   };
   run(pack_, {{"FilterLights", &lights_}}, pixels);
-  run(tame_, {{"filter_lights", &lights_}, {"FilterTamed", &tamed_}}, pixels);
+  run(spread_, {{"filter_lights", &lights_}, {"FilterSpread", &judged_}}, pixels);
+  run(tame_, {{"filter_lights", &lights_}, {"filter_spread", &judged_}, {"FilterTamed", &tamed_}}, pixels);
   run(outliers_, {{"filter_lights", &lights_}, {"filter_tamed", &tamed_}}, uint32_t(taken_.bytes() / 16));
   // Later comparisons use the samples without their outliers.
   run(noise_, {{"filter_noisy", &tamed_}, {"FilterMeasured", &lights_}}, pixels);
