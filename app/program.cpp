@@ -214,6 +214,11 @@ void Program::add_render() {
       ->check(finite() & CLI::NonNegativeNumber);
   render_->add_option("--record-region", r.record_region, "X Y WIDTH HEIGHT: record only these pixels")
       ->expected(4);
+  render_
+      ->add_option("--region", r.region,
+                   "X Y WIDTH HEIGHT: render only these pixels; an EXR stores them as its data window within "
+                   "the picture, a PNG has black around them")
+      ->expected(4);
   render_->add_option("--set", r.set, "KEY=VALUE; see below")->allow_extra_args(false);
   render_->add_option("--device", r.device, k_device_help);
   render_->add_option("--ledger", r.ledger, "write time, rays and error during the render as CSV")

@@ -29,7 +29,7 @@ void print_progress(const session::Renderer& r, double seconds, double limit, bo
   double done = std::max(double(r.samples()), paths) / r.max_samples();
   if (const schedule::AdaptiveSchedule* s = r.adaptive())
     done = double(s->count(schedule::TileState::done) + s->count(schedule::TileState::capped)) /
-           double(s->tiles().size());
+           double(s->sampled_tiles());
   // The nearer limit.
   if (limit > 0) done = std::max(done, std::min(1.0, seconds / limit));
   const double left = done > 0 ? seconds * (1 - done) / done : 0;
@@ -93,9 +93,24 @@ void check_outputs(const RenderArguments& a, const std::map<std::string, std::st
     throw_error("--time", "'{}': expected a positive number of seconds", *a.seconds);
 }
 
+/// The part of a rectangle "X Y WIDTH HEIGHT" that is in the picture. Throws Error located at `option` if
+/// none is.
+schedule::Rectangle pixels_of(const std::vector<uint32_t>& rectangle, const char* option, uint32_t width,
+                              uint32_t height) {
+  const auto end = [](uint32_t from, uint32_t size, uint32_t most) {
+    return uint32_t(std::min<uint64_t>(uint64_t{from} + size, most));
+  };
+  const uint32_t left = rectangle[0], top = rectangle[1];
+  const schedule::Rectangle r{left, top, end(left, rectangle[2], width), end(top, rectangle[3], height)};
+  if (r.left >= r.right || r.top >= r.bottom)
+    throw_error(option, "no pixel of the picture of {}x{} is in this region", width, height);
+  return r;
+}
+
 /// The command line's settings, which override the scene's. Throws Error for an invalid setting, before the
 /// scene is loaded.
-std::vector<session::SettingChange> setting_changes(const RenderArguments& a) {
+std::vector<session::SettingChange> setting_changes(const RenderArguments& a, uint32_t width,
+                                                    uint32_t height) {
   std::vector<session::SettingChange> changes;
   const auto change = [&](std::string key, std::string value, const char* where = "--set") {
     changes.push_back({std::move(key), std::move(value), where});
@@ -116,8 +131,17 @@ std::vector<session::SettingChange> setting_changes(const RenderArguments& a) {
     change("sampling.target_error", fmt::format("{}", *a.error));
   }
   if (a.seed != -1) change("seed", std::to_string(a.seed));
+  if (!a.region.empty()) {
+    const schedule::Rectangle p = pixels_of(a.region, "--region", width, height);
+    const double w = width, h = height;
+    const schedule::Region region{p.left / w, p.top / h, (p.right - p.left) / w, (p.bottom - p.top) / h};
+    change("sampling.region", schedule::region_text(region), "--region");
+  }
   plan::Settings probe;
-  for (const session::SettingChange& c : changes) probe.set(c.key, c.value, c.where);
+  for (const session::SettingChange& c : changes) {
+    probe.set(c.key, c.value, c.where);
+    if (c.key == "sampling.region") schedule::parse_region(c.value, c.where + ": " + c.key);
+  }
   return changes;
 }
 
@@ -377,17 +401,19 @@ void record_paths(session::Renderer& r, const RenderArguments& a, const Interrup
   constexpr size_t k_part = 1 << 16;
   const Timer timer;
   const uint32_t width = r.film().width(), height = r.film().height();
-  session::PathSelection selection{.right = width, .bottom = height, .samples = r.samples()};
+  const schedule::Rectangle sampled = r.region().value_or(schedule::Rectangle{0, 0, width, height});
+  session::PathSelection selection{.left = sampled.left,
+                                   .top = sampled.top,
+                                   .right = sampled.right,
+                                   .bottom = sampled.bottom,
+                                   .samples = r.samples()};
   if (a.record_region.size() == 4) {
-    const auto sum = [](uint32_t from, uint32_t size) {
-      return uint32_t(std::min<uint64_t>(uint64_t{from} + size, 1u << 31));
-    };
-    selection.left = a.record_region[0], selection.top = a.record_region[1];
-    selection.right = sum(selection.left, a.record_region[2]),
-    selection.bottom = sum(selection.top, a.record_region[3]);
-    if (selection.left >= width || selection.top >= height || selection.left == selection.right ||
-        selection.top == selection.bottom)
-      throw_error("--record-region", "no pixel of the picture of {}x{} is in this region", width, height);
+    const schedule::Rectangle wanted = pixels_of(a.record_region, "--record-region", width, height);
+    selection.left = std::max(wanted.left, sampled.left), selection.top = std::max(wanted.top, sampled.top);
+    selection.right = std::min(wanted.right, sampled.right),
+    selection.bottom = std::min(wanted.bottom, sampled.bottom);
+    if (selection.left >= selection.right || selection.top >= selection.bottom)
+      throw Error("--record-region", "none of these pixels has samples: the region of --region is elsewhere");
   }
   selection.every = uint32_t(a.record_every);
   session::PathChoices choices(selection, width, height);
@@ -420,7 +446,7 @@ int render(const RenderArguments& a) {
   for (const auto& [name, file] : a.solver_save)
     if (!file.empty()) to_save[name] = file;
   check_outputs(a, to_save);
-  const std::vector<session::SettingChange> changes = setting_changes(a);
+  const std::vector<session::SettingChange> changes = setting_changes(a, width, height);
   session::Renderer r(
       {.device = a.device, .validation = false, .shaders = {}, .defines = {}, .scenes = a.scenes});
   r.set_size(width, height);
@@ -428,6 +454,8 @@ int render(const RenderArguments& a) {
   const Interrupt interrupt;
   const bool terminal = !a.quiet && isatty(2);
   if (!load(r, a, changes, interrupt, terminal)) return interrupt.status();
+  if (a.filter && r.region())
+    throw Error("--filter", "a region is not filtered: its edges need the pixels around it");
   if (a.filter && !r.film().fits_storage_buffers())
     throw_error("--filter", "{}x{} exceeds the size that this device can filter", width, height);
   for (const auto& [name, file] : to_save)

@@ -34,6 +34,7 @@ struct RenderArguments {
   uint64_t record_every = 100;          ///< every n-th path is recorded
   double record_over = 0;               ///< only paths with more light, in luminance
   std::vector<uint32_t> record_region;  ///< X Y WIDTH HEIGHT, pixels; empty: the picture
+  std::vector<uint32_t> region;         ///< likewise: pixels that get samples
   scene::LoadOptions scenes;            ///< limits for files and memory of scenes; likewise below
 };
 int render(const RenderArguments& arguments);

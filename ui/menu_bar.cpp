@@ -150,7 +150,6 @@ void file_menu(Ui& ui) {
     ui.act("dialog.save");
   if (entry("Screenshot", "F12", "Saves the window with its panels as a PNG in the working folder."))
     ui.act("screenshot");
-  divide();
   const session::Accuracy* accuracy = ui.open.snapshot ? ui.open.snapshot->accuracy.get() : nullptr;
   const bool reference = accuracy && !accuracy->reference.empty();
   if (entry("Load reference\xE2\x80\xA6", nullptr,
@@ -367,6 +366,15 @@ void render_menu(Ui& ui) {
   if (entry("Restart", "R", "Discards all samples and restarts the picture.", false,
             ui.open.snapshot != nullptr))
     ui.act("render.restart");
+  if (entry("Region", "Ctrl+R",
+            "The next drag in the picture chooses a rectangle that gets all samples; the rest keeps those it "
+            "has.",
+            ui.region.picks, ui.open.scene != nullptr))
+    ui.act("region.pick", !ui.region.picks);
+  const bool region = !ui.open.setting("sampling.region").empty();
+  if (entry("Clear region", nullptr,
+            region ? "Gives samples to the whole picture again." : "There is no region.", false, region))
+    ui.act("region.clear");
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const solvers::CommandInfo& command : solver->commands)
       if (entry(fmt::format("{}: {}", solver->label, uncapitalised(command.label)).c_str(),

@@ -179,4 +179,10 @@ void Ui::fail(const std::string& message) {
   wake();
 }
 
+void Ui::take_click() {
+  dropper = scene_view.focusing = region.picks = false;
+  paths.pick = PathsView::Pick::none;
+  paths.marquee.reset(), region.marquee.reset();
+}
+
 }  // namespace lucerna::ui

@@ -17,6 +17,7 @@
 #include "layout.h"
 #include "log_view.h"
 #include "paths_panel.h"
+#include "region_view.h"
 #include "requests.h"
 #include "scene_view.h"
 #include "solvers/info.h"
@@ -90,9 +91,14 @@ struct Ui {
   } drag;
   /// True: the next click in the picture sets the exposure.
   bool dropper = false;
-  /// ... does not select: it sets the exposure or the plane of focus, or traces paths.
-  bool click_taken() const { return dropper || scene_view.focusing || paths.pick != PathsView::Pick::none; }
+  /// ... does not select: it sets the exposure or the plane of focus, traces paths, or begins a rectangle.
+  bool click_taken() const {
+    return dropper || scene_view.focusing || paths.pick != PathsView::Pick::none || region.picks;
+  }
+  /// Ends what the next click was to do.
+  void take_click();
   PathsView paths;
+  RegionView region;
   CompareState compare{open};
 
   HeldPixel held_pixel;

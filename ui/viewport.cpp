@@ -298,6 +298,7 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
 /// exposure, and while focusing the plane of focus.
 void click(Ui& ui, const Area& shown) {
   const ImVec2 at = ImGui::GetIO().MousePos;
+  if (closes_region(ui.open, shown, at)) return ui.act("region.clear");
   if (!ui.click_taken())
     if (const auto lamp = lamp_handle_at(ui.marked(), shown, at))
       return ui.act("select", lamp->part == LampHandle::Part::surface ? "material" : "light",
@@ -314,7 +315,7 @@ void click(Ui& ui, const Area& shown) {
   } else if (ui.paths.pick == PathsView::Pick::pixel) {
     ui.act("paths.pick", "none");
     trace_pixel(ui, {x, y});
-  } else if (ui.paths.pick == PathsView::Pick::none) {
+  } else if (!ui.click_taken()) {
     ui.act("pick", x, y);
   }
 }
@@ -468,6 +469,7 @@ void draw_picture(Ui& ui, const Area& area) {
       hot = lamp_handle_at(ui.marked(), frame, ImGui::GetIO().MousePos);
     draw_lamp_handles(ui.marked(), frame, hot);
     if (ui.brackets) draw_brackets(ui, frame);
+    draw_region(ui.open, frame);
   }
   if (!shown) draw_empty_state(ui.actions, ui.open, ui.recent, area);
   Area legend;
@@ -501,7 +503,8 @@ void draw_picture(Ui& ui, const Area& area) {
       click(ui, frame);
   }
   if (shown && ui.side == k_paths_side) draw_paths_marks(ui.work, frame);
-  if (shown && drag_noise_area(ui.actions, ui.paths, frame, active)) {
+  if (shown && (drag_noise_area(ui.actions, ui.paths, frame, active) ||
+                drag_region(ui.actions, ui.region, frame, active))) {
     ui.wake(2);
     ImGui::End();
     return;

@@ -64,6 +64,11 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
   list.push_back(choice_option("sampling.tile", "16", {"8", "16"}, "pixels",
                                "Side of the tiles of adaptive and of coherent sampling.",
                                "Tile of sampling"));
+  list.push_back(without_restart(text_option(
+      "sampling.region",
+      "LEFT,TOP,WIDTH,HEIGHT, in fractions of the picture: only this rectangle gets samples, in whole blocks "
+      "of 8x8 pixels (adaptive: tiles); the rest keeps those it has. Empty: the whole picture. In the window "
+      "every pixel first gets two samples.")));
   list.push_back(boolean_option(
       "sampling.coherent", "false",
       "The pixels of a tile share their random sequence: neighbouring paths stay coherent, which some "

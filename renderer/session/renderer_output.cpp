@@ -165,8 +165,13 @@ film::Brightness Renderer::measure(std::optional<vec2> at) const {
     throw Error("", "there is no picture to measure yet");
   // Layers that are no light have no exposure; the picture is measured then.
   const std::vector<vec3> sum = sum_of(image, shown_components(view()));
-  return at ? film::measure_point(sum, image.width, image.height, *at)
-            : film::measure_picture(sum, image.width, image.height);
+  if (at) return film::measure_point(sum, image.width, image.height, *at);
+  const auto part = options_.interactive ? std::nullopt : region();
+  if (!part) return film::measure_picture(sum, image.width, image.height);
+  std::vector<vec3> inside;
+  for (uint32_t i = 0; i < sum.size(); ++i)
+    if (part->contains(i % image.width, i / image.width)) inside.push_back(sum[i]);
+  return film::measure_picture(inside, part->right - part->left, part->bottom - part->top);
 }
 
 HeldPicture Renderer::held_picture() {
@@ -259,6 +264,9 @@ film::FilmImage Renderer::film_image() {
   film::FilmImage out;
   out.width = image.width;
   out.height = image.height;
+  // In the window the rest has samples too.
+  if (const auto part = options_.interactive ? std::nullopt : region())
+    out.window = {part->left, part->top, part->right, part->bottom};
   const size_t n = image.samples.size();
   std::vector<vec3> sum(n, vec3(0));
   for (const auto& component : image.components)

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -107,6 +108,44 @@ TEST_CASE("outputs are written into pipes, through links and to standard output,
   CHECK(fs::is_fifo(f / "pipe.exr"));
   CHECK(fs::is_symlink(f / "link.png"));
   CHECK(fs::is_character_file("/dev/null"));
+}
+
+TEST_CASE("--region renders these pixels only; an EXR stores them as its data window") {
+  const test::Folder f;
+  const std::string at = f.path.string() + "/";
+  REQUIRE(render("-o " + at + "all.exr").status == 0);
+  const Run r = render("--region 5 3 6 40 -o " + at + "part.exr -o " + at + "part.png --record-paths " + at +
+                       "part.lpath --record-every 1");
+  INFO(r.out);
+  REQUIRE(r.status == 0);
+  const film::FilmImage all = film::read_exr(f / "all.exr"), part = film::read_exr(f / "part.exr");
+  REQUIRE(part.width == 16);
+  REQUIRE(part.height == 16);
+  for (const char* channel : {"R", "primary.G", "Z", "samples"})
+    for (uint32_t i = 0; i < 256; ++i) {
+      const uint32_t x = i % 16, y = i / 16;
+      const bool inside = x >= 5 && x < 11 && y >= 3;
+      REQUIRE((*part.find(channel))[i] == (inside ? (*all.find(channel))[i] : 0));
+    }
+  CHECK(film::read_exr(f / "part.png").width == 16);
+  CHECK(fs::file_size(f / "part.exr") < fs::file_size(f / "all.exr"));
+  for (const auto& [arguments, problem] : std::map<std::string, std::string>{
+           {"--region 16 0 4 4", "--region: no pixel of the picture of 16x16 is in this region"},
+           {"--region 0 0 0 4", "--region: no pixel"},
+           {"--region 0 0 4", "--region"},
+           {"--region 0 0 -4 4", "--region"},
+           {"--region 0 0 4 4 --filter", "--filter: a region is not filtered"},
+           {"--set sampling.region=half",
+            "--set: sampling.region: 'half': expected LEFT,TOP,WIDTH,HEIGHT"}}) {
+    const Run bad = render(arguments + " -o " + at + "bad.exr");
+    INFO(arguments << ": " << bad.out);
+    CHECK(bad.status == 1);
+    CHECK_THAT(bad.out, Contains(problem));
+    CHECK_FALSE(fs::exists(f / "bad.exr"));
+  }
+  const Run elsewhere = render("--region 0 0 8 8 --record-region 8 8 8 8 --record-paths " + at + "b.lpath");
+  CHECK(elsewhere.status == 1);
+  CHECK_THAT(elsewhere.out, Contains("--record-region: none of these pixels has samples"));
 }
 
 }  // namespace outputs_tests
