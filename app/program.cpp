@@ -219,6 +219,12 @@ void Program::add_render() {
                    "X Y WIDTH HEIGHT: render only these pixels; an EXR stores them as its data window within "
                    "the picture, a PNG has black around them")
       ->expected(4);
+  render_
+      ->add_option(
+          "--tev", r.tev,
+          "HOST:PORT: send all layers to a running tev, or a viewer with its protocol, during the render "
+          "[127.0.0.1:14158]; the render goes on without one")
+      ->expected(0, 1);
   render_->add_option("--set", r.set, "KEY=VALUE; see below")->allow_extra_args(false);
   render_->add_option("--device", r.device, k_device_help);
   render_->add_option("--ledger", r.ledger, "write time, rays and error during the render as CSV")

@@ -20,6 +20,7 @@
 #include "recording/file.h"
 #include "session/pick.h"
 #include "session/renderer.h"
+#include "session/tev_link.h"
 
 namespace lucerna::app {
 namespace {
@@ -42,7 +43,7 @@ void print_progress(const session::Renderer& r, double seconds, double limit, bo
 
 /// True if any output besides solvers' work is requested.
 bool makes_picture(const RenderArguments& a) {
-  return !a.outputs.empty() || !a.stats.empty() || !a.ledger.empty() || !a.record_paths.empty();
+  return !a.outputs.empty() || !a.stats.empty() || !a.ledger.empty() || !a.record_paths.empty() || a.tev;
 }
 
 /// Throws Error if two outputs are the same file, of which the first would be lost.
@@ -305,9 +306,10 @@ class FilteredGoal {
   uint32_t next_ = 16;
 };
 
-/// Runs until picture and work are finished, the time is over, or an interrupt. Returns its seconds.
+/// Runs until picture and work are finished, the time is over, or an interrupt. Returns its seconds. `tev`: a
+/// viewer that gets the picture meanwhile, or null.
 double run(session::Renderer& r, const RenderArguments& a, const std::vector<session::SettingChange>& changes,
-           Outputs& outputs, const Interrupt& interrupt, bool terminal) {
+           Outputs& outputs, const Interrupt& interrupt, bool terminal, session::TevLink* tev) {
   const double limit = a.seconds.value_or(0);  // 0: none
   const Timer timer;
   Timer since_line;
@@ -327,6 +329,7 @@ double run(session::Renderer& r, const RenderArguments& a, const std::vector<ses
     }
     if (!r.step()) break;
     outputs.save_ready(r);
+    if (tev && !tev->follow(r)) tev = nullptr;
     if (!covered && r.samples() > 0) log::info("every pixel has a sample after {:.2f} s", timer.seconds());
     // Tiles stop by the error as seen, which depends on the exposure.
     if (!covered && r.samples() > 0 && r.adaptive()) find_exposure(r, changes);
@@ -447,6 +450,9 @@ int render(const RenderArguments& a) {
     if (!file.empty()) to_save[name] = file;
   check_outputs(a, to_save);
   const std::vector<session::SettingChange> changes = setting_changes(a, width, height);
+  std::optional<film::TevAddress> viewer;
+  if (a.tev) viewer = film::parse_tev_address(*a.tev, "--tev");
+  std::optional<session::TevLink> tev;
   session::Renderer r(
       {.device = a.device, .validation = false, .shaders = {}, .defines = {}, .scenes = a.scenes});
   r.set_size(width, height);
@@ -463,7 +469,8 @@ int render(const RenderArguments& a) {
       throw_error(fmt::format("--{}-save", name),
                   "no component is computed by '{}'; add --set components.secondary={}", name, name);
   Outputs outputs(to_save);
-  const double wall = run(r, a, changes, outputs, interrupt, terminal);
+  if (viewer) tev.emplace(*viewer, r.scene()->name);
+  const double wall = run(r, a, changes, outputs, interrupt, terminal, tev ? &*tev : nullptr);
   const bool interrupted = interrupt.signal() != 0;
   if (interrupted)
     std::fprintf(stderr, "lucerna: interrupted after %u samples; writing the present picture\n", r.samples());
@@ -473,6 +480,7 @@ int render(const RenderArguments& a) {
   if (makes_picture(a)) outputs.attempt([&] { find_exposure(r, changes); });
   if (a.filter && makes_picture(a)) outputs.attempt([&] { filter(r, a.error); });
   for (const std::string& file : a.outputs) outputs.attempt([&] { r.save(file); });
+  if (tev) outputs.attempt([&] { tev->finish(r); });
   if (!a.ledger.empty()) outputs.attempt([&] { write_file(a.ledger, r.ledger().csv()); });
   if (!a.stats.empty())
     outputs.attempt([&] {

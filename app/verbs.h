@@ -29,6 +29,7 @@ struct RenderArguments {
   std::vector<double> shift;     ///< right, up; empty: the scene's
   std::vector<std::string> set;  ///< key=value
   bool quiet = false;
+  std::optional<std::string> tev;       ///< HOST:PORT of a viewer that gets the layers; "": the default one
   bool filter = false;                  ///< files contain the filtered picture too
   std::string record_paths;             ///< file for recorded paths; "": none
   uint64_t record_every = 100;          ///< every n-th path is recorded

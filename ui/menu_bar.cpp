@@ -150,6 +150,14 @@ void file_menu(Ui& ui) {
     ui.act("dialog.save");
   if (entry("Screenshot", "F12", "Saves the window with its panels as a PNG in the working folder."))
     ui.act("screenshot");
+  const std::string viewer = ui.open.snapshot ? ui.open.snapshot->tev : "";
+  if (entry("Send to tev", nullptr,
+            viewer.empty()
+                ? "Sends all layers to a running tev (127.0.0.1:14158) while the picture is rendered."
+                : ("Sends all layers to " + viewer + "; select it again to end this.").c_str(),
+            !viewer.empty(), picture))
+    ui.act(viewer.empty() ? "tev.send" : "tev.stop");
+  divide();
   const session::Accuracy* accuracy = ui.open.snapshot ? ui.open.snapshot->accuracy.get() : nullptr;
   const bool reference = accuracy && !accuracy->reference.empty();
   if (entry("Load reference\xE2\x80\xA6", nullptr,

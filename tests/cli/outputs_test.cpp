@@ -12,6 +12,7 @@
 #include "film/io/image_file.h"
 #include "support/folder.h"
 #include "support/run.h"
+#include "support/tev_receiver.h"
 
 namespace outputs_tests {
 
@@ -146,6 +147,32 @@ TEST_CASE("--region renders these pixels only; an EXR stores them as its data wi
   const Run elsewhere = render("--region 0 0 8 8 --record-region 8 8 8 8 --record-paths " + at + "b.lpath");
   CHECK(elsewhere.status == 1);
   CHECK_THAT(elsewhere.out, Contains("--record-region: none of these pixels has samples"));
+}
+
+TEST_CASE("--tev sends the layers; a missing viewer is one warning, and the files are written") {
+  const test::Folder f;
+  const std::string at = f.path.string() + "/";
+  test::TevReceiver viewer;
+  const Run r = render("--tev " + viewer.address() + " -o " + at + "a.exr");
+  INFO(r.out);
+  REQUIRE(r.status == 0);
+  const film::FilmImage written = film::read_exr(f / "a.exr");
+  for (int i = 0;
+       i < 1000 && viewer.images()["Lucerna: cornell"].values["samples"] != *written.find("samples"); ++i)
+    usleep(10000);
+  auto seen = viewer.images()["Lucerna: cornell"];
+  CHECK(seen.channels.size() == written.channels.size());
+  CHECK(seen.values["caustic.B"] == *written.find("caustic.B"));
+  CHECK(viewer.problem().empty());
+  const Run alone = render("--tev 127.0.0.1:1 -o " + at + "b.exr");
+  CHECK(alone.status == 0);
+  CHECK_THAT(alone.out, Contains("127.0.0.1:1: no connection to a viewer"));
+  CHECK(film::read_exr(f / "b.exr").width == 16);
+  const Run bad = render("--tev nowhere:x -o " + at + "c.exr");
+  CHECK(bad.status == 1);
+  CHECK_THAT(bad.out, Contains("--tev: 'nowhere:x': expected HOST:PORT"));
+  // Without a file, the viewer is the output.
+  CHECK(render("--tev " + viewer.address()).status == 0);
 }
 
 }  // namespace outputs_tests
