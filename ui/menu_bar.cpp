@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
+#include "base/error.h"
 #include "chart.h"
+#include "film/io/ocio.h"
 #include "plan/views.h"
 #include "shown_text.h"
 #include "solvers/registry.h"
@@ -89,6 +92,35 @@ const char* key_name(char shortcut) {
   static char name[2];
   name[0] = shortcut, name[1] = 0;
   return shortcut ? name : nullptr;
+}
+
+/// The displays and views of $OCIO, with the tone curve; nothing if it is not set.
+void ocio_menu(Ui& ui) {
+  static const bool has_ocio = [] {
+    const char* file = std::getenv("OCIO");
+    return file && *file;
+  }();
+  if (!has_ocio ||
+      !begin_submenu("OCIO display", "Displays and views of the configuration that $OCIO names."))
+    return;
+  const std::string& chosen = ui.open.setting("film.ocio");
+  if (entry("Tone curve", nullptr, "The picture by its tone curve, without OCIO.", chosen.empty()))
+    ui.act("view.ocio", "off");
+  try {
+    const auto config = film::ocio_config();
+    for (const film::OcioDisplay& display : config->displays()) {
+      divide();
+      for (const std::string& view : display.views) {
+        const std::string text = film::ocio_text(display.name, view);
+        const bool on = chosen == text || (chosen == display.name && view == display.views.front());
+        if (entry(elided(text, px(240)).c_str(), nullptr, config->file().c_str(), on))
+          ui.act("view.ocio", display.name, view);
+      }
+    }
+  } catch (const Error& e) {
+    entry("No configuration", nullptr, e.what(), false, false);
+  }
+  end_submenu();
 }
 
 /// Loading and saving the work of solvers that can store it in files.
@@ -309,6 +341,7 @@ void view_menu(Ui& ui) {
     }
     ImGui::PopID();
   }
+  ocio_menu(ui);
   if (entry("Clear earlier renders", nullptr, "Removes the lines of earlier renders from the Accuracy plot.",
             false, !ui.accuracy.runs.earlier().empty()))
     ui.act("accuracy.clear_runs");

@@ -60,13 +60,22 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
                          const std::vector<SettingChange>& changes) {
   // A scene starts with the defaults and its settings; only those of the machine stay.
   plan::Settings settings;
-  for (const char* key : {"tracer", "path.batch", "path.classes"})
+  for (const char* key : {"tracer", "path.batch", "path.classes", "film.ocio"})
     settings.set(key, setup_.settings.text(key));
   for (const auto& [key, value] : scene->settings) settings.set(key, value, "settings.json");
   for (const auto& [key, value] : scene->own_settings)
     settings.set(key, value, scene->file + ": extras.lucerna.settings");
   for (const SettingChange& change : changes) settings.set(change.key, change.value, change.where);
   check_region(settings);
+  std::shared_ptr<const OcioTable> ocio;
+  try {
+    ocio = ocio_table(settings);
+  } catch (const Error& e) {
+    for (const SettingChange& change : changes)
+      if (change.key == "film.ocio") throw;
+    log::warning("{}; the picture is shown by its tone curve", e.what());
+    settings.set("film.ocio", "");
+  }
   const auto loaded = scene;
   Transaction::Target target(setup_);
   target.camera = scene::starting_camera(*scene, settings.text("camera"));
@@ -74,6 +83,7 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
   target.settings = std::move(settings);
   install(std::move(target), progress, scene::Change::shape);
   loaded_ = loaded;
+  ocio_ = std::move(ocio);
   overlays_.show_paths({});
 }
 
@@ -344,6 +354,7 @@ void Renderer::apply_settings() {
     return;
   }
   check_region(target.settings);
+  std::shared_ptr<const OcioTable> ocio = changed("film.ocio") ? ocio_table(target.settings) : ocio_;
   bool again = false, retarget = false;
   for (const std::string& key : changes.settings) {
     // The current schedule can apply these.
@@ -365,9 +376,11 @@ void Renderer::apply_settings() {
       std::any_of(std::begin(plan::k_traced_scene_settings), std::end(plan::k_traced_scene_settings),
                   changed)) {
     install(std::move(target), {}, changes);
+    ocio_ = std::move(ocio);
     return;
   }
   again |= apply_plan(std::move(target), changes);
+  ocio_ = std::move(ocio);
   notify_settings_changed();
   setup_.kept.note(changes.edits);
   if (changed("samples") && !again)

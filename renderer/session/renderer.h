@@ -348,6 +348,13 @@ class Renderer {
   void mark_tiles(const film::View& view);
   bool previewed(const film::View& view) const;  ///< true if the window shows a preview in that view
   film::HeatScale heat_scale(uint32_t layer) const;
+  /// The display and view of film.ocio as a table on the device.
+  struct OcioTable {
+    std::string of;  ///< file, display and view
+    gpu::Buffer nodes;
+  };
+  /// The table for these settings: null without film.ocio, the present one if it fits. Throws Error, located.
+  std::shared_ptr<const OcioTable> ocio_table(const plan::Settings& settings) const;
   /// Another exposure or tone curve changes errors as seen, by which tiles have stopped.
   bool judged_otherwise() const { return adaptive() && seen_ != setup_.seen_range(); }
   /// True if the picture's light is unchanged, whatever its computation and camera.
@@ -413,7 +420,8 @@ class Renderer {
   static constexpr uint32_t k_around_region = 2;
   bool region_waits_ = false;  ///< its schedule starts when every pixel has these samples
   ImageProgress progress_{setup_, sampling_};
-  film::SeenRange seen_;  ///< seen_range() of the errors in the adaptive schedule
+  std::shared_ptr<const OcioTable> ocio_;  ///< null: the tone curve
+  film::SeenRange seen_;                   ///< seen_range() of the errors in the adaptive schedule
   uint64_t restarts_ = 0;
   uint64_t errors_restart_ = ~0ull;             ///< image whose lookup errors are being estimated ...
   const solvers::Solver* errors_of_ = nullptr;  ///< ... and their solver

@@ -11,6 +11,7 @@
 
 #include "film/io/image_file.h"
 #include "support/folder.h"
+#include "support/ocio.h"
 #include "support/run.h"
 #include "support/tev_receiver.h"
 
@@ -173,6 +174,28 @@ TEST_CASE("--tev sends the layers; a missing viewer is one warning, and the file
   CHECK_THAT(bad.out, Contains("--tev: 'nowhere:x': expected HOST:PORT"));
   // Without a file, the viewer is the output.
   CHECK(render("--tev " + viewer.address()).status == 0);
+}
+
+TEST_CASE("film.ocio needs a configuration, and shows PNG files by it") {
+  const test::Folder f;
+  const std::string at = f.path.string() + "/";
+  const std::string ocio = "OCIO=" + test::write_ocio(f.path).string();
+  const Run none = render("--set film.ocio=Other -o " + at + "a.png");
+  CHECK(none.status == 1);
+  CHECK_THAT(none.out, Contains("the environment variable OCIO names no configuration"));
+  const auto with = [&](const std::string& more) {
+    return run("render " + k_cornell + "cornell.gltf --size 16x16 --samples 2 --quiet " + more,
+               "env " + ocio);
+  };
+  CHECK(with("-o " + at + "plain.png").status == 0);
+  CHECK(with("--set 'film.ocio=Other: Plain' -o " + at + "b.png").status == 0);
+  REQUIRE(render("-o " + at + "standard.png").status == 0);
+  const auto pixels = [&](const char* name) { return *film::read_exr(f / name).find("G"); };
+  CHECK(pixels("plain.png") == pixels("standard.png"));
+  CHECK(pixels("b.png") != pixels("standard.png"));
+  const Run bad = with("--set film.ocio=None -o " + at + "c.png");
+  CHECK(bad.status == 1);
+  CHECK_THAT(bad.out, Contains("config.ocio: there is no display 'None'; there are: Screen: sRGB, Other"));
 }
 
 }  // namespace outputs_tests
