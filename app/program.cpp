@@ -221,6 +221,12 @@ void Program::add_render() {
       ->expected(4);
   render_
       ->add_option(
+          "--turntable", r.turntable,
+          "N pictures around what the camera looks at, in equal steps, counter-clockwise seen from above; "
+          "OUT.png becomes OUT.0001.png and so on. Limits are for each picture")
+      ->check(CLI::Range(1u, k_most_views));
+  render_
+      ->add_option(
           "--tev", r.tev,
           "HOST:PORT: send all layers to a running tev, or a viewer with its protocol, during the render "
           "[127.0.0.1:14158]; the render goes on without one")

@@ -18,6 +18,7 @@
 #include "commands/camera_control.h"
 #include "commands/lens.h"
 #include "recording/file.h"
+#include "scene/core.h"
 #include "session/pick.h"
 #include "session/renderer.h"
 #include "session/tev_link.h"
@@ -56,6 +57,12 @@ void check_distinct(const std::vector<std::string>& files) {
       throw_error(file, "two outputs have this name; choose different names");
 }
 
+/// "out.png" -> "out.0007.png"
+std::string numbered(const std::string& file, uint32_t number) {
+  const size_t dot = file.rfind('.');
+  return fmt::format("{}.{:04}{}", file.substr(0, dot), number, file.substr(dot));
+}
+
 /// Throws Error if no output is requested, or one cannot be written: before a long render.
 void check_outputs(const RenderArguments& a, const std::map<std::string, std::string>& to_save) {
   if (!makes_picture(a) && to_save.empty()) {
@@ -72,8 +79,12 @@ void check_outputs(const RenderArguments& a, const std::map<std::string, std::st
     const std::string extension = dot == std::string::npos ? "" : file.substr(dot);
     if (extension != ".exr" && extension != ".png")
       throw_error(file, "cannot write '{}' files; use .exr or .png", extension);
-    film::check_writable(file);
+    for (uint32_t view = 1; view <= a.turntable; ++view) film::check_writable(numbered(file, view));
+    if (a.turntable == 0) film::check_writable(file);
   }
+  if (a.turntable > 0 &&
+      (!a.stats.empty() || !a.ledger.empty() || !a.record_paths.empty() || !to_save.empty()))
+    throw Error("--turntable", "writes pictures only; figures, paths and caches are of one view");
   if (!a.stats.empty()) check_writable(a.stats);
   if (!a.ledger.empty()) check_writable(a.ledger);
   if (!a.record_paths.empty()) {
@@ -470,17 +481,30 @@ int render(const RenderArguments& a) {
                   "no component is computed by '{}'; add --set components.secondary={}", name, name);
   Outputs outputs(to_save);
   if (viewer) tev.emplace(*viewer, r.scene()->name);
-  const double wall = run(r, a, changes, outputs, interrupt, terminal, tev ? &*tev : nullptr);
+  const commands::Viewpoint first = commands::make_viewpoint(r.camera(), scene::core_bounds(*r.scene()));
+  double wall = 0;
+  for (uint32_t view = 0; view < std::max(1u, a.turntable) && !interrupt.signal(); ++view) {
+    if (view > 0) {
+      commands::Viewpoint turned = first;
+      commands::orbit(turned, {2 * k_pi * float(view) / float(a.turntable), 0});
+      r.set_camera(turned.camera);
+    }
+    wall = run(r, a, changes, outputs, interrupt, terminal, tev ? &*tev : nullptr);
+    if (interrupt.signal())
+      std::fprintf(stderr, "lucerna: interrupted after %u samples; writing the present picture\n",
+                   r.samples());
+    else
+      check_time(r, a);
+    if (makes_picture(a) && r.adaptive() && !interrupt.signal())
+      report_unreached(*r.adaptive(), advice(r)), report_unseen(r);
+    // All pictures of a turntable have the exposure of the first.
+    if (makes_picture(a) && view == 0) outputs.attempt([&] { find_exposure(r, changes); });
+    if (a.filter && makes_picture(a)) outputs.attempt([&] { filter(r, a.error); });
+    for (const std::string& file : a.outputs)
+      outputs.attempt([&] { r.save(a.turntable > 0 ? numbered(file, view + 1) : file); });
+    if (tev) outputs.attempt([&] { tev->finish(r); });
+  }
   const bool interrupted = interrupt.signal() != 0;
-  if (interrupted)
-    std::fprintf(stderr, "lucerna: interrupted after %u samples; writing the present picture\n", r.samples());
-  if (!interrupted) check_time(r, a);
-  if (makes_picture(a) && r.adaptive() && !interrupted)
-    report_unreached(*r.adaptive(), advice(r)), report_unseen(r);
-  if (makes_picture(a)) outputs.attempt([&] { find_exposure(r, changes); });
-  if (a.filter && makes_picture(a)) outputs.attempt([&] { filter(r, a.error); });
-  for (const std::string& file : a.outputs) outputs.attempt([&] { r.save(file); });
-  if (tev) outputs.attempt([&] { tev->finish(r); });
   if (!a.ledger.empty()) outputs.attempt([&] { write_file(a.ledger, r.ledger().csv()); });
   if (!a.stats.empty())
     outputs.attempt([&] {

@@ -371,6 +371,11 @@ void camera_menu(Ui& ui) {
   if (entry("Focus by a click", nullptr, "The next click in the picture puts the plane of focus there.",
             ui.scene_view.focusing, lens))
     ui.act("camera.focusing", !ui.scene_view.focusing);
+  if (entry(
+          "Turntable", nullptr,
+          ui.turntable > 0 ? "Stops the camera." : "Turns the camera about what it looks at, in 20 seconds.",
+          ui.turntable > 0, view))
+    ui.act("camera.turntable", ui.turntable > 0 ? 0 : 20);
   if (entry("Make upright", nullptr,
             "Levels the camera and shifts the lens so that the picture's middle stays: vertical lines become "
             "vertical.",

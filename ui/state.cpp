@@ -68,6 +68,14 @@ void Ui::place_by_wheel(const Viewpoint& to) {
   actions.act_in(wheel_gesture_, commands::Navigation::place_line(to));
 }
 
+void Ui::turn(const Viewpoint& to) { actions.act_in(turn_gesture_, commands::Navigation::place_line(to)); }
+
+void Ui::start_turntable(float seconds) {
+  turntable = seconds;
+  turn_gesture_ = actions.new_gesture();
+  wake(3);
+}
+
 void Ui::notice(const std::string& text, double seconds) {
   cards.note.text = text, cards.note.until = work.now + seconds;
   wake(3);

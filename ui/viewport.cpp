@@ -255,6 +255,13 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
     advance_view(ui, metres, through);
     ui.moving = true;
   }
+  if (active || flying || io.MouseWheel != 0) ui.turntable = 0;
+  if (ui.turntable > 0) {
+    Viewpoint view = *ui.camera.view;
+    commands::orbit(view, {2 * k_pi * std::min(io.DeltaTime, 0.1f) / ui.turntable, 0});
+    ui.turn(view);
+    ui.moving = true;
+  }
   // A press that hardly moves is a click; it becomes a drag after three pixels.
   if (active && (drag.x != 0 || drag.y != 0) && (flying || dragging())) {
     // Half a turn across the height of the picture.

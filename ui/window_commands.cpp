@@ -196,6 +196,14 @@ void add_picture_commands(Ui& ui, const Add& add) {
         if (ui.region.picks) ui.notice("Drag a rectangle: it gets all samples. Esc cancels.");
       },
       false);
+  add(
+      "camera.turntable", "Turns the camera about what it looks at, until it is moved by hand; 0: stops.",
+      {{.name = "seconds", .type = Type::real, .help = "for a turn", .lo = 0, .hi = 3600, .unit = "s"}},
+      [&ui](const Arguments& a) {
+        if (a.number("seconds") > 0) ui.camera.needs_view();
+        ui.start_turntable(a.number("seconds"));
+      },
+      false);
   add("view.divisor", "Sets the pixels of the window per pixel of the picture, along a side.",
       {{.name = "divisor", .type = Type::choice, .choices = {"1", "2", "4"}}},
       [&ui](const Arguments& a) { ui.picture_divisor = static_cast<int>(a.integer("divisor")); });

@@ -150,6 +150,35 @@ TEST_CASE("--region renders these pixels only; an EXR stores them as its data wi
   CHECK_THAT(elsewhere.out, Contains("--record-region: none of these pixels has samples"));
 }
 
+TEST_CASE("--turntable writes numbered pictures around the camera's target; the first is the scene's view") {
+  const test::Folder f;
+  const std::string at = f.path.string() + "/";
+  REQUIRE(render("-o " + at + "one.exr").status == 0);
+  const Run r = render("--turntable 3 -o " + at + "a.b.exr -o " + at + "a.png");
+  INFO(r.out);
+  REQUIRE(r.status == 0);
+  const auto light = [&](const std::string& name) { return *film::read_exr(f / name).find("R"); };
+  CHECK(light("a.b.0001.exr") == light("one.exr"));
+  CHECK(light("a.b.0002.exr") != light("a.b.0001.exr"));
+  CHECK(light("a.b.0003.exr") != light("a.b.0002.exr"));
+  CHECK(fs::exists(f / "a.0003.png"));
+  CHECK_FALSE(fs::exists(f / "a.png"));
+  CHECK_FALSE(fs::exists(f / "a.0004.png"));
+  // A third of a turn keeps the distance to the target, which stays in the middle.
+  const std::string first = film::read_metadata(f / "a.b.0001.exr").at("view");
+  CHECK(film::read_metadata(f / "a.b.0002.exr").at("view") != first);
+  for (const auto& [arguments, problem] : std::map<std::string, std::string>{
+           {"--turntable 0 -o " + at + "c.png", "--turntable"},
+           {"--turntable 10000 -o " + at + "c.png", "--turntable"},
+           {"--turntable 2 --stats " + at + "c.json", "--turntable: writes pictures only"},
+           {"--turntable 2 -o " + at + "none/c.png", "none/c.0001.png: "}}) {
+    const Run bad = render(arguments);
+    INFO(arguments << ": " << bad.out);
+    CHECK(bad.status == 1);
+    CHECK_THAT(bad.out, Contains(problem));
+  }
+}
+
 TEST_CASE("--tev sends the layers; a missing viewer is one warning, and the files are written") {
   const test::Folder f;
   const std::string at = f.path.string() + "/";
