@@ -316,6 +316,14 @@ void view_menu(Ui& ui) {
           "Marks lamps and emissive surfaces in the picture. Click a mark to select, drag it to move a lamp.",
           ui.light_marks))
     ui.act("view.lamps", !ui.light_marks);
+  if (entry("Histogram", nullptr, "Shows how many pixels have which display value, and how many are clipped.",
+            ui.histogram.on))
+    ui.act("view.histogram", !ui.histogram.on);
+  if (entry("Camera frame", nullptr,
+            "Shows a frame with the camera's aspect ratio in the picture (command view.frame for another "
+            "ratio).",
+            ui.frame_guide.on))
+    ui.act("view.frame", !ui.frame_guide.on);
   if (const OptionInfo* tiles = plan::find_option("overlay.tiles");
       entry("Tiles", "T", tiles->help.c_str(), ui.open.setting_on(tiles->key)))
     ui.toggle(tiles->key);

@@ -13,6 +13,8 @@
 #include "commands/workspace.h"
 #include "compare_panel.h"
 #include "controls.h"
+#include "frame_guide.h"
+#include "histogram.h"
 #include "lamp_handles.h"
 #include "layout.h"
 #include "log_view.h"
@@ -150,6 +152,8 @@ struct Ui {
   std::optional<std::pair<uint32_t, uint32_t>> picture_size;
   bool light_marks = false;  ///< lights are marked in the picture
   MarkedScene marked() { return {open, camera, light_marks}; }
+  HistogramView histogram;
+  FrameGuide frame_guide;
   /// Seconds for a turn of the camera around what it looks at; 0: it does not turn.
   float turntable = 0;
   bool brackets = true;  ///< the selected object is marked in the picture

@@ -477,6 +477,7 @@ void draw_picture(Ui& ui, const Area& area) {
     draw_lamp_handles(ui.marked(), frame, hot);
     if (ui.brackets) draw_brackets(ui, frame);
     draw_region(ui.open, frame);
+    draw_frame_guide(ui.frame_guide, ui.open.snapshot->camera, frame);
   }
   if (!shown) draw_empty_state(ui.actions, ui.open, ui.recent, area);
   Area legend;
@@ -484,6 +485,7 @@ void draw_picture(Ui& ui, const Area& area) {
     legend = draw_legend(ui.open, ui.light_marks, frame, ui.picture);
     draw_inspection(*ui.open.snapshot, frame, legend);
     draw_pixel_card(ui.work, frame);
+    ui.histogram.draw(*ui.open.snapshot, frame, ui.picture);
   }
   draw_cards(ui.actions, ui.open, ui.cards, ui.work.now, area, legend);
 

@@ -196,6 +196,24 @@ void add_picture_commands(Ui& ui, const Add& add) {
         if (ui.region.picks) ui.notice("Drag a rectangle: it gets all samples. Esc cancels.");
       },
       false);
+  add("view.histogram",
+      "Shows a histogram of the picture as displayed, with its overlays, and the shares of black and clipped "
+      "pixels.",
+      {on()}, [&ui](const Arguments& a) { ui.histogram.on = a.boolean("on"); });
+  add("view.frame",
+      "Shows a frame with the camera's aspect ratio, or another one, in the picture: what a picture of that "
+      "ratio "
+      "shows.",
+      {on(),
+       {.name = "aspect",
+        .type = Type::real,
+        .help = "width over height",
+        .lo = 0.01,
+        .hi = 100,
+        .optional = true}},
+      [&ui](const Arguments& a) {
+        ui.frame_guide = {a.boolean("on"), a.has("aspect") ? a.number("aspect") : 0};
+      });
   add(
       "camera.turntable", "Turns the camera about what it looks at, until it is moved by hand; 0: stops.",
       {{.name = "seconds", .type = Type::real, .help = "for a turn", .lo = 0, .hi = 3600, .unit = "s"}},
