@@ -84,6 +84,12 @@ class TevReceiver {
     uint8_t type = 0, focus = 0;
     take(type), take(focus);
     const std::string name = text();
+    if (type == 7 || type == 1) {
+      if (type == 7 && !text().empty()) return "open selects a channel";
+      if (!good || at != packet.size()) return "open has a wrong length";
+      ++images[(type == 7 ? "open " : "reload ") + name].updates;
+      return "";
+    }
     if (type == 4) {
       Image image;
       int32_t count = 0;

@@ -147,4 +147,29 @@ TEST_CASE("a viewer that never reads ends the sender after a while; sending and 
   CHECK(ending.seconds() < 5);
 }
 
+TEST_CASE("files are opened, and read again the second time; a problem goes to the report") {
+  TevReceiver viewer;
+  film::TevSender sender(film::parse_tev_address(viewer.address(), ""), "");
+  sender.open("/a b.exr");
+  sender.open("/c.exr");
+  sender.open("/a b.exr");
+  REQUIRE(sender.finish());
+  for (const Timer since; since.seconds() < 20 && viewer.images()["reload /a b.exr"].updates == 0;)
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  auto seen = viewer.images();
+  CHECK(seen["open /a b.exr"].updates == 1);
+  CHECK(seen["open /c.exr"].updates == 1);
+  CHECK(seen["reload /a b.exr"].updates == 1);
+  CHECK(viewer.problem().empty());
+  std::string problem;
+  {
+    film::TevSender alone(film::parse_tev_address("127.0.0.1:1", ""), "", 5,
+                          [&](const std::string& what) { problem = what; });
+    alone.open("/a.exr");
+    CHECK_FALSE(alone.finish());
+    CHECK(alone.take_problem().empty());
+  }
+  CHECK_THAT(problem, Contains("127.0.0.1:1: no connection to a viewer"));
+}
+
 }  // namespace film_io_tev_tests

@@ -108,8 +108,13 @@ TevAddress parse_tev_address(const std::string& text, const std::string& where) 
   return address;
 }
 
-TevSender::TevSender(TevAddress address, std::string name, double stall)
-    : address_(std::move(address)), name_(std::move(name)), stall_(stall), thread_([this] { run(); }) {}
+TevSender::TevSender(TevAddress address, std::string name, double stall,
+                     std::function<void(const std::string&)> report)
+    : address_(std::move(address)),
+      name_(std::move(name)),
+      stall_(stall),
+      report_(std::move(report)),
+      thread_([this] { run(); }) {}
 
 TevSender::~TevSender() {
   {
@@ -130,9 +135,18 @@ void TevSender::send(FilmImage image) {
   wake_.notify_one();
 }
 
+void TevSender::open(const std::string& file) {
+  {
+    std::lock_guard lock(mutex_);
+    if (ended_) return;
+    files_.push_back(file);
+  }
+  wake_.notify_one();
+}
+
 bool TevSender::busy() const {
   std::lock_guard lock(mutex_);
-  return !ended_ && (next_ || sending_);
+  return !ended_ && (next_ || !files_.empty() || sending_);
 }
 
 bool TevSender::ended() const {
@@ -147,7 +161,7 @@ std::string TevSender::take_problem() {
 
 bool TevSender::finish() {
   std::unique_lock lock(mutex_);
-  idle_.wait(lock, [&] { return ended_ || !(next_ || sending_); });
+  idle_.wait(lock, [&] { return ended_ || !(next_ || !files_.empty() || sending_); });
   return !ended_;
 }
 
@@ -159,23 +173,27 @@ bool TevSender::quits() const {
 void TevSender::run() {
   std::unique_lock lock(mutex_);
   while (true) {
-    wake_.wait(lock, [&] { return quit_ || next_; });
+    wake_.wait(lock, [&] { return quit_ || next_ || !files_.empty(); });
     if (quit_) return;
-    const FilmImage image = std::move(*std::exchange(next_, std::nullopt));
+    const std::optional<FilmImage> image = std::exchange(next_, std::nullopt);
+    const std::vector<std::string> files = std::exchange(files_, {});
     sending_ = true;
     lock.unlock();
     std::string problem;
     try {
-      transmit(image);
+      for (const std::string& file : files) transmit(file);
+      if (image) transmit(*image);
     } catch (const Quit&) {
     } catch (const std::exception& e) {
       problem = e.what();
     }
+    if (!problem.empty() && report_) report_(problem);
     lock.lock();
     sending_ = false;
     if (!problem.empty()) {
-      problem_ = problem, ended_ = true;
-      next_.reset();
+      if (!report_) problem_ = problem;
+      ended_ = true;
+      next_.reset(), files_.clear();
     }
     idle_.notify_all();
     if (ended_) return;
@@ -221,6 +239,11 @@ void TevSender::write(const std::string& bytes) {
       throw_error(address_.text(), "the viewer has hung up ({}); nothing more is sent to it", reason(errno));
     }
   }
+}
+
+void TevSender::transmit(const std::string& file) {
+  if (socket_ < 0) connect();
+  write(opened_.insert(file).second ? tev_open(file, true) : tev_reload(file, true));
 }
 
 void TevSender::transmit(const FilmImage& image) {

@@ -4,9 +4,11 @@
 // and the content. Numbers are little-endian, texts end with a zero, truth values take a byte.
 #include <condition_variable>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <thread>
@@ -44,8 +46,9 @@ TevAddress parse_tev_address(const std::string& text, const std::string& where);
 class TevSender {
  public:
   /// `name`: of the image in the viewer. `stall`: seconds without progress after which a viewer that does
-  /// not read is given up.
-  TevSender(TevAddress address, std::string name, double stall = 5);
+  /// not read is given up. `report`: gets the problem on the sender's thread, in place of take_problem().
+  TevSender(TevAddress address, std::string name, double stall = 5,
+            std::function<void(const std::string&)> report = {});
   /// Stops at once; a picture that is being sent stays incomplete.
   ~TevSender();
   TevSender(const TevSender&) = delete;
@@ -53,7 +56,9 @@ class TevSender {
 
   /// Sends all channels of a picture. One that has not been begun is replaced.
   void send(FilmImage image);
-  /// True while a picture waits or is being sent.
+  /// Opens a file in the viewer, as it is named there; a file that this sender has opened is read again.
+  void open(const std::string& file);
+  /// True while a picture or a file waits or is being sent.
   bool busy() const;
   /// The problem that has ended it, located at the address, the first time it is asked for; else "".
   std::string take_problem();
@@ -64,6 +69,7 @@ class TevSender {
  private:
   void run();
   void transmit(const FilmImage& image);
+  void transmit(const std::string& file);
   void write(const std::string& bytes);
   void connect();
   bool quits() const;
@@ -71,15 +77,18 @@ class TevSender {
   const TevAddress address_;
   const std::string name_;
   const double stall_;
+  const std::function<void(const std::string&)> report_;
   mutable std::mutex mutex_;
   std::condition_variable wake_, idle_;
   std::optional<FilmImage> next_;
+  std::vector<std::string> files_;  ///< to be opened
   bool sending_ = false, quit_ = false, ended_ = false;
   std::string problem_;
   // Used by the thread only.
   int socket_ = -1;
   uint32_t width_ = 0, height_ = 0;  ///< of the viewer's image
   std::vector<std::string> channels_;
+  std::set<std::string> opened_;
   std::thread thread_;
 };
 
