@@ -407,9 +407,14 @@ void draw_toolbar(Ui& ui, const Area& area) {
     int chosen = static_cast<int>(
         std::find(tone->choices.begin(), tone->choices.end(), ui.open.setting("film.tone_curve")) -
         tone->choices.begin());
-    if (choice("##tone", "", names, chosen, tone_width))
+    const std::string& ocio = ui.open.setting("film.ocio");
+    if (!ocio.empty()) {
+      chosen = static_cast<int>(names.size());
+      names.emplace_back("OCIO");
+    }
+    if (choice("##tone", "", names, chosen, tone_width) && static_cast<size_t>(chosen) < tone->choices.size())
       ui.act("set", "film.tone_curve", tone->choices[static_cast<size_t>(chosen)]);
-    tooltip(tone->help);
+    tooltip(ocio.empty() ? tone->help : ocio + ", of the configuration that $OCIO names; see the View menu.");
     right -= px(4);
   }
   if (const OptionInfo* ev = plan::find_option("film.ev")) {

@@ -157,9 +157,8 @@ void add_display_options(std::vector<OptionInfo>& list) {
   list.push_back(without_restart(text_option(
       "film.ocio",
       "DISPLAY: VIEW of the OpenColorIO configuration that the environment variable OCIO names, in place of "
-      "the "
-      "tone curve, in the window and in PNG files; without a view the display's default one. Empty: the tone "
-      "curve. Errors as seen always follow the tone curve.")));
+      "the tone curve, in the window and in PNG files; without a view the display's default one. Empty: the "
+      "tone curve, as after a choice of one. Errors as seen always follow the tone curve.")));
   list.push_back(without_restart(choice_option("film.layer", "beauty",
                                                {"beauty", "primary", "secondary", "tertiary", "caustic",
                                                 "albedo", "normal", "depth", "samples", "error", "cost"},
