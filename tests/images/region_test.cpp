@@ -1,7 +1,9 @@
 // links: session
 // A region of the picture: its pixels are those of the whole picture with as many samples, the rest is kept.
 #include <catch2/catch.hpp>
+#include <cmath>
 
+#include "session/accuracy.h"
 #include "session/renderer.h"
 #include "session/session.h"
 #include "support/render.h"
@@ -149,6 +151,24 @@ TEST_CASE("in the window every pixel gets its first samples before the region ge
   r.set_camera(moved);
   test::finish(r);
   CHECK(r.image().samples[0] == 2);
+}
+
+TEST_CASE("the ledger of a region predicts no time") {
+  session::Accuracy a;
+  a.max_samples = 64;
+  for (int i = 1; i <= 4; ++i) {
+    stats::Entry e;
+    e.wall_s = e.render_s = i, e.paths = uint64_t(1000 * i), e.rays = uint64_t(5000 * i), e.samples = i;
+    e.has_error = true, e.error[0] = 0.2 / std::sqrt(i);
+    a.ledger.add(e);
+  }
+  REQUIRE(session::seconds_to_end(a));
+  REQUIRE(session::seconds_to(a, 0.02));
+  a.settings["sampling.region"] = k_region;
+  CHECK_FALSE(session::seconds_to_end(a));
+  CHECK_FALSE(session::seconds_to(a, 0.02));
+  a.settings["sampling.region"] = "";
+  CHECK(session::seconds_to_end(a));
 }
 
 }  // namespace region_tests
