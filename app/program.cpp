@@ -214,6 +214,23 @@ void Program::add_render() {
       ->check(finite() & CLI::NonNegativeNumber);
   render_->add_option("--record-region", r.record_region, "X Y WIDTH HEIGHT: record only these pixels")
       ->expected(4);
+  render_
+      ->add_option("--region", r.region,
+                   "X Y WIDTH HEIGHT: render only these pixels; an EXR stores them as its data window within "
+                   "the picture, a PNG has black around them")
+      ->expected(4);
+  render_
+      ->add_option(
+          "--turntable", r.turntable,
+          "N pictures around what the camera looks at, in equal steps, counter-clockwise seen from above; "
+          "OUT.png becomes OUT.0001.png and so on. Limits are for each picture")
+      ->check(CLI::Range(1u, k_most_views));
+  render_
+      ->add_option(
+          "--tev", r.tev,
+          "HOST:PORT: send all layers to a running tev, or a viewer with its protocol, during the render "
+          "[127.0.0.1:14158]; the render goes on without one")
+      ->expected(0, 1);
   render_->add_option("--set", r.set, "KEY=VALUE; see below")->allow_extra_args(false);
   render_->add_option("--device", r.device, k_device_help);
   render_->add_option("--ledger", r.ledger, "write time, rays and error during the render as CSV")

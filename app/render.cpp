@@ -18,8 +18,10 @@
 #include "commands/camera_control.h"
 #include "commands/lens.h"
 #include "recording/file.h"
+#include "scene/core.h"
 #include "session/pick.h"
 #include "session/renderer.h"
+#include "session/tev_link.h"
 
 namespace lucerna::app {
 namespace {
@@ -29,7 +31,7 @@ void print_progress(const session::Renderer& r, double seconds, double limit, bo
   double done = std::max(double(r.samples()), paths) / r.max_samples();
   if (const schedule::AdaptiveSchedule* s = r.adaptive())
     done = double(s->count(schedule::TileState::done) + s->count(schedule::TileState::capped)) /
-           double(s->tiles().size());
+           double(s->sampled_tiles());
   // The nearer limit.
   if (limit > 0) done = std::max(done, std::min(1.0, seconds / limit));
   const double left = done > 0 ? seconds * (1 - done) / done : 0;
@@ -42,7 +44,7 @@ void print_progress(const session::Renderer& r, double seconds, double limit, bo
 
 /// True if any output besides solvers' work is requested.
 bool makes_picture(const RenderArguments& a) {
-  return !a.outputs.empty() || !a.stats.empty() || !a.ledger.empty() || !a.record_paths.empty();
+  return !a.outputs.empty() || !a.stats.empty() || !a.ledger.empty() || !a.record_paths.empty() || a.tev;
 }
 
 /// Throws Error if two outputs are the same file, of which the first would be lost.
@@ -53,6 +55,12 @@ void check_distinct(const std::vector<std::string>& files) {
     if (const std::filesystem::path target = file_behind(file);
         !target.empty() && !targets.insert(target.string()).second)
       throw_error(file, "two outputs have this name; choose different names");
+}
+
+/// "out.png" -> "out.0007.png"
+std::string numbered(const std::string& file, uint32_t number) {
+  const size_t dot = file.rfind('.');
+  return fmt::format("{}.{:04}{}", file.substr(0, dot), number, file.substr(dot));
 }
 
 /// Throws Error if no output is requested, or one cannot be written: before a long render.
@@ -71,8 +79,12 @@ void check_outputs(const RenderArguments& a, const std::map<std::string, std::st
     const std::string extension = dot == std::string::npos ? "" : file.substr(dot);
     if (extension != ".exr" && extension != ".png")
       throw_error(file, "cannot write '{}' files; use .exr or .png", extension);
-    film::check_writable(file);
+    for (uint32_t view = 1; view <= a.turntable; ++view) film::check_writable(numbered(file, view));
+    if (a.turntable == 0) film::check_writable(file);
   }
+  if (a.turntable > 0 &&
+      (!a.stats.empty() || !a.ledger.empty() || !a.record_paths.empty() || !to_save.empty()))
+    throw Error("--turntable", "writes pictures only; figures, paths and caches are of one view");
   if (!a.stats.empty()) check_writable(a.stats);
   if (!a.ledger.empty()) check_writable(a.ledger);
   if (!a.record_paths.empty()) {
@@ -93,9 +105,24 @@ void check_outputs(const RenderArguments& a, const std::map<std::string, std::st
     throw_error("--time", "'{}': expected a positive number of seconds", *a.seconds);
 }
 
+/// The part of a rectangle "X Y WIDTH HEIGHT" that is in the picture. Throws Error located at `option` if
+/// none is.
+schedule::Rectangle pixels_of(const std::vector<uint32_t>& rectangle, const char* option, uint32_t width,
+                              uint32_t height) {
+  const auto end = [](uint32_t from, uint32_t size, uint32_t most) {
+    return uint32_t(std::min<uint64_t>(uint64_t{from} + size, most));
+  };
+  const uint32_t left = rectangle[0], top = rectangle[1];
+  const schedule::Rectangle r{left, top, end(left, rectangle[2], width), end(top, rectangle[3], height)};
+  if (r.left >= r.right || r.top >= r.bottom)
+    throw_error(option, "no pixel of the picture of {}x{} is in this region", width, height);
+  return r;
+}
+
 /// The command line's settings, which override the scene's. Throws Error for an invalid setting, before the
 /// scene is loaded.
-std::vector<session::SettingChange> setting_changes(const RenderArguments& a) {
+std::vector<session::SettingChange> setting_changes(const RenderArguments& a, uint32_t width,
+                                                    uint32_t height) {
   std::vector<session::SettingChange> changes;
   const auto change = [&](std::string key, std::string value, const char* where = "--set") {
     changes.push_back({std::move(key), std::move(value), where});
@@ -116,8 +143,17 @@ std::vector<session::SettingChange> setting_changes(const RenderArguments& a) {
     change("sampling.target_error", fmt::format("{}", *a.error));
   }
   if (a.seed != -1) change("seed", std::to_string(a.seed));
+  if (!a.region.empty()) {
+    const schedule::Rectangle p = pixels_of(a.region, "--region", width, height);
+    const double w = width, h = height;
+    const schedule::Region region{p.left / w, p.top / h, (p.right - p.left) / w, (p.bottom - p.top) / h};
+    change("sampling.region", schedule::region_text(region), "--region");
+  }
   plan::Settings probe;
-  for (const session::SettingChange& c : changes) probe.set(c.key, c.value, c.where);
+  for (const session::SettingChange& c : changes) {
+    probe.set(c.key, c.value, c.where);
+    if (c.key == "sampling.region") schedule::parse_region(c.value, c.where + ": " + c.key);
+  }
   return changes;
 }
 
@@ -281,9 +317,10 @@ class FilteredGoal {
   uint32_t next_ = 16;
 };
 
-/// Runs until picture and work are finished, the time is over, or an interrupt. Returns its seconds.
+/// Runs until picture and work are finished, the time is over, or an interrupt. Returns its seconds. `tev`: a
+/// viewer that gets the picture meanwhile, or null.
 double run(session::Renderer& r, const RenderArguments& a, const std::vector<session::SettingChange>& changes,
-           Outputs& outputs, const Interrupt& interrupt, bool terminal) {
+           Outputs& outputs, const Interrupt& interrupt, bool terminal, session::TevLink* tev) {
   const double limit = a.seconds.value_or(0);  // 0: none
   const Timer timer;
   Timer since_line;
@@ -303,6 +340,7 @@ double run(session::Renderer& r, const RenderArguments& a, const std::vector<ses
     }
     if (!r.step()) break;
     outputs.save_ready(r);
+    if (tev && !tev->follow(r)) tev = nullptr;
     if (!covered && r.samples() > 0) log::info("every pixel has a sample after {:.2f} s", timer.seconds());
     // Tiles stop by the error as seen, which depends on the exposure.
     if (!covered && r.samples() > 0 && r.adaptive()) find_exposure(r, changes);
@@ -377,17 +415,19 @@ void record_paths(session::Renderer& r, const RenderArguments& a, const Interrup
   constexpr size_t k_part = 1 << 16;
   const Timer timer;
   const uint32_t width = r.film().width(), height = r.film().height();
-  session::PathSelection selection{.right = width, .bottom = height, .samples = r.samples()};
+  const schedule::Rectangle sampled = r.region().value_or(schedule::Rectangle{0, 0, width, height});
+  session::PathSelection selection{.left = sampled.left,
+                                   .top = sampled.top,
+                                   .right = sampled.right,
+                                   .bottom = sampled.bottom,
+                                   .samples = r.samples()};
   if (a.record_region.size() == 4) {
-    const auto sum = [](uint32_t from, uint32_t size) {
-      return uint32_t(std::min<uint64_t>(uint64_t{from} + size, 1u << 31));
-    };
-    selection.left = a.record_region[0], selection.top = a.record_region[1];
-    selection.right = sum(selection.left, a.record_region[2]),
-    selection.bottom = sum(selection.top, a.record_region[3]);
-    if (selection.left >= width || selection.top >= height || selection.left == selection.right ||
-        selection.top == selection.bottom)
-      throw_error("--record-region", "no pixel of the picture of {}x{} is in this region", width, height);
+    const schedule::Rectangle wanted = pixels_of(a.record_region, "--record-region", width, height);
+    selection.left = std::max(wanted.left, sampled.left), selection.top = std::max(wanted.top, sampled.top);
+    selection.right = std::min(wanted.right, sampled.right),
+    selection.bottom = std::min(wanted.bottom, sampled.bottom);
+    if (selection.left >= selection.right || selection.top >= selection.bottom)
+      throw Error("--record-region", "none of these pixels has samples: the region of --region is elsewhere");
   }
   selection.every = uint32_t(a.record_every);
   session::PathChoices choices(selection, width, height);
@@ -420,7 +460,10 @@ int render(const RenderArguments& a) {
   for (const auto& [name, file] : a.solver_save)
     if (!file.empty()) to_save[name] = file;
   check_outputs(a, to_save);
-  const std::vector<session::SettingChange> changes = setting_changes(a);
+  const std::vector<session::SettingChange> changes = setting_changes(a, width, height);
+  std::optional<film::TevAddress> viewer;
+  if (a.tev) viewer = film::parse_tev_address(*a.tev, "--tev");
+  std::optional<session::TevLink> tev;
   session::Renderer r(
       {.device = a.device, .validation = false, .shaders = {}, .defines = {}, .scenes = a.scenes});
   r.set_size(width, height);
@@ -428,6 +471,8 @@ int render(const RenderArguments& a) {
   const Interrupt interrupt;
   const bool terminal = !a.quiet && isatty(2);
   if (!load(r, a, changes, interrupt, terminal)) return interrupt.status();
+  if (a.filter && r.region())
+    throw Error("--filter", "a region is not filtered: its edges need the pixels around it");
   if (a.filter && !r.film().fits_storage_buffers())
     throw_error("--filter", "{}x{} exceeds the size that this device can filter", width, height);
   for (const auto& [name, file] : to_save)
@@ -435,16 +480,31 @@ int render(const RenderArguments& a) {
       throw_error(fmt::format("--{}-save", name),
                   "no component is computed by '{}'; add --set components.secondary={}", name, name);
   Outputs outputs(to_save);
-  const double wall = run(r, a, changes, outputs, interrupt, terminal);
+  if (viewer) tev.emplace(*viewer, r.scene()->name);
+  const commands::Viewpoint first = commands::make_viewpoint(r.camera(), scene::core_bounds(*r.scene()));
+  double wall = 0;
+  for (uint32_t view = 0; view < std::max(1u, a.turntable) && !interrupt.signal(); ++view) {
+    if (view > 0) {
+      commands::Viewpoint turned = first;
+      commands::orbit(turned, {2 * k_pi * float(view) / float(a.turntable), 0});
+      r.set_camera(turned.camera);
+    }
+    wall = run(r, a, changes, outputs, interrupt, terminal, tev ? &*tev : nullptr);
+    if (interrupt.signal())
+      std::fprintf(stderr, "lucerna: interrupted after %u samples; writing the present picture\n",
+                   r.samples());
+    else
+      check_time(r, a);
+    if (makes_picture(a) && r.adaptive() && !interrupt.signal())
+      report_unreached(*r.adaptive(), advice(r)), report_unseen(r);
+    // All pictures of a turntable have the exposure of the first.
+    if (makes_picture(a) && view == 0) outputs.attempt([&] { find_exposure(r, changes); });
+    if (a.filter && makes_picture(a)) outputs.attempt([&] { filter(r, a.error); });
+    for (const std::string& file : a.outputs)
+      outputs.attempt([&] { r.save(a.turntable > 0 ? numbered(file, view + 1) : file); });
+    if (tev) outputs.attempt([&] { tev->finish(r); });
+  }
   const bool interrupted = interrupt.signal() != 0;
-  if (interrupted)
-    std::fprintf(stderr, "lucerna: interrupted after %u samples; writing the present picture\n", r.samples());
-  if (!interrupted) check_time(r, a);
-  if (makes_picture(a) && r.adaptive() && !interrupted)
-    report_unreached(*r.adaptive(), advice(r)), report_unseen(r);
-  if (makes_picture(a)) outputs.attempt([&] { find_exposure(r, changes); });
-  if (a.filter && makes_picture(a)) outputs.attempt([&] { filter(r, a.error); });
-  for (const std::string& file : a.outputs) outputs.attempt([&] { r.save(file); });
   if (!a.ledger.empty()) outputs.attempt([&] { write_file(a.ledger, r.ledger().csv()); });
   if (!a.stats.empty())
     outputs.attempt([&] {

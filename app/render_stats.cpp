@@ -94,7 +94,9 @@ nlohmann::ordered_json make_truth(const film::Reference& reference, const stats:
 std::vector<uint32_t> unreached(const schedule::AdaptiveSchedule& s) {
   std::vector<uint32_t> list;
   for (uint32_t t = 0; t < s.tiles().size(); ++t)
-    if (s.tiles()[t].state != schedule::TileState::done) list.push_back(t);
+    if (const schedule::TileState state = s.tiles()[t].state;
+        state != schedule::TileState::done && state != schedule::TileState::resting)
+      list.push_back(t);
   std::sort(list.begin(), list.end(), [&](uint32_t a, uint32_t b) {
     const float ea = s.tiles()[a].sum(), eb = s.tiles()[b].sum();
     return ea != eb ? ea > eb : a < b;
@@ -113,7 +115,7 @@ nlohmann::ordered_json make_tiles(const schedule::AdaptiveSchedule& s) {
   nlohmann::ordered_json j;
   j["side"] = s.options().tile;
   j["target_error"] = s.options().target_error;
-  j["count"] = s.tiles().size();
+  j["count"] = s.sampled_tiles();
   j["done"] = s.count(TileState::done);
   j["capped"] = s.count(TileState::capped);
   j["limited_by_lookups"] = limited(s);
@@ -186,7 +188,7 @@ void report_unreached(const schedule::AdaptiveSchedule& s, const std::string& ad
     log::warning(
         "{} of {} tiles stay over the error of {} because of lookups; the worst has an error of {:.3f}, of "
         "which paths {:.3f}, at x {} y {}. More samples hardly help; {}",
-        by_lookups, s.tiles().size(), s.options().target_error, worst.sum(), worst.error,
+        by_lookups, s.sampled_tiles(), s.options().target_error, worst.sum(), worst.error,
         list.front() % s.tiles_across() * s.options().tile,
         list.front() / s.tiles_across() * s.options().tile, advice);
   if (by_lookups == list.size()) return;
@@ -194,7 +196,7 @@ void report_unreached(const schedule::AdaptiveSchedule& s, const std::string& ad
       "{} of {} tiles are over the error of {}: {} with all of {} samples, {} not finished; the worst, "
       "{:.3f}, "
       "at x {} y {}. More samples: --set sampling.max_samples=N",
-      list.size() - by_lookups, s.tiles().size(), s.options().target_error,
+      list.size() - by_lookups, s.sampled_tiles(), s.options().target_error,
       s.count(schedule::TileState::capped) - by_lookups, s.options().max_samples,
       list.size() - s.count(schedule::TileState::capped), worst.sum(),
       list.front() % s.tiles_across() * s.options().tile, list.front() / s.tiles_across() * s.options().tile);

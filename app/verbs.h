@@ -12,6 +12,9 @@
 
 namespace lucerna::app {
 
+/// The largest number of pictures of a turntable.
+inline constexpr uint32_t k_most_views = 9999;
+
 struct RenderArguments {
   std::string scene;
   std::vector<std::string> outputs;
@@ -29,11 +32,14 @@ struct RenderArguments {
   std::vector<double> shift;     ///< right, up; empty: the scene's
   std::vector<std::string> set;  ///< key=value
   bool quiet = false;
+  std::optional<std::string> tev;       ///< HOST:PORT of a viewer that gets the layers; "": the default one
   bool filter = false;                  ///< files contain the filtered picture too
   std::string record_paths;             ///< file for recorded paths; "": none
   uint64_t record_every = 100;          ///< every n-th path is recorded
   double record_over = 0;               ///< only paths with more light, in luminance
   std::vector<uint32_t> record_region;  ///< X Y WIDTH HEIGHT, pixels; empty: the picture
+  std::vector<uint32_t> region;         ///< likewise: pixels that get samples
+  uint32_t turntable = 0;               ///< pictures around the camera's target; 0: one, from the camera
   scene::LoadOptions scenes;            ///< limits for files and memory of scenes; likewise below
 };
 int render(const RenderArguments& arguments);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <span>
 
+#include "base/error.h"
+#include "film/io/ocio.h"
 #include "film/tonemap.h"
 
 namespace lucerna::ui {
@@ -29,15 +31,44 @@ session::HeldPicture reduced(const session::HeldPicture& picture, uint32_t width
 }
 
 std::string ComparePictures::display() const {
-  return open_.setting("film.ev") + " " + open_.setting("film.tone_curve");
+  return open_.setting("film.ev") + " " + open_.setting("film.tone_curve") + " " + open_.setting("film.ocio");
 }
 
+namespace {
+
+/// The light by the display and view of film.ocio; empty if it is not used, or has become unreadable.
+std::vector<uint8_t> displayed_by_ocio(std::span<const vec3> light, float ev, const std::string& ocio) {
+  if (ocio.empty()) return {};
+  try {
+    const auto config = film::ocio_config();
+    if (!config) return {};
+    std::vector<vec3> colors(light.begin(), light.end());
+    for (vec3& c : colors) c *= film::exposure_factor(ev);
+    const auto [display, view] = config->split(ocio);
+    config->show(display, view, colors);
+    std::vector<uint8_t> rgba;
+    rgba.reserve(4 * colors.size());
+    for (const vec3& c : colors) {
+      for (int k = 0; k < 3; ++k)
+        rgba.push_back(static_cast<uint8_t>((c[k] > 0 ? std::min(c[k], 1.0f) : 0) * 255 + 0.5f));
+      rgba.push_back(255);
+    }
+    return rgba;
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+}  // namespace
+
 std::vector<uint8_t> ComparePictures::displayed(std::span<const vec3> light) const {
+  const auto ev = static_cast<float>(open_.setting_real("film.ev"));
+  if (std::vector<uint8_t> rgba = displayed_by_ocio(light, ev, open_.setting("film.ocio")); !rgba.empty())
+    return rgba;
   const std::vector<std::string>& curves = plan::find_option("film.tone_curve")->choices;
   const auto curve =
       std::find(curves.begin(), curves.end(), open_.setting("film.tone_curve")) - curves.begin();
-  return film::tone_map_picture(light, static_cast<float>(open_.setting_real("film.ev")),
-                                static_cast<film::ToneCurve>(curve));
+  return film::tone_map_picture(light, ev, static_cast<film::ToneCurve>(curve));
 }
 
 unsigned ComparePictures::held(const commands::HeldResult& held) const {

@@ -70,6 +70,7 @@ std::vector<std::pair<std::string, std::string>> key_rows() {
            {"", ""},
            {"Space", "pause, resume"},
            {"R", "restart the picture"},
+           {"Ctrl + R", "choose a rectangle that gets all samples"},
            {"U", "show unfiltered samples, or the preview"},
            {"Tab", "panels"},
            {"F5", "reload shaders"},
@@ -226,6 +227,8 @@ void handle_keys(Ui& ui) {
       ui.act("camera.focusing", false);
     else if (ui.paths.pick != PathsView::Pick::none)
       ui.act("paths.pick", "none");
+    else if (ui.region.picks)
+      ui.act("region.pick", false);
     else if (ui.open.loading())
       ui.act("scene.cancel");
     else if (!ui.cards.errors.empty())
@@ -239,6 +242,7 @@ void handle_keys(Ui& ui) {
   if (ui.pressed(GLFW_KEY_B, GLFW_MOD_CONTROL) && ui.camera.view) keep_view(ui);
   if (ui.pressed(GLFW_KEY_B) && ui.camera.view) ui.act("exposure.dropper", !ui.dropper);
   if (ui.pressed(GLFW_KEY_R)) ui.act("render.restart");
+  if (ui.pressed(GLFW_KEY_R, GLFW_MOD_CONTROL) && ui.open.scene) ui.act("region.pick", !ui.region.picks);
   if (ui.pressed(GLFW_KEY_I) && ui.open.scene) {
     if (ui.held_pixel.reported && ui.work.pixel)
       trace_pixel(ui, ui.work.pixel->at);

@@ -4,9 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 
+#include "base/error.h"
 #include "chart.h"
+#include "film/io/ocio.h"
 #include "plan/views.h"
 #include "shown_text.h"
 #include "solvers/registry.h"
@@ -91,6 +94,35 @@ const char* key_name(char shortcut) {
   return shortcut ? name : nullptr;
 }
 
+/// The displays and views of $OCIO, with the tone curve; nothing if it is not set.
+void ocio_menu(Ui& ui) {
+  static const bool has_ocio = [] {
+    const char* file = std::getenv("OCIO");
+    return file && *file;
+  }();
+  if (!has_ocio ||
+      !begin_submenu("OCIO display", "Displays and views of the configuration that $OCIO names."))
+    return;
+  const std::string& chosen = ui.open.setting("film.ocio");
+  if (entry("Tone curve", nullptr, "The picture by its tone curve, without OCIO.", chosen.empty()))
+    ui.act("view.ocio", "off");
+  try {
+    const auto config = film::ocio_config();
+    for (const film::OcioDisplay& display : config->displays()) {
+      divide();
+      for (const std::string& view : display.views) {
+        const std::string text = film::ocio_text(display.name, view);
+        const bool on = chosen == text || (chosen == display.name && view == display.views.front());
+        if (entry(elided(text, px(240)).c_str(), nullptr, config->file().c_str(), on))
+          ui.act("view.ocio", display.name, view);
+      }
+    }
+  } catch (const Error& e) {
+    entry("No configuration", nullptr, e.what(), false, false);
+  }
+  end_submenu();
+}
+
 /// Loading and saving the work of solvers that can store it in files.
 void solver_files(Ui& ui) {
   const bool picture = ui.has_picture();
@@ -150,6 +182,13 @@ void file_menu(Ui& ui) {
     ui.act("dialog.save");
   if (entry("Screenshot", "F12", "Saves the window with its panels as a PNG in the working folder."))
     ui.act("screenshot");
+  const std::string viewer = ui.open.snapshot ? ui.open.snapshot->tev : "";
+  if (entry("Send to tev", nullptr,
+            viewer.empty()
+                ? "Sends all layers to a running tev (127.0.0.1:14158) while the picture is rendered."
+                : ("Sends all layers to " + viewer + "; select it again to end this.").c_str(),
+            !viewer.empty(), picture))
+    ui.act(viewer.empty() ? "tev.send" : "tev.stop");
   divide();
   const session::Accuracy* accuracy = ui.open.snapshot ? ui.open.snapshot->accuracy.get() : nullptr;
   const bool reference = accuracy && !accuracy->reference.empty();
@@ -277,6 +316,14 @@ void view_menu(Ui& ui) {
           "Marks lamps and emissive surfaces in the picture. Click a mark to select, drag it to move a lamp.",
           ui.light_marks))
     ui.act("view.lamps", !ui.light_marks);
+  if (entry("Histogram", nullptr, "Shows how many pixels have which display value, and how many are clipped.",
+            ui.histogram.on))
+    ui.act("view.histogram", !ui.histogram.on);
+  if (entry("Camera frame", nullptr,
+            "Shows a frame with the camera's aspect ratio in the picture (command view.frame for another "
+            "ratio).",
+            ui.frame_guide.on))
+    ui.act("view.frame", !ui.frame_guide.on);
   if (const OptionInfo* tiles = plan::find_option("overlay.tiles");
       entry("Tiles", "T", tiles->help.c_str(), ui.open.setting_on(tiles->key)))
     ui.toggle(tiles->key);
@@ -302,6 +349,7 @@ void view_menu(Ui& ui) {
     }
     ImGui::PopID();
   }
+  ocio_menu(ui);
   if (entry("Clear earlier renders", nullptr, "Removes the lines of earlier renders from the Accuracy plot.",
             false, !ui.accuracy.runs.earlier().empty()))
     ui.act("accuracy.clear_runs");
@@ -331,6 +379,11 @@ void camera_menu(Ui& ui) {
   if (entry("Focus by a click", nullptr, "The next click in the picture puts the plane of focus there.",
             ui.scene_view.focusing, lens))
     ui.act("camera.focusing", !ui.scene_view.focusing);
+  if (entry(
+          "Turntable", nullptr,
+          ui.turntable > 0 ? "Stops the camera." : "Turns the camera about what it looks at, in 20 seconds.",
+          ui.turntable > 0, view))
+    ui.act("camera.turntable", ui.turntable > 0 ? 0 : 20);
   if (entry("Make upright", nullptr,
             "Levels the camera and shifts the lens so that the picture's middle stays: vertical lines become "
             "vertical.",
@@ -367,6 +420,15 @@ void render_menu(Ui& ui) {
   if (entry("Restart", "R", "Discards all samples and restarts the picture.", false,
             ui.open.snapshot != nullptr))
     ui.act("render.restart");
+  if (entry("Region", "Ctrl+R",
+            "The next drag in the picture chooses a rectangle that gets all samples; the rest keeps those it "
+            "has.",
+            ui.region.picks, ui.open.scene != nullptr))
+    ui.act("region.pick", !ui.region.picks);
+  const bool region = !ui.open.setting("sampling.region").empty();
+  if (entry("Clear region", nullptr,
+            region ? "Gives samples to the whole picture again." : "There is no region.", false, region))
+    ui.act("region.clear");
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const solvers::CommandInfo& command : solver->commands)
       if (entry(fmt::format("{}: {}", solver->label, uncapitalised(command.label)).c_str(),

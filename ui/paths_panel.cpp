@@ -259,25 +259,13 @@ void draw_paths_panel(Controls& controls, const commands::Workspace& work, Paths
 
 bool drag_noise_area(Actions& actions, PathsView& view, const Area& picture, bool active) {
   if (view.pick != PathsView::Pick::area) return false;
-  const ImGuiIO& io = ImGui::GetIO();
-  const auto inside = [&](const ImVec2& at) {
-    return ImVec2(std::clamp(at.x, picture.lo.x, picture.hi.x), std::clamp(at.y, picture.lo.y, picture.hi.y));
-  };
-  if (active && io.MouseDown[0] && !view.from) view.from = inside(io.MouseClickedPos[0]);
-  if (!view.from) return false;
-  const ImVec2 to = inside(io.MousePos);
-  const ImVec2 lo(std::min(view.from->x, to.x), std::min(view.from->y, to.y)),
-      hi(std::max(view.from->x, to.x), std::max(view.from->y, to.y));
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  list->AddRectFilled(lo, hi, colour::accent_dim);
-  list->AddRect(lo, hi, colour::accent, 0, 0, px(1));
-  if (io.MouseDown[0]) return true;
-  view.from.reset();
+  const Marquee::State state = view.marquee.drag(picture, active);
+  if (state == Marquee::State::idle || state == Marquee::State::dragging)
+    return state != Marquee::State::idle;
   actions.act("paths.pick", "none");
-  const float w = std::max(1.0f, picture.width()), h = std::max(1.0f, picture.height());
-  if (hi.x - lo.x >= px(2) && hi.y - lo.y >= px(2))
-    actions.act("inspect.noise", (lo.x - picture.lo.x) / w, (lo.y - picture.lo.y) / h, (hi.x - lo.x) / w,
-                (hi.y - lo.y) / h);
+  if (state == Marquee::State::chosen)
+    actions.act("inspect.noise", view.marquee.lo().x, view.marquee.lo().y, view.marquee.size().x,
+                view.marquee.size().y);
   return true;
 }
 

@@ -5,6 +5,7 @@
 
 #include "controls.h"
 #include "layout.h"
+#include "marquee.h"
 
 namespace lucerna::ui {
 
@@ -14,8 +15,8 @@ inline constexpr const char* k_paths_side = "paths";
 /// What the next press in the picture does for this panel.
 struct PathsView {
   enum class Pick { none, pixel, area } pick = Pick::none;
-  int count = 64;              ///< paths to trace
-  std::optional<ImVec2> from;  ///< first corner of an area that is being dragged
+  int count = 64;   ///< paths to trace
+  Marquee marquee;  ///< of an area
 };
 
 void draw_paths_panel(Controls& controls, const commands::Workspace& work, PathsView& view, const Area& area);

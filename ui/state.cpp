@@ -68,6 +68,14 @@ void Ui::place_by_wheel(const Viewpoint& to) {
   actions.act_in(wheel_gesture_, commands::Navigation::place_line(to));
 }
 
+void Ui::turn(const Viewpoint& to) { actions.act_in(turn_gesture_, commands::Navigation::place_line(to)); }
+
+void Ui::start_turntable(float seconds) {
+  turntable = seconds;
+  turn_gesture_ = actions.new_gesture();
+  wake(3);
+}
+
 void Ui::notice(const std::string& text, double seconds) {
   cards.note.text = text, cards.note.until = work.now + seconds;
   wake(3);
@@ -177,6 +185,12 @@ void Ui::fail(const std::string& message) {
   if (cards.errors.empty() || cards.errors.back() != message) cards.errors.push_back(message);
   if (cards.errors.size() > 3) cards.errors.erase(cards.errors.begin());
   wake();
+}
+
+void Ui::take_click() {
+  dropper = scene_view.focusing = region.picks = false;
+  paths.pick = PathsView::Pick::none;
+  paths.marquee.reset(), region.marquee.reset();
 }
 
 }  // namespace lucerna::ui

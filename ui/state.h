@@ -13,10 +13,13 @@
 #include "commands/workspace.h"
 #include "compare_panel.h"
 #include "controls.h"
+#include "frame_guide.h"
+#include "histogram.h"
 #include "lamp_handles.h"
 #include "layout.h"
 #include "log_view.h"
 #include "paths_panel.h"
+#include "region_view.h"
 #include "requests.h"
 #include "scene_view.h"
 #include "solvers/info.h"
@@ -80,6 +83,8 @@ struct Ui {
   std::set<int> chorded;  ///< GLFW keys whose last press was with Ctrl: they do not fly
   /// Moves the camera to a view reached by a drag or a flight.
   void place(const Viewpoint& view);
+  /// The same for the turntable: a turn is one step.
+  void turn(const Viewpoint& view);
   /// The same for the wheel: turns in quick succession are one step.
   void place_by_wheel(const Viewpoint& view);
   /// Where a drag in the picture started.
@@ -90,9 +95,16 @@ struct Ui {
   } drag;
   /// True: the next click in the picture sets the exposure.
   bool dropper = false;
-  /// ... does not select: it sets the exposure or the plane of focus, or traces paths.
-  bool click_taken() const { return dropper || scene_view.focusing || paths.pick != PathsView::Pick::none; }
+  /// ... does not select: it sets the exposure or the plane of focus, traces paths, or begins a rectangle.
+  bool click_taken() const {
+    return dropper || scene_view.focusing || paths.pick != PathsView::Pick::none || region.picks;
+  }
+  /// Ends what the next click was to do.
+  void take_click();
+  /// Turns the camera about what it looks at, once in that many seconds; 0: stops.
+  void start_turntable(float seconds);
   PathsView paths;
+  RegionView region;
   CompareState compare{open};
 
   HeldPixel held_pixel;
@@ -140,6 +152,10 @@ struct Ui {
   std::optional<std::pair<uint32_t, uint32_t>> picture_size;
   bool light_marks = false;  ///< lights are marked in the picture
   MarkedScene marked() { return {open, camera, light_marks}; }
+  HistogramView histogram;
+  FrameGuide frame_guide;
+  /// Seconds for a turn of the camera around what it looks at; 0: it does not turn.
+  float turntable = 0;
   bool brackets = true;  ///< the selected object is marked in the picture
   Area picture;          ///< where the picture may be
   bool picture_hovered = false;
@@ -182,7 +198,7 @@ struct Ui {
   void scene_changed();
 
   double wheeled_ = -10, blocked_said_ = -60;
-  uint64_t wheel_gesture_ = 0;
+  uint64_t wheel_gesture_ = 0, turn_gesture_ = 0;
 };
 
 /// Traces the paths of the pixel at that place, and shows their panel.

@@ -255,6 +255,13 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
     advance_view(ui, metres, through);
     ui.moving = true;
   }
+  if (active || flying || io.MouseWheel != 0) ui.turntable = 0;
+  if (ui.turntable > 0) {
+    Viewpoint view = *ui.camera.view;
+    commands::orbit(view, {2 * k_pi * std::min(io.DeltaTime, 0.1f) / ui.turntable, 0});
+    ui.turn(view);
+    ui.moving = true;
+  }
   // A press that hardly moves is a click; it becomes a drag after three pixels.
   if (active && (drag.x != 0 || drag.y != 0) && (flying || dragging())) {
     // Half a turn across the height of the picture.
@@ -298,6 +305,7 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
 /// exposure, and while focusing the plane of focus.
 void click(Ui& ui, const Area& shown) {
   const ImVec2 at = ImGui::GetIO().MousePos;
+  if (closes_region(ui.open, shown, at)) return ui.act("region.clear");
   if (!ui.click_taken())
     if (const auto lamp = lamp_handle_at(ui.marked(), shown, at))
       return ui.act("select", lamp->part == LampHandle::Part::surface ? "material" : "light",
@@ -314,7 +322,7 @@ void click(Ui& ui, const Area& shown) {
   } else if (ui.paths.pick == PathsView::Pick::pixel) {
     ui.act("paths.pick", "none");
     trace_pixel(ui, {x, y});
-  } else if (ui.paths.pick == PathsView::Pick::none) {
+  } else if (!ui.click_taken()) {
     ui.act("pick", x, y);
   }
 }
@@ -399,9 +407,14 @@ void draw_toolbar(Ui& ui, const Area& area) {
     int chosen = static_cast<int>(
         std::find(tone->choices.begin(), tone->choices.end(), ui.open.setting("film.tone_curve")) -
         tone->choices.begin());
-    if (choice("##tone", "", names, chosen, tone_width))
+    const std::string& ocio = ui.open.setting("film.ocio");
+    if (!ocio.empty()) {
+      chosen = static_cast<int>(names.size());
+      names.emplace_back("OCIO");
+    }
+    if (choice("##tone", "", names, chosen, tone_width) && static_cast<size_t>(chosen) < tone->choices.size())
       ui.act("set", "film.tone_curve", tone->choices[static_cast<size_t>(chosen)]);
-    tooltip(tone->help);
+    tooltip(ocio.empty() ? tone->help : ocio + ", of the configuration that $OCIO names; see the View menu.");
     right -= px(4);
   }
   if (const OptionInfo* ev = plan::find_option("film.ev")) {
@@ -468,6 +481,8 @@ void draw_picture(Ui& ui, const Area& area) {
       hot = lamp_handle_at(ui.marked(), frame, ImGui::GetIO().MousePos);
     draw_lamp_handles(ui.marked(), frame, hot);
     if (ui.brackets) draw_brackets(ui, frame);
+    draw_region(ui.open, frame);
+    draw_frame_guide(ui.frame_guide, ui.open.snapshot->camera, frame);
   }
   if (!shown) draw_empty_state(ui.actions, ui.open, ui.recent, area);
   Area legend;
@@ -475,6 +490,7 @@ void draw_picture(Ui& ui, const Area& area) {
     legend = draw_legend(ui.open, ui.light_marks, frame, ui.picture);
     draw_inspection(*ui.open.snapshot, frame, legend);
     draw_pixel_card(ui.work, frame);
+    ui.histogram.draw(*ui.open.snapshot, frame, ui.picture);
   }
   draw_cards(ui.actions, ui.open, ui.cards, ui.work.now, area, legend);
 
@@ -501,7 +517,8 @@ void draw_picture(Ui& ui, const Area& area) {
       click(ui, frame);
   }
   if (shown && ui.side == k_paths_side) draw_paths_marks(ui.work, frame);
-  if (shown && drag_noise_area(ui.actions, ui.paths, frame, active)) {
+  if (shown && (drag_noise_area(ui.actions, ui.paths, frame, active) ||
+                drag_region(ui.actions, ui.region, frame, active))) {
     ui.wake(2);
     ImGui::End();
     return;

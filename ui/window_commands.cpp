@@ -157,14 +157,16 @@ void add_picture_commands(Ui& ui, const Add& add) {
       "exposure.dropper", "Makes the next click in the picture set the exposure from the clicked point.",
       {on()},
       [&ui](const Arguments& a) {
-        ui.dropper = a.boolean("on"), ui.scene_view.focusing = false, ui.paths.pick = {};
+        ui.take_click();
+        ui.dropper = a.boolean("on");
         if (ui.dropper) ui.notice("Click a grey point to show it as middle grey. Esc cancels.");
       },
       false);
   add(
       "camera.focusing", "Makes the next click in the picture focus on the clicked point.", {on()},
       [&ui](const Arguments& a) {
-        ui.scene_view.focusing = a.boolean("on"), ui.dropper = false, ui.paths.pick = {};
+        ui.take_click();
+        ui.scene_view.focusing = a.boolean("on");
         if (ui.scene_view.focusing) ui.notice("Click a surface to focus on it. Esc cancels.");
       },
       false);
@@ -177,14 +179,47 @@ void add_picture_commands(Ui& ui, const Add& add) {
       [&ui](const Arguments& a) {
         using Pick = PathsView::Pick;
         const std::string& what = a.text("what");
+        ui.take_click();
         ui.paths.pick = what == "pixel" ? Pick::pixel : what == "area" ? Pick::area : Pick::none;
-        ui.paths.from.reset();
-        ui.dropper = ui.scene_view.focusing = false;
         if (ui.paths.pick == Pick::none) return;
         ui.side = k_paths_side;
         set_open(ui.layout, "right", true);
         ui.notice(ui.paths.pick == Pick::pixel ? "Click a pixel to trace its paths. Esc cancels."
                                                : "Drag a rectangle to explain its noise. Esc cancels.");
+      },
+      false);
+  add(
+      "region.pick", "Makes the next drag in the picture choose the region that gets all samples.", {on()},
+      [&ui](const Arguments& a) {
+        ui.take_click();
+        ui.region.picks = a.boolean("on");
+        if (ui.region.picks) ui.notice("Drag a rectangle: it gets all samples. Esc cancels.");
+      },
+      false);
+  add("view.histogram",
+      "Shows a histogram of the picture as displayed, with its overlays, and the shares of black and clipped "
+      "pixels.",
+      {on()}, [&ui](const Arguments& a) { ui.histogram.on = a.boolean("on"); });
+  add("view.frame",
+      "Shows a frame with the camera's aspect ratio, or another one, in the picture: what a picture of that "
+      "ratio "
+      "shows.",
+      {on(),
+       {.name = "aspect",
+        .type = Type::real,
+        .help = "width over height",
+        .lo = 0.01,
+        .hi = 100,
+        .optional = true}},
+      [&ui](const Arguments& a) {
+        ui.frame_guide = {a.boolean("on"), a.has("aspect") ? a.number("aspect") : 0};
+      });
+  add(
+      "camera.turntable", "Turns the camera about what it looks at, until it is moved by hand; 0: stops.",
+      {{.name = "seconds", .type = Type::real, .help = "for a turn", .lo = 0, .hi = 3600, .unit = "s"}},
+      [&ui](const Arguments& a) {
+        if (a.number("seconds") > 0) ui.camera.needs_view();
+        ui.start_turntable(a.number("seconds"));
       },
       false);
   add("view.divisor", "Sets the pixels of the window per pixel of the picture, along a side.",

@@ -48,7 +48,7 @@ double fraction_done(const Renderer& r, const Budget& budget, double seconds) {
   if (budget.kind == BudgetKind::seconds) return std::min(1.0, seconds / budget.value);
   if (const schedule::AdaptiveSchedule* s = r.adaptive())
     return double(s->count(schedule::TileState::done) + s->count(schedule::TileState::capped)) /
-           double(s->tiles().size());
+           double(s->sampled_tiles());
   const double pixels = double(r.film().width()) * r.film().height();
   return std::min(1.0, double(r.stats().paths) / pixels / r.max_samples());
 }

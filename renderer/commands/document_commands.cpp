@@ -54,6 +54,9 @@ void give(Workspace& work, const std::string& key, const std::string& value) {
   if (key == "camera" && work.camera.view && !work.open.loading() && work.open.setting(key) != value)
     throw Error("", "the camera to start with; camera.select takes another one now");
   if (key == "film.ev") work.exposure.note_given();
+  // The last choice of how light is displayed counts.
+  if (key == "film.tone_curve" && !work.open.setting("film.ocio").empty())
+    work.open.set_by_name("film.ocio", "");
   if (work.events.set_with)
     for (const auto& [other, to] : work.events.set_with(key, value)) work.open.set_by_name(other, to);
   work.open.set_by_name(key, value);

@@ -40,6 +40,9 @@ Workspace::Workspace(session::Session& s, WorkspaceEvents e)
   add_inspect_commands(*this);
   add_effect_commands(registry, open);
   add_path_commands(*this);
+  add_region_commands(*this);
+  add_viewer_commands(*this);
+  add_ocio_commands(*this);
   add_compare_commands(*this);
   add_solver_commands(registry, open, files);
   add_values(*this);

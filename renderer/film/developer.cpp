@@ -35,7 +35,15 @@ void Developer::develop(gpu::Stream& stream, const Film& film, const View& view,
                       coarse ? coarse->width() : 0,
                       coarse ? coarse->height() : 0,
                       0};
-  stream.dispatch(tonemap_, resources_, push, groups(film));
+  stream.dispatch(tonemap_kernel(view), resources_, push, groups(film));
+}
+
+gpu::Kernel& Developer::tonemap_kernel(const View& view) {
+  if (!view.display_lut) return tonemap_;
+  if (!tonemap_by_lut_)
+    tonemap_by_lut_ = gpu::Kernel(device_, compiler_, "film/tonemap.comp", {{"LUCERNA_DISPLAY_LUT", "1"}});
+  resources_.set("DisplayLut", *view.display_lut);
+  return tonemap_by_lut_;
 }
 
 void Developer::tone_map(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse) {

@@ -11,11 +11,12 @@ class Developer {
   /// Compiles its kernels; throws Error, located.
   Developer(gpu::Device& device, gpu::ShaderCompiler& compiler);
 
-  /// Tone-maps the film. `coarse`: fills pixels without samples, if given (it is tone-mapped first). Runs the
-  /// stream; its time belongs to no stage.
+  /// Tone-maps the film, by the view's display_lut if it has one. `coarse`: fills pixels without samples, if
+  /// given (it is tone-mapped first). Runs the stream; its time belongs to no stage.
   void tone_map(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse = nullptr);
-  /// Picture of all components with the mix of light groups (Film::set_mix), from the data for immediate
-  /// display (Film::quick). Compiles its kernel unless prepare_mix() has. Runs the stream.
+  /// Picture of all components with the mix of light groups (Film::set_mix), by the view's tone curve, from
+  /// the data for immediate display (Film::quick). Compiles its kernel unless prepare_mix() has. Runs the
+  /// stream.
   void mix(gpu::Stream& stream, const Film& film, const View& view);
   /// Compiles the kernel of mix(), so that the first mix does not wait. Does nothing if already done or if
   /// the film is not Film::quick(). Runs the stream. Throws Error, located.
@@ -27,12 +28,14 @@ class Developer {
 
  private:
   void develop(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse);
+  gpu::Kernel& tonemap_kernel(const View& view);
 
   gpu::Kernel& mix_kernel(const Film& film, const View& view);
 
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
   gpu::Kernel tonemap_, heat_, tiles_;
+  gpu::Kernel tonemap_by_lut_;  ///< for views with a display_lut; compiled at the first use
   std::map<std::pair<bool, uint32_t>, gpu::Kernel> mixes_;  ///< by Film::is_compact and curve
   gpu::Buffer no_coarse_;
   gpu::Resources resources_;

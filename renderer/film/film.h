@@ -45,6 +45,9 @@ struct View {
   /// Side of the tiles whose marks (Film::mark_tiles) are drawn over the picture; 0: none.
   uint32_t tiles = 0;
   bool tint_former = false;  ///< of a preview: tints light from before the last edit
+  /// A table in place of the tone curve (shaders/shared/display_lut.h): vec4 a node. It must outlive the use
+  /// of the view. Null: none.
+  const gpu::Buffer* display_lut = nullptr;
 };
 
 /// Storage of separate light groups.

@@ -37,6 +37,7 @@ bool PreviewCamera::operator==(const PreviewCamera& o) const {
 
 Preview::Preview(gpu::Device& device, gpu::ShaderCompiler& compiler)
     : device_(device),
+      compiler_(compiler),
       pack_(device, compiler, "film/preview_pack.comp"),
       halve_(device, compiler, "film/preview_halve.comp"),
       change_(device, compiler, "film/preview_change.comp"),
@@ -204,7 +205,17 @@ const Preview::Pixels& Preview::history(gpu::Stream& stream, const PreviewCamera
   return moved_;
 }
 
-void Preview::show(gpu::Stream& stream, const Film& film, const Pixels& seen, PreviewRecallPush push) {
+gpu::Kernel& Preview::by_lut(const gpu::Buffer* lut, gpu::Kernel& kernel, gpu::Kernel& with_lut,
+                             const char* file) {
+  if (!lut) return kernel;
+  if (!with_lut) with_lut = gpu::Kernel(device_, compiler_, file, {{"LUCERNA_DISPLAY_LUT", "1"}});
+  resources_.set("DisplayLut", *lut);
+  return with_lut;
+}
+
+void Preview::show(gpu::Stream& stream, const Film& film, const Pixels& seen, PreviewRecallPush push,
+                   const gpu::Buffer* lut) {
+  gpu::Kernel& recall = by_lut(lut, recall_, recall_by_lut_, "film/preview_recall.comp");
   resources_.set("history_texels", seen.light);
   resources_.set("history_surfaces", seen.surfaces);
   resources_.set("Picture", film.picture());
@@ -215,7 +226,7 @@ void Preview::show(gpu::Stream& stream, const Film& film, const Pixels& seen, Pr
   for (push.pass = 0; push.pass < (push.seen ? 4u : 3u); ++push.pass) {
     resources_.set("cell_texels", before_[(push.pass + 1) % 2]);
     resources_.set("Cells", push.pass == 2 ? texture_[0] : before_[push.pass % 2]);
-    stream.dispatch(recall_, resources_, push,
+    stream.dispatch(recall, resources_, push,
                     groups(push.pass < 2    ? cells
                            : push.pass == 2 ? push.width * push.height
                                             : pixels()));
@@ -233,7 +244,7 @@ void Preview::warm(gpu::Stream& stream, const Film& film) {
   stream.dispatch(change_, resources_, PreviewChangePush{.all = 1}, 1);  // without blocks
   move(stream, {});                                                      // without pixels
   fetch(stream, camera_, moved_.surfaces, 0, 0, moved_, false);
-  show(stream, film, moved_, {});
+  show(stream, film, moved_, {}, nullptr);
 }
 
 void Preview::recall(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera) {
@@ -243,7 +254,8 @@ void Preview::recall(gpu::Stream& stream, const Film& film, const View& view, co
         .show = shown_components(view),
         .curve = view.curve,
         .history_scale = history_.scale_for(view),
-        .tint = view.tint_former});
+        .tint = view.tint_former},
+       view.display_lut);
 }
 
 void Preview::recall_on(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera,
@@ -259,7 +271,8 @@ void Preview::recall_on(gpu::Stream& stream, const Film& film, const View& view,
         .curve = view.curve,
         .history_scale = history_.scale_for(view),
         .seen = 1,
-        .tint = view.tint_former});
+        .tint = view.tint_former},
+       view.display_lut);
 }
 
 void Preview::take(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera,
@@ -452,7 +465,8 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
                                    .surfaces = surfaces,
                                    .moved = moved,
                                    .tint = view.tint_former};
-  stream.dispatch(resolve_, resources_, resolve, groups(pixels()));
+  stream.dispatch(by_lut(view.display_lut, resolve_, resolve_by_lut_, "film/preview_resolve.comp"),
+                  resources_, resolve, groups(pixels()));
   const bool measured = judge(stream, by_draft && draft ? *draft : film, view);
   stream.run();
   stream.take_times();

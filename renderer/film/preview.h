@@ -121,13 +121,19 @@ class Preview {
   void move(gpu::Stream& stream, shared::PreviewReprojectPush push);
   void fetch(gpu::Stream& stream, const PreviewCamera& now, const gpu::Buffer& seen, uint32_t width,
              uint32_t height, const Pixels& to, bool keep);
-  void show(gpu::Stream& stream, const Film& film, const Pixels& seen, shared::PreviewRecallPush push);
+  /// `lut`: of the view; null: none.
+  void show(gpu::Stream& stream, const Film& film, const Pixels& seen, shared::PreviewRecallPush push,
+            const gpu::Buffer* lut);
+  /// The kernel, or the one that shows its result by the view's table.
+  gpu::Kernel& by_lut(const gpu::Buffer* lut, gpu::Kernel& kernel, gpu::Kernel& with_lut, const char* file);
   const Pixels& history(gpu::Stream& stream, const PreviewCamera& now, const gpu::Buffer* seen = nullptr);
   uint32_t pixels() const { return width_ * height_; }
 
   gpu::Device& device_;
+  gpu::ShaderCompiler& compiler_;
   gpu::Kernel pack_, halve_, change_, first_filter_, filter_, scatter_, gather_, fetch_, recall_, resolve_,
       judge_;
+  gpu::Kernel recall_by_lut_, resolve_by_lut_;  ///< for views with a display_lut; compiled at the first use
   uint32_t width_ = 0, height_ = 0;
   Pixels now_, draft_;
   History history_;

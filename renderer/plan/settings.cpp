@@ -64,6 +64,11 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
   list.push_back(choice_option("sampling.tile", "16", {"8", "16"}, "pixels",
                                "Side of the tiles of adaptive and of coherent sampling.",
                                "Tile of sampling"));
+  list.push_back(without_restart(text_option(
+      "sampling.region",
+      "LEFT,TOP,WIDTH,HEIGHT, in fractions of the picture: only this rectangle gets samples, in whole blocks "
+      "of 8x8 pixels (adaptive: tiles); the rest keeps those it has. Empty: the whole picture. In the window "
+      "every pixel first gets two samples.")));
   list.push_back(boolean_option(
       "sampling.coherent", "false",
       "The pixels of a tile share their random sequence: neighbouring paths stay coherent, which some "
@@ -149,6 +154,11 @@ void add_display_options(std::vector<OptionInfo>& list) {
                                "Background"));
   list.push_back(without_restart(choice_option("film.tone_curve", "neutral", {"neutral", "agx", "linear"}, "",
                                                "Tone curve of the display and of PNG files.")));
+  list.push_back(without_restart(text_option(
+      "film.ocio",
+      "DISPLAY: VIEW of the OpenColorIO configuration that the environment variable OCIO names, in place of "
+      "the tone curve, in the window and in PNG files; without a view the display's default one. Empty: the "
+      "tone curve, as after a choice of one. Errors as seen always follow the tone curve.")));
   list.push_back(without_restart(choice_option("film.layer", "beauty",
                                                {"beauty", "primary", "secondary", "tertiary", "caustic",
                                                 "albedo", "normal", "depth", "samples", "error", "cost"},

@@ -33,7 +33,14 @@ AdaptiveSchedule::AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down,
   across_ = (blocks_across + side - 1) / side;
   down_ = (blocks_down + side - 1) / side;
   tiles_.resize(size_t{across_} * down_);
-  open_ = static_cast<uint32_t>(tiles_.size());
+  for (uint32_t t = 0; t < tiles_.size(); ++t) {
+    const std::vector<uint32_t> blocks = blocks_of(t);
+    const bool sampled = std::any_of(blocks.begin(), blocks.end(), [&](uint32_t b) {
+      return options.region.contains(b % blocks_across, b / blocks_across);
+    });
+    if (!sampled) tiles_[t].state = TileState::resting;
+    open_ += sampled;
+  }
   start_round();
 }
 
@@ -48,11 +55,12 @@ AdaptiveSchedule::AdaptiveSchedule(uint32_t blocks_across, uint32_t blocks_down,
     for (const uint32_t b : blocks_of(t)) least = std::min(least, have[b]), most = std::max(most, have[b]);
     tile.samples = (most + 1) / 2 * 2;  // both halves of the film agree
     for (const uint32_t b : blocks_of(t))
-      if (have[b] < tile.samples) behind_.push_back({b, have[b], tile.samples - have[b]});
+      if (have[b] < tile.samples)
+        (rests(t) ? left_behind_ : behind_).push_back({b, have[b], tile.samples - have[b]});
     // One sample gives no error estimate.
     tile.error = least >= 2 ? errors[t].paths : k_unknown_error;
     tile.records = errors[t].records, tile.interpolation = errors[t].interpolation;
-    tile.state = tile.samples < options_.min_samples ? TileState::waiting : TileState::active;
+    if (!rests(t)) tile.state = tile.samples < options_.min_samples ? TileState::waiting : TileState::active;
   }
   std::stable_sort(behind_.begin(), behind_.end(), [&](const Behind& a, const Behind& b) {
     return options_.one_sample ? a.have > b.have : a.lacks < b.lacks;
@@ -70,7 +78,8 @@ void AdaptiveSchedule::set_limits(const AdaptiveOptions& options) {
 void AdaptiveSchedule::retarget(const AdaptiveOptions& options) {
   set_limits(options);
   for (Tile& tile : tiles_)
-    tile.state = tile.samples < options_.min_samples ? TileState::waiting : TileState::active;
+    if (tile.state != TileState::resting)
+      tile.state = tile.samples < options_.min_samples ? TileState::waiting : TileState::active;
   update_states();
   start_round();
 }
@@ -201,7 +210,8 @@ void AdaptiveSchedule::update_states() {
       const int x = static_cast<int>(t % across_), y = static_cast<int>(t / across_);
       for (int v = std::max(0, y - 1); v <= std::min(static_cast<int>(down_) - 1, y + 1); ++v)
         for (int u = std::max(0, x - 1); u <= std::min(static_cast<int>(across_) - 1, x + 1); ++u)
-          if (const Tile& n = tiles_[static_cast<size_t>(v) * across_ + u]; n.state != TileState::capped)
+          if (const Tile& n = tiles_[static_cast<size_t>(v) * across_ + u];
+              n.state != TileState::capped && n.state != TileState::resting)
             calm = calm && n.error <= k_neighbours * n.goal(options_.target_error);
       const float goal = tile.goal(options_.target_error);
       if ((tile.error <= goal && calm) || tile.samples >= options_.max_samples)
@@ -218,19 +228,22 @@ std::vector<uint32_t> AdaptiveSchedule::counts() const {
   for (uint32_t t = 0; t < tiles_.size(); ++t)
     for (const uint32_t b : blocks_of(t)) counts[b] = tiles_[t].samples;
   for (const Behind& b : behind_) counts[b.block] = b.have;
+  for (const Behind& b : left_behind_) counts[b.block] = b.have;
   return counts;
 }
 
 uint32_t AdaptiveSchedule::least_samples() const {
   uint32_t least = tiles_.empty() ? 0 : ~0u;
   for (const Behind& b : behind_) least = std::min(least, b.have);
-  for (const Tile& tile : tiles_) least = std::min(least, tile.samples);
+  for (const Tile& tile : tiles_)
+    if (tile.state != TileState::resting) least = std::min(least, tile.samples);
   return least;
 }
 
 uint32_t AdaptiveSchedule::most_samples() const {
   uint32_t most = 0;
-  for (const Tile& tile : tiles_) most = std::max(most, tile.samples);
+  for (const Tile& tile : tiles_)
+    if (tile.state != TileState::resting) most = std::max(most, tile.samples);
   return most;
 }
 

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "base/error_sum.h"
+#include "schedule/region.h"
 #include "schedule/work.h"
 
 namespace lucerna::schedule {
@@ -21,8 +22,9 @@ namespace lucerna::schedule {
 enum class TileState : uint8_t {
   waiting,  ///< waits for the minimum of samples
   active,
-  done,   ///< below the target
-  capped  ///< above it, with the maximum of samples or of useful samples (Tile::limited)
+  done,     ///< below the target
+  capped,   ///< above it, with the maximum of samples or of useful samples (Tile::limited)
+  resting,  ///< outside the region: gets no samples
 };
 
 /// An earlier error of a tile.
@@ -66,6 +68,7 @@ struct AdaptiveOptions {
            max_samples = 1024;  ///< a pixel; made even, so that both halves of the film agree
   uint32_t slots = 131072;      ///< maximum number of paths at once, at least those of one sample of a tile
   bool one_sample = false;      ///< items have one sample a pixel, the same for all of their blocks
+  Rectangle region = {};        ///< blocks; tiles with none of them get no samples
 };
 
 class AdaptiveSchedule {
@@ -84,9 +87,9 @@ class AdaptiveSchedule {
   const std::vector<uint32_t>& to_report() const { return item_tiles_; }
   /// Reports that the item is finished; `errors`: one per tile of to_report().
   void report(const std::vector<TileErrors>& errors);
-  /// Continues with another target, minimum or maximum (tile and slots are unchanged): tiles above the new
-  /// target get samples again, those below none, and no sample is discarded. Between report() or give_back()
-  /// and next().
+  /// Continues with another target, minimum or maximum (tile, slots and region are unchanged): tiles above
+  /// the new target get samples again, those below none, and no sample is discarded. Between report() or
+  /// give_back() and next().
   void retarget(const AdaptiveOptions& options);
   /// Returns an item that was not finished: next() gives it again.
   void give_back();
@@ -98,10 +101,12 @@ class AdaptiveSchedule {
   std::vector<uint32_t> blocks_of(uint32_t tile) const;
   /// Samples a pixel of every block, in raster order.
   std::vector<uint32_t> counts() const;
-  /// Minimum and maximum number of samples over the pixels.
+  /// Minimum and maximum number of samples over the pixels of the region.
   uint32_t least_samples() const;
   uint32_t most_samples() const;
   uint32_t count(TileState state) const;
+  /// Number of tiles of the region.
+  uint32_t sampled_tiles() const { return static_cast<uint32_t>(tiles_.size()) - count(TileState::resting); }
   /// Complete rounds: in each, all active tiles get the same samples.
   uint32_t rounds() const { return rounds_; }
   const AdaptiveOptions& options() const { return options_; }
@@ -112,6 +117,7 @@ class AdaptiveSchedule {
   /// For items of one sample: tiles with the same next sample are adjacent.
   void order_round();
   void update_states();
+  bool rests(uint32_t tile) const { return tiles_[tile].state == TileState::resting; }
 
   AdaptiveOptions options_;
   uint32_t blocks_across_ = 0, blocks_down_ = 0, across_ = 0, down_ = 0;
@@ -127,8 +133,9 @@ class AdaptiveSchedule {
   struct Behind {
     uint32_t block, have, lacks;
   };
-  std::vector<Behind> behind_;  // blocks with fewer samples than their tile; served from the end
-  size_t item_behind_ = 0;      // number of them in the last item
+  std::vector<Behind> behind_;       // blocks with fewer samples than their tile; served from the end
+  size_t item_behind_ = 0;           // number of them in the last item
+  std::vector<Behind> left_behind_;  // likewise, of resting tiles
 };
 
 }  // namespace lucerna::schedule

@@ -31,8 +31,20 @@ class UniformSchedule {
         have_(std::move(have)) {
     start_pass();
   }
+  /// Likewise, but only `blocks` (in raster order) get samples; the others keep those they have.
+  UniformSchedule(std::vector<uint32_t> have, std::vector<uint32_t> blocks, uint32_t samples,
+                  uint32_t slots_at_once, bool one_sample = false)
+      : blocks_(static_cast<uint32_t>(blocks.size())),
+        samples_(samples),
+        slots_(slots_at_once),
+        one_sample_(one_sample),
+        all_(std::move(have)),
+        index_(std::move(blocks)) {
+    for (const uint32_t b : index_) have_.push_back(all_[b]);
+    start_pass();
+  }
   bool done() const { return sample_ >= samples_ || blocks_ == 0; }
-  /// Minimum number of samples of a pixel; above samples() if that was reduced later.
+  /// Minimum number of samples of a pixel of these blocks; above samples() if that was reduced later.
   uint32_t complete() const { return sample_; }
   /// Changes the wanted number at any time. A pass in progress is completed unchanged.
   void set_samples(uint32_t samples) {
@@ -43,12 +55,17 @@ class UniformSchedule {
   /// Number of complete passes.
   uint32_t passes() const { return passes_; }
 
-  /// Samples a pixel of every block, in raster order.
+  /// Samples a pixel of every block of the picture, in raster order.
   std::vector<uint32_t> counts() const {
-    if (!have_.empty()) return have_;
-    std::vector<uint32_t> counts(blocks_, complete());
-    for (uint32_t b = 0; b < block_; ++b) counts[b] += pass_;
-    return counts;
+    std::vector<uint32_t> counts = have_;
+    if (counts.empty()) {
+      counts.assign(blocks_, complete());
+      for (uint32_t b = 0; b < block_; ++b) counts[b] += pass_;
+    }
+    if (index_.empty()) return counts;
+    std::vector<uint32_t> all = all_;
+    for (size_t i = 0; i < index_.size(); ++i) all[index_[i]] = counts[i];
+    return all;
   }
 
   WorkItem next() {
@@ -57,7 +74,7 @@ class UniformSchedule {
     const auto ahead = [&] { return !have_.empty() && have_[block_] != sample_; };
     for (; block_ < blocks_ && (item.blocks.size() < blocks_at_once || ahead()); ++block_) {
       if (ahead()) continue;
-      item.blocks.push_back({block_, sample_});
+      item.blocks.push_back({index_.empty() ? block_ : index_[block_], sample_});
       if (!have_.empty()) have_[block_] += pass_;
     }
     if (block_ == blocks_) {
@@ -93,6 +110,8 @@ class UniformSchedule {
   uint32_t block_ = 0, sample_ = 0, pass_ = 1, passes_ = 0;
   bool one_sample_ = false;
   std::vector<uint32_t> have_;  // samples of every block, while they differ; sample_ the least of them
+  // Of a region: samples that all blocks of the picture had, and its blocks, which are counted from 0 above.
+  std::vector<uint32_t> all_, index_;
 };
 
 }  // namespace lucerna::schedule

@@ -24,6 +24,12 @@ double seconds_a_ray(const stats::Ledger& ledger) {
          std::max(1.0, static_cast<double>(last.rays) - static_cast<double>(last.prepared_rays));
 }
 
+/// True if only a region of the picture gets samples: the ledger then does not predict its time.
+bool of_region(const Accuracy& a) {
+  const auto region = a.settings.find("sampling.region");
+  return region != a.settings.end() && !region->second.empty();
+}
+
 }  // namespace
 
 std::array<double, stats::k_layers> Accuracy::error() const {
@@ -36,6 +42,7 @@ uint32_t Accuracy::count(uint32_t state) const {
 }
 
 std::optional<stats::Band> seconds_to(const Accuracy& a, double target) {
+  if (of_region(a)) return std::nullopt;
   if (!a.adaptive) return stats::seconds_to(a.ledger, target);
   const double each = seconds_a_ray(a.ledger);
   if (a.ledger.entries().empty() || a.tiles.empty() || each <= 0 || a.paths <= 0 || !(target > 0))
@@ -73,6 +80,7 @@ std::optional<stats::Band> seconds_to(const Accuracy& a, double target) {
 uint32_t tiles_out_of_reach(const Accuracy& a, double target) {
   return static_cast<uint32_t>(std::count_if(a.tiles.begin(), a.tiles.end(), [&](const TileStatus& t) {
     const double goal = schedule::paths_goal(float(target), t.records, t.interpolation);
+    if (of_region(a) && t.state == shared::k_tile_done) return false;
     if (t.error <= goal || t.samples < stats::Outlook::k_least_samples) return false;
     const stats::TileProgress tile{.error = double(t.error), .samples = double(t.samples)};
     return !(goal > 0) || stats::samples_to(tile, goal, stats::k_usual_k) > a.max_samples;
@@ -80,7 +88,7 @@ uint32_t tiles_out_of_reach(const Accuracy& a, double target) {
 }
 
 std::optional<double> seconds_to_end(const Accuracy& a) {
-  if (a.adaptive || a.ledger.entries().empty()) return std::nullopt;
+  if (a.adaptive || a.ledger.entries().empty() || of_region(a)) return std::nullopt;
   const stats::Entry& last = a.ledger.entries().back();
   if (a.max_samples <= last.samples) return last.wall_s;
   const double each = stats::seconds_a_path(a.ledger);
@@ -106,7 +114,8 @@ std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {
       t.samples = known.samples;
       if (known.samples >= 2) t.error = known.error;
       t.records = known.records, t.interpolation = known.interpolation;
-      t.state = static_cast<uint32_t>(known.state);
+      t.state = known.state == schedule::TileState::resting ? shared::k_tile_done
+                                                            : static_cast<uint32_t>(known.state);
       t.earlier_error = known.earlier.error, t.earlier_samples = known.earlier.samples;
     } else {
       t.samples = r.samples();
@@ -143,7 +152,7 @@ void AccuracyKeeper::follow(const Renderer& r, uint64_t scene_id) {
   double hardest = 0;
   if (r.adaptive())
     for (const schedule::Tile& t : r.adaptive()->tiles())
-      if (t.state != schedule::TileState::capped && t.samples >= 2)
+      if (t.state != schedule::TileState::capped && t.state != schedule::TileState::resting && t.samples >= 2)
         hardest = std::max(hardest, double{t.sum()});
   now_.hardest.resize(lines.size(), hardest);
   if (!lines.empty()) now_.hardest.back() = hardest;

@@ -29,7 +29,7 @@ struct TileStatus {
   /// Likewise, at a quarter to half of the samples, in adaptive sampling; 0: unknown.
   float earlier_error = 0;
   uint32_t earlier_samples = 0;
-  uint32_t state = shared::k_tile_waiting;  ///< shared::k_tile_*
+  uint32_t state = shared::k_tile_waiting;  ///< shared::k_tile_*; outside a region: done
   bool heavy_tailed = false;
 };
 
@@ -72,7 +72,7 @@ struct Accuracy {
 
 /// Seconds of rendering, from the image's start, until it has that error. Uniform sampling: of the sum
 /// (stats::seconds_to). Adaptive sampling: of every tile, from the remaining rays of the tiles and the recent
-/// time per ray. nullopt if there is too little data.
+/// time per ray. nullopt if there is too little data, or only a region of the picture gets samples.
 std::optional<stats::Band> seconds_to(const Accuracy& accuracy, double target);
 
 /// Number of tiles that are not expected to reach the target within the maximum samples of adaptive sampling
@@ -80,7 +80,7 @@ std::optional<stats::Band> seconds_to(const Accuracy& accuracy, double target);
 uint32_t tiles_out_of_reach(const Accuracy& accuracy, double target);
 
 /// Seconds of rendering, from the image's start, until uniform sampling has all its samples (`samples`).
-/// nullopt in adaptive sampling and before the first entry of the ledger.
+/// nullopt in adaptive sampling, of a region, and before the first entry of the ledger.
 std::optional<double> seconds_to_end(const Accuracy& accuracy);
 
 /// Tiles of the current image with the latest error estimates. `flags`: mark heavy tails, which takes a pass

@@ -1,11 +1,26 @@
 #include "session/image_progress.h"
 
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "base/log.h"
 #include "stats/forecast.h"
 
 namespace lucerna::session {
+namespace {
+
+/// Those in a rectangle of blocks, of what lies in a grid of cells with `side` blocks along each side.
+template <class T>
+std::vector<T> inside(std::span<const T> cells, const schedule::Rectangle& blocks, uint32_t across,
+                      uint32_t side) {
+  std::vector<T> found;
+  for (uint32_t i = 0; i < cells.size(); ++i)
+    if (blocks.contains(i % across * side, i / across * side)) found.push_back(cells[i]);
+  return found;
+}
+
+}  // namespace
 
 void ImageProgress::restart() {
   ledger_.clear();
@@ -20,7 +35,9 @@ film::ImageError ImageProgress::estimate_error() const {
   transport::Wavefront& wavefront = setup_.engine->wavefront();
   setup_.engine->estimator().estimate(wavefront.stream(), *setup_.film, setup_.seen_range());
   wavefront.account_stages();
-  return film::image_error(setup_.film->errors());
+  if (sampling_.whole()) return film::image_error(setup_.film->errors());
+  return film::image_error(
+      inside(setup_.film->errors(), sampling_.region(), setup_.film->blocks_across(), 1));
 }
 
 void ImageProgress::set_reference(const std::filesystem::path& file) {
@@ -67,7 +84,8 @@ void ImageProgress::note(bool at_once) {
   for (const auto& stage : s.stages) entry.device_s += 1e-3 * stage.ms;
   entry.paths = s.paths;
   entry.rays = s.rays;
-  entry.samples = double(s.paths) / (double(setup_.film->width()) * setup_.film->height());
+  entry.samples = sampling_.whole() ? double(s.paths) / (double(setup_.film->width()) * setup_.film->height())
+                                    : sampling_.samples();
   entry.component_s[0] = entry.device_s;
   for (int c = 0; c < paths::k_component_count; ++c) entry.component_s[c + 1] = 1e-3 * s.component_ms[c];
   entry.has_error = sampling_.samples() >= 2;
@@ -79,7 +97,12 @@ void ImageProgress::note(bool at_once) {
     entry.degrees = error.seen_degrees;
     entry.of_mean.records = error.relative_records();
     entry.of_mean.interpolation = error.relative_interpolation();
-    const film::TileSpread tiles = film::tile_spread(film::tile_errors(*setup_.film, setup_.tile_side()));
+    std::vector<film::TileError> of_tiles = film::tile_errors(*setup_.film, setup_.tile_side());
+    const uint32_t side = setup_.tile_side() / shared::k_block;
+    if (!sampling_.whole())
+      of_tiles = inside<film::TileError>(of_tiles, sampling_.region(),
+                                         (setup_.film->blocks_across() + side - 1) / side, side);
+    const film::TileSpread tiles = film::tile_spread(of_tiles);
     entry.tile_median = tiles.median, entry.tile_worst_tenth = tiles.worst_tenth;
   }
   if (reference_applies()) {

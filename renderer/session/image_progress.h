@@ -35,7 +35,7 @@ class ImageProgress {
   double prepared_seconds() const { return prepared_s_; }
   const transport::TransportStats& prepared() const { return prepared_; }
 
-  /// Estimates the error from all pixels; a pass over the film.
+  /// Estimates the error from all pixels of the region that gets samples; a pass over the film.
   film::ImageError estimate_error() const;
   /// Adds an entry to the ledger if it is time for one, or at once.
   void note(bool at_once);

@@ -14,6 +14,13 @@
 #include "session/found_portals.h"
 
 namespace lucerna::session {
+namespace {
+
+void check_region(const plan::Settings& settings) {
+  schedule::parse_region(settings.text("sampling.region"), "sampling.region");
+}
+
+}  // namespace
 
 Renderer::Renderer(const RendererOptions& options)
     : options_(options),
@@ -53,12 +60,22 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
                          const std::vector<SettingChange>& changes) {
   // A scene starts with the defaults and its settings; only those of the machine stay.
   plan::Settings settings;
-  for (const char* key : {"tracer", "path.batch", "path.classes"})
+  for (const char* key : {"tracer", "path.batch", "path.classes", "film.ocio"})
     settings.set(key, setup_.settings.text(key));
   for (const auto& [key, value] : scene->settings) settings.set(key, value, "settings.json");
   for (const auto& [key, value] : scene->own_settings)
     settings.set(key, value, scene->file + ": extras.lucerna.settings");
   for (const SettingChange& change : changes) settings.set(change.key, change.value, change.where);
+  check_region(settings);
+  std::shared_ptr<const OcioTable> ocio;
+  try {
+    ocio = ocio_table(settings);
+  } catch (const Error& e) {
+    for (const SettingChange& change : changes)
+      if (change.key == "film.ocio") throw;
+    log::warning("{}; the picture is shown by its tone curve", e.what());
+    settings.set("film.ocio", "");
+  }
   const auto loaded = scene;
   Transaction::Target target(setup_);
   target.camera = scene::starting_camera(*scene, settings.text("camera"));
@@ -66,6 +83,7 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
   target.settings = std::move(settings);
   install(std::move(target), progress, scene::Change::shape);
   loaded_ = loaded;
+  ocio_ = std::move(ocio);
   overlays_.show_paths({});
 }
 
@@ -203,35 +221,59 @@ bool Renderer::keeps_light(const scene::Changes& changes) const {
          std::all_of(changes.settings.begin(), changes.settings.end(), kept);
 }
 
+std::optional<schedule::Rectangle> Renderer::region() const {
+  const auto region = schedule::parse_region(setup_.settings.text("sampling.region"), "sampling.region");
+  if (!region) return std::nullopt;
+  return schedule::pixels_of(*region, setup_.width, setup_.height);
+}
+
+schedule::Rectangle Renderer::scheduled_region() {
+  const std::optional<schedule::Rectangle> pixels = region();
+  region_waits_ = pixels && options_.interactive && samples() < k_around_region;
+  return pixels && !region_waits_ ? schedule::blocks_of(*pixels) : schedule::Rectangle{};
+}
+
 void Renderer::start_schedule() {
   seen_ = setup_.seen_range();
+  sampling_ = {};
+  const schedule::Rectangle blocks = scheduled_region();
   if (setup_.settings.text("sampling.mode") == "adaptive")
     sampling_.start(schedule::AdaptiveSchedule(setup_.film->blocks_across(), setup_.film->blocks_down(),
-                                               adaptive_options()));
+                                               adaptive_options(blocks)));
   else
-    sampling_.start(
-        schedule::UniformSchedule(setup_.film->blocks(), uint32_t(setup_.settings.integer("samples")),
-                                  setup_.engine->wavefront().slots(), setup_.engine->in_rounds()));
+    start_uniform(std::vector<uint32_t>(setup_.film->blocks(), 0), blocks);
+}
+
+void Renderer::start_uniform(std::vector<uint32_t> have, const schedule::Rectangle& region) {
+  const auto samples = uint32_t(setup_.settings.integer("samples"));
+  const uint32_t slots = setup_.engine->wavefront().slots();
+  const bool one = setup_.engine->in_rounds();
+  if (region == schedule::Rectangle{}) {
+    sampling_.start(schedule::UniformSchedule(std::move(have), samples, slots, one), region);
+    return;
+  }
+  std::vector<uint32_t> blocks =
+      schedule::indices_of(region, setup_.film->blocks_across(), setup_.film->blocks_down());
+  sampling_.start(schedule::UniformSchedule(std::move(have), std::move(blocks), samples, slots, one), region);
 }
 
 void Renderer::change_schedule() {
   seen_ = setup_.seen_range();
-  const std::vector<uint32_t> have = sampling_.counts();
+  std::vector<uint32_t> have = sampling_.counts();
+  const schedule::Rectangle blocks = scheduled_region();
   if (setup_.settings.text("sampling.mode") == "adaptive") {
     std::vector<schedule::TileErrors> errors;
     image_error();
     for (const film::TileError& t : film::tile_errors(*setup_.film, tile_side()))
       errors.push_back({float(t.relative), float(t.relative_records), float(t.relative_interpolation)});
     sampling_.start(schedule::AdaptiveSchedule(setup_.film->blocks_across(), setup_.film->blocks_down(),
-                                               adaptive_options(), have, errors));
+                                               adaptive_options(blocks), have, errors));
   } else {
-    sampling_.start(schedule::UniformSchedule(have, uint32_t(setup_.settings.integer("samples")),
-                                              setup_.engine->wavefront().slots(),
-                                              setup_.engine->in_rounds()));
+    start_uniform(std::move(have), blocks);
   }
 }
 
-schedule::AdaptiveOptions Renderer::adaptive_options() const {
+schedule::AdaptiveOptions Renderer::adaptive_options(const schedule::Rectangle& region) const {
   return {
       .tile = tile_side(),
       .target_error = float(setup_.settings.real("sampling.target_error")),
@@ -239,6 +281,7 @@ schedule::AdaptiveOptions Renderer::adaptive_options() const {
       .max_samples = uint32_t(setup_.settings.integer("sampling.max_samples")),
       .slots = setup_.engine->wavefront().slots(),
       .one_sample = setup_.engine->in_rounds(),
+      .region = region,
   };
 }
 
@@ -310,6 +353,8 @@ void Renderer::apply_settings() {
     applied_ = setup_.settings.all();
     return;
   }
+  check_region(target.settings);
+  std::shared_ptr<const OcioTable> ocio = changed("film.ocio") ? ocio_table(target.settings) : ocio_;
   bool again = false, retarget = false;
   for (const std::string& key : changes.settings) {
     // The current schedule can apply these.
@@ -331,17 +376,25 @@ void Renderer::apply_settings() {
       std::any_of(std::begin(plan::k_traced_scene_settings), std::end(plan::k_traced_scene_settings),
                   changed)) {
     install(std::move(target), {}, changes);
+    ocio_ = std::move(ocio);
     return;
   }
   again |= apply_plan(std::move(target), changes);
+  ocio_ = std::move(ocio);
   notify_settings_changed();
   setup_.kept.note(changes.edits);
   if (changed("samples") && !again)
     sampling_.uniform().set_samples(uint32_t(setup_.settings.integer("samples")));
-  if (changed("sampling.mode") && !again)
+  if (changed("sampling.region") && !again) {
+    settle_mix();
     change_schedule();
-  else if (retarget && !again && adaptive())
-    sampling_.adaptive()->retarget(adaptive_options());
+    progress_.forget_errors();  // of other pixels
+    progress_.note(true);
+  } else if (changed("sampling.mode") && !again) {
+    change_schedule();
+  } else if (retarget && !again && adaptive()) {
+    sampling_.adaptive()->retarget(adaptive_options(sampling_.region()));
+  }
   if (again)
     restart(changes);
   else if (setup_.relight.separate && changed("relight.mix"))

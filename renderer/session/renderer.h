@@ -126,8 +126,10 @@ class Renderer {
 
   bool ready() const { return setup_.engine != nullptr; }
   bool done() const { return sampling_.done() && !judged_otherwise(); }
-  /// Number of samples that every pixel has.
+  /// Number of samples that every pixel has, or every pixel of the region that gets samples.
   uint32_t samples() const { return sampling_.samples(); }
+  /// The setting sampling.region: pixels; nullopt: the whole picture.
+  std::optional<schedule::Rectangle> region() const;
   /// Samples a pixel at which the image is finished; adaptive: maximum of any pixel.
   uint32_t max_samples() const { return sampling_.max_samples(); }
   /// State of every tile; null in uniform sampling.
@@ -346,14 +348,24 @@ class Renderer {
   void mark_tiles(const film::View& view);
   bool previewed(const film::View& view) const;  ///< true if the window shows a preview in that view
   film::HeatScale heat_scale(uint32_t layer) const;
+  /// The display and view of film.ocio as a table on the device.
+  struct OcioTable {
+    std::string of;  ///< file, display and view
+    gpu::Buffer nodes;
+  };
+  /// The table for these settings: null without film.ocio, the present one if it fits. Throws Error, located.
+  std::shared_ptr<const OcioTable> ocio_table(const plan::Settings& settings) const;
   /// Another exposure or tone curve changes errors as seen, by which tiles have stopped.
   bool judged_otherwise() const { return adaptive() && seen_ != setup_.seen_range(); }
   /// True if the picture's light is unchanged, whatever its computation and camera.
   bool keeps_light(const scene::Changes& changes) const;
   void start_schedule();
-  /// Continues with another sampling mode from the present samples.
+  /// Continues with another sampling mode or region from the present samples.
   void change_schedule();
-  schedule::AdaptiveOptions adaptive_options() const;
+  /// Blocks that the next schedule gives samples to: all until every pixel has the window's first samples.
+  schedule::Rectangle scheduled_region();
+  void start_uniform(std::vector<uint32_t> have, const schedule::Rectangle& region);
+  schedule::AdaptiveOptions adaptive_options(const schedule::Rectangle& region) const;
   solvers::Provenance provenance() const;
   solvers::Solver& solver_for_file(const std::string& name, const std::filesystem::path& file,
                                    const char* nothing, const char* no_scene);
@@ -403,8 +415,13 @@ class Renderer {
   std::optional<stats::SamplePace> path_pace_;  ///< for a picture of one pixel
   scene::Lens begun_lens_;                      ///< of the picture begun last
   Sampling sampling_;
+  /// Samples of every pixel of the window's picture before only a region gets more: one in each half of the
+  /// film, so that their noise is known.
+  static constexpr uint32_t k_around_region = 2;
+  bool region_waits_ = false;  ///< its schedule starts when every pixel has these samples
   ImageProgress progress_{setup_, sampling_};
-  film::SeenRange seen_;  ///< seen_range() of the errors in the adaptive schedule
+  std::shared_ptr<const OcioTable> ocio_;  ///< null: the tone curve
+  film::SeenRange seen_;                   ///< seen_range() of the errors in the adaptive schedule
   uint64_t restarts_ = 0;
   uint64_t errors_restart_ = ~0ull;             ///< image whose lookup errors are being estimated ...
   const solvers::Solver* errors_of_ = nullptr;  ///< ... and their solver

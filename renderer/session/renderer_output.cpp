@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/log.h"
+#include "film/io/ocio.h"
 #include "film/io/planes.h"
 #include "film/overlay.h"
 #include "film/tile_scale.h"
@@ -34,8 +35,29 @@ film::View Renderer::view() const {
   v.scale = 2 * setup_.world.flat.core_radius;
   v.heat = heat_scale(v.layer);
   if (setup_.settings.boolean("overlay.tiles")) v.tiles = tile_side();
+  v.display_lut = ocio_ ? &ocio_->nodes : nullptr;
   v.tint_former = setup_.settings.boolean("overlay.former");
   return v;
+}
+
+std::shared_ptr<const Renderer::OcioTable> Renderer::ocio_table(const plan::Settings& settings) const {
+  const std::string& text = settings.text("film.ocio");
+  if (text.empty()) return nullptr;
+  const std::shared_ptr<const film::OcioConfig> config = film::ocio_config();
+  if (!config)
+    throw_error("film.ocio",
+                "'{}': the environment variable OCIO names no configuration (export OCIO=FILE.ocio)", text);
+  const std::string of = config->file() + ": " + text;
+  if (ocio_ && ocio_->of == of) return ocio_;
+  const auto [display, view] = config->split(text);
+  const std::vector<vec4> nodes = config->table(display, view);
+  OcioTable table{of, gpu::Buffer(*device_, {.name = "display and view",
+                                             .bytes = nodes.size() * sizeof(vec4),
+                                             .memory = gpu::Memory::host})};
+  table.nodes.write(nodes.data(), nodes.size() * sizeof(vec4));
+  if (!config->source_is_rec709())
+    log::warning("{}: names no linear Rec.709; radiance is taken as '{}'", config->file(), config->source());
+  return std::make_shared<const OcioTable>(std::move(table));
 }
 
 film::HeatScale Renderer::heat_scale(uint32_t layer) const {
@@ -88,7 +110,7 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::functi
   const film::View v = view();
   const bool quick = mix_pending_ && samples() > 0 && setup_.film->quick() &&
                      v.layer == shared::k_layer_beauty && v.show == (1u << paths::k_component_count) - 1 &&
-                     v.tiles == 0;
+                     v.tiles == 0 && !v.display_lut;
   // A drag is shown at display rate, with unfiltered samples. A sudden mix of other groups takes a little
   // longer if it would show noise in place of a filtered picture.
   if (quick && (mix_dragged_ || !previewed(v) || display_->shares().filtered < k_little_filtered)) {
@@ -165,8 +187,13 @@ film::Brightness Renderer::measure(std::optional<vec2> at) const {
     throw Error("", "there is no picture to measure yet");
   // Layers that are no light have no exposure; the picture is measured then.
   const std::vector<vec3> sum = sum_of(image, shown_components(view()));
-  return at ? film::measure_point(sum, image.width, image.height, *at)
-            : film::measure_picture(sum, image.width, image.height);
+  if (at) return film::measure_point(sum, image.width, image.height, *at);
+  const auto part = options_.interactive ? std::nullopt : region();
+  if (!part) return film::measure_picture(sum, image.width, image.height);
+  std::vector<vec3> inside;
+  for (uint32_t i = 0; i < sum.size(); ++i)
+    if (part->contains(i % image.width, i / image.width)) inside.push_back(sum[i]);
+  return film::measure_picture(inside, part->right - part->left, part->bottom - part->top);
 }
 
 HeldPicture Renderer::held_picture() {
@@ -259,6 +286,9 @@ film::FilmImage Renderer::film_image() {
   film::FilmImage out;
   out.width = image.width;
   out.height = image.height;
+  // In the window the rest has samples too.
+  if (const auto part = options_.interactive ? std::nullopt : region())
+    out.window = {part->left, part->top, part->right, part->bottom};
   const size_t n = image.samples.size();
   std::vector<vec3> sum(n, vec3(0));
   for (const auto& component : image.components)
@@ -329,6 +359,7 @@ void Renderer::save(const std::filesystem::path& file, bool as_shown) {
     std::map<std::string, std::string> metadata;
     if (const Filtered* f = as_shown ? shown_filtered(view()) : filtered())
       metadata["filter"] = filter_text(f->error);
+    if (ocio_) metadata["ocio"] = ocio_->of;
     film::write_png(file, setup_.film->width(), setup_.film->height(), shown, metadata);
   } else
     throw_error(file.string(), "cannot write '{}' files; use .exr or .png", extension);

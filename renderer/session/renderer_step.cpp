@@ -22,6 +22,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   setup_.engine->begin_samples(picture_view());
   const bool prepares = preparing() || choosing(), learns = setup_.engine->learns(samples());
   const bool progress = render_item(cancel);
+  if (region_waits_ && samples() >= k_around_region) change_schedule();
   if (window_filter_ && !mix_pending_)
     window_filter_->judge(*setup_.engine, *display_, *setup_.film, stats().paths);
   progress_.add_render_seconds(timer.seconds());

@@ -39,6 +39,8 @@ void Session::load(const std::filesystem::path& file) {
       throw Abandoned();
     }
     ++s->scene_id;
+    if (s->tev)
+      s->tev = std::make_unique<TevLink>(film::parse_tev_address(s->tev->address(), ""), r.scene()->name);
     s->end_effects(nullptr);
     s->restarted();
     s->give_up_saves("another scene was loaded");
@@ -262,6 +264,18 @@ std::shared_future<std::shared_ptr<const HeldPicture>> Session::held_picture(Sce
   return impl_->when_pictured<std::shared_ptr<const HeldPicture>>(
       [](Renderer& r) { return std::make_shared<const HeldPicture>(r.held_picture()); },
       "the picture to be held", scene);
+}
+
+void Session::send_to_tev(const std::optional<std::string>& address) {
+  const auto run = [s = impl_.get(), address](Renderer& r) {
+    s->tev.reset();
+    if (!address) return;
+    const film::TevAddress to = film::parse_tev_address(*address, "tev.send");
+    if (!r.scene()) throw Error("tev.send", "no scene is open");
+    s->tev = std::make_unique<TevLink>(to, r.scene()->name);
+    s->follow_tev(r);
+  };
+  impl_->post({.run = run, .subject = "the viewer"});
 }
 
 Saved Session::save(const std::filesystem::path& file, bool as_shown) {

@@ -92,6 +92,7 @@ struct Snapshot {
   /// Result of the latest measure_effects() for this scene; null: none.
   std::shared_ptr<const EffectCosts> effect_costs;
   bool measures_effects = false;  ///< it is at work; `activity` and `progress` say how far
+  std::string tev;                ///< address of the viewer that gets the layers (send_to_tev); "": none
   bool paused = false, finished = false;
   bool resting = false;  ///< nothing is left to do until the next command: finished or paused, and drawn
   /// Current preparation (solvers::Report::preparing), or "".
@@ -203,6 +204,9 @@ class Session {
                                                            SceneId scene = k_any_scene);
   /// Renderer::held_picture, as soon as there is a picture; get() throws on failure. Nothing is logged.
   std::shared_future<std::shared_ptr<const HeldPicture>> held_picture(SceneId scene = k_any_scene);
+  /// Sends the layers of the picture to a viewer with tev's protocol from now on (TevLink), at this address
+  /// (film::parse_tev_address); nullopt: ends it. A connection that fails ends it with a warning.
+  void send_to_tev(const std::optional<std::string>& address);
   /// Writes EXR or PNG as soon as every pixel has a sample, or at once if rendering rests without.
   /// `as_shown`: a PNG includes the preview's filter, like the snapshots.
   Saved save(const std::filesystem::path& file, bool as_shown = false);

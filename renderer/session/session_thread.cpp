@@ -12,7 +12,8 @@ namespace {
 constexpr double k_draft_seconds = 0.5;  // maximum time without a preview sample during consecutive edits
 // Time without another mix after which the last one is applied in full.
 constexpr double k_mix_pause_seconds = 0.2;
-constexpr int k_nice = 10;  // rendering yields to the window's thread
+constexpr double k_viewer_seconds = 0.05;  // between looks at a viewer that is still reading
+constexpr int k_nice = 10;                 // rendering yields to the window's thread
 
 }  // namespace
 
@@ -168,7 +169,14 @@ void Session::Impl::run() {
     const bool work = renderer && (effects || works(*renderer)) && !(mixing && dirty);
     if (renderer && !work) renderer->rest();
     if (!work && !dirty && !mixing) {
-      wake.wait(lock, [&] { return quit || !queue.empty(); });
+      const auto woken = [&] { return quit || !queue.empty(); };
+      if (!renderer || !tev || !tev->waits(*renderer)) {
+        wake.wait(lock, woken);
+      } else if (!wake.wait_for(lock, std::chrono::duration<double>(k_viewer_seconds), woken)) {
+        lock.unlock();
+        follow_tev(*renderer);
+        lock.lock();
+      }
       continue;
     }
     lock.unlock();
@@ -202,7 +210,10 @@ void Session::Impl::run() {
       publish();
       dirty = false;
     }
-    if (renderer) serve_due(*renderer);
+    if (renderer) {
+      serve_due(*renderer);
+      follow_tev(*renderer);
+    }
     lock.lock();
   }
   end(renderer.get(), lock);

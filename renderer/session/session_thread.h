@@ -12,6 +12,7 @@
 #include "session/effect_measurement.h"
 #include "session/renderer.h"
 #include "session/session.h"
+#include "session/tev_link.h"
 #include "solvers/registry.h"
 #include "stats/forecast.h"
 
@@ -62,6 +63,7 @@ struct Session::Impl {
   std::vector<Measure> measures;                          // waiting for a picture
   std::vector<std::function<void(Renderer&)>> questions;  // likewise; they throw nothing
   std::unique_ptr<EffectMeasurement> effects;             // while it is at work
+  std::unique_ptr<TevLink> tev;                           // null: none
 
   bool works(Renderer& r) const {
     return r.ready() && !paused && (!r.done() || r.filter_due()) && !r.waits();
@@ -135,6 +137,17 @@ struct Session::Impl {
   void answer_due(Renderer& r) {
     if (r.samples() == 0 && works(r)) return;
     for (const auto& question : std::exchange(questions, {})) question(r);
+  }
+
+  /// Sends the picture to the viewer if it is time; forgets a viewer that has failed.
+  void follow_tev(Renderer& r) {
+    try {
+      if (!tev || tev->follow(r)) return;
+    } catch (const std::exception& e) {
+      log::warning("{}; no picture is sent to the viewer", e.what());
+    }
+    tev.reset();
+    dirty = true;
   }
 
   void serve_due(Renderer& r) {
@@ -251,6 +264,7 @@ struct Session::Impl {
     next.max_samples = r.max_samples();
     next.coarse = !filled;
     next.lights_together = r.relight().why_not;
+    next.tev = tev ? tev->address() : "";
     next.paused = paused;
     next.finished = r.done();
     next.resting = !works(r) && !effects && !r.overlay_waits() && !r.mix_pending();

@@ -1,10 +1,10 @@
 // Shows the previous picture from the present camera until there is new light. Newly visible surfaces take the light next to
 // them, preferably of surfaces behind, found for cells of k_preview_first_step pixels. The picture may have more pixels than
 // those recalled.
+#include "lib/display.glsl"
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "film/preview.glsl"
-#include "shaders/shared/tone.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewRecallPush push; };
 uniform samplerBuffer history_texels, history_surfaces;
@@ -113,7 +113,7 @@ void main() {
     }
     here = sum.rgb / max(sum.w, 1e-20) * modulation_at(int(index));
   }
-  vec3 shown = tone_map(here * push.history_scale, push.curve);
+  vec3 shown = display_color(here * push.history_scale, push.curve);
   if (push.tint != 0u) shown = preview_tinted(shown, 1.0);
   if (push.seen != 0u)
     cells[index] = vec4(shown, 1.0);

@@ -5,11 +5,11 @@
 // its square is v + u + change^2. The mix w O + (1 - w) N has the least error for w = v / (v + u + change^2). Both are
 // filtered for the difference, so that detail lost in filtering does not count as change. Before that, O is scaled by the
 // change measured over many pixels (film/preview_change.comp).
+#include "lib/display.glsl"
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
 #include "film/preview.glsl"
 #include "shaders/shared/film.h"
-#include "shaders/shared/tone.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewResolvePush push; };
 uniform samplerBuffer packed_texels, surface_texels, guide_surfaces, history_texels, history_surfaces;
@@ -335,7 +335,7 @@ void main() {
     totals.w = unknown ? 1.0 : min(k_mean_deviation * sqrt(variance) / max(luminance(color), k_preview_dark), 1.0);
     shown_pixels[pixel] = packHalf2x16(vec2(min(luminance(color), 60000.0), totals.w));
     LUCERNA_PREVIEW_STORE(packed, pixel, result)
-    vec3 displayed = tone_map(color, push.curve);
+    vec3 displayed = display_color(color, push.curve);
     if (push.tint != 0u) displayed = preview_tinted(displayed, former / max(luminance(color), 1e-20));
     picture[pixel] = picture_packed(displayed);
   }

@@ -1,9 +1,9 @@
 // Film -> picture: chosen layer, exposure, tone curve, sRGB bytes. Pixels that no sample has reached are taken from the coarse
 // film, which the host has tone-mapped into `Coarse` first.
 #include "lib/film.glsl"
+#include "lib/display.glsl"
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
-#include "shaders/shared/tone.h"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { TonePush push; };
 layout(scalar) buffer Picture { uint picture[]; };
@@ -36,7 +36,7 @@ void main() {
     vec3 linear_color = clamp(flat_color, vec3(0.0), vec3(1.0));
     srgb = push.layer == k_layer_normal ? linear_color : srgb_encode(linear_color);
   } else {
-    srgb = tone_map(color * push.exposure, push.curve);
+    srgb = display_color(color * push.exposure, push.curve);
   }
   uint packed = picture_packed(srgb);
   if (count == 0u && push.coarse_width > 0u) {

@@ -3,6 +3,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <OpenImageIO/imageio.h>
+
 #include <catch2/catch.hpp>
 #include <csignal>
 #include <cstring>
@@ -236,6 +238,40 @@ TEST_CASE("An unreadable image gives one located message") {
     CHECK_THAT(message, Catch::Contains("cut.exr: cannot read"));
     CHECK(message.find('\n') == std::string::npos);
   }
+}
+
+TEST_CASE("a window is the EXR's data window in the picture; a bad one leaves the old file") {
+  const Folder folder;
+  const auto file = folder / "part.exr";
+  FilmImage image{.width = 6, .height = 4, .channels = {{"R", {}}, {"Z", {}}}};
+  for (auto& [name, values] : image.channels)
+    for (int i = 0; i < 24; ++i) values.push_back(float(i) + (name == "Z" ? 0.5f : 0));
+  image.window = FilmImage::Window{2, 1, 5, 3};
+  film::write_exr(file, image);
+  const auto input = OIIO::ImageInput::open(file.string());
+  REQUIRE(input);
+  const OIIO::ImageSpec& spec = input->spec();
+  CHECK(spec.x == 2);
+  CHECK(spec.y == 1);
+  CHECK(spec.width == 3);
+  CHECK(spec.height == 2);
+  CHECK(spec.full_x == 0);
+  CHECK(spec.full_width == 6);
+  CHECK(spec.full_height == 4);
+  const FilmImage read = film::read_exr(file);
+  REQUIRE(read.width == 6);
+  for (uint32_t i = 0; i < 24; ++i) {
+    const bool inside = i % 6 >= 2 && i % 6 < 5 && i / 6 >= 1 && i / 6 < 3;
+    CHECK((*read.find("R"))[i] == (inside ? float(i) : 0));
+    CHECK((*read.find("Z"))[i] == (inside ? float(i) + 0.5f : 0));
+  }
+  for (const FilmImage::Window& bad :
+       {FilmImage::Window{2, 1, 2, 3}, {2, 3, 5, 1}, {0, 0, 7, 4}, {0, 0, 6, 5}, {0, 0, 0, 0}}) {
+    image.window = bad;
+    CHECK_THROWS_WITH(film::write_exr(file, image),
+                      Catch::Contains(file.string() + ": the stored part is empty"));
+  }
+  CHECK(film::read_exr(file).width == 6);
 }
 
 }  // namespace film_io_image_file_tests

@@ -166,6 +166,7 @@ struct Session::Impl {
   uint32_t samples = 0;
   uint64_t run_number = 0;
   bool paused = false;
+  std::string tev;
   std::string reference;
   std::optional<vec2> looked_at;
   std::shared_ptr<const EffectCosts> effect_costs;
@@ -213,6 +214,7 @@ struct Session::Impl {
     s->max_samples = static_cast<uint32_t>(settings.integer("samples"));
     s->commands = done;
     if (!refused.empty()) s->refused = std::make_shared<const std::vector<uint64_t>>(refused);
+    s->tev = tev;
     s->samples = samples, s->paused = paused, s->finished = scene && samples >= s->max_samples;
     s->resting = s->paused || s->finished;
     s->coarse = samples == 0;
@@ -546,6 +548,9 @@ struct Session::Impl {
       },
       scene);
   return promise->get_future().share();
+}
+[[gnu::weak]] void Session::send_to_tev(const std::optional<std::string>& address) {
+  impl_->post([this, address] { impl_->tev = address ? "127.0.0.1:" + *address : "", impl_->publish(); });
 }
 [[gnu::weak]] void Session::show_paths(const ShownPaths&, SceneId scene) {
   impl_->post([] {}, scene);

@@ -190,4 +190,28 @@ TEST_CASE("a colour is picked; emissive surfaces are listed among the lights") {
   CHECK(lines[4] == "select material 1");
 }
 
+TEST_CASE("Ctrl+R and a drag choose the region that gets all samples; the mark at its corner ends it") {
+  if (test::no_display()) return;
+  const std::vector<std::string> lines =
+      session_of("key ctrl+r\nwait 0.2\n" + drag(500, 400, 40, 20) +
+                 "wait 0.3\nmouse.move 650 390\nwait 0.2\nmouse.down left\n"
+                 "mouse.up left\nwait 0.3\n" +
+                 "key ctrl+r\nkey escape\n" + drag(500, 400, 4, 2));
+  REQUIRE(lines.size() >= 2);
+  REQUIRE(lines[0].starts_with("set sampling.region "));
+  double left = 0, top = 0, width = 0, height = 0;
+  REQUIRE(std::sscanf(lines[0].c_str(), "set sampling.region %lf,%lf,%lf,%lf", &left, &top, &width,
+                      &height) == 4);
+  CHECK(left > 0);
+  CHECK(top > 0);
+  CHECK(left + width < 1);
+  // 160 by 80 pixels of a picture that is less than twice as wide as high.
+  CHECK(width / height > 1.0);
+  CHECK(width / height < 2.0);
+  CHECK(lines[1] == "reset sampling.region");
+  // After Esc, a drag moves the camera.
+  CHECK(std::none_of(lines.begin() + 2, lines.end(),
+                     [](const std::string& line) { return line.find("region") != std::string::npos; }));
+}
+
 }  // namespace hand_tests

@@ -138,8 +138,15 @@ void write_exr(const fs::path& file, const FilmImage& image) {
   check_size(where, image.width, image.height);
   if (image.channels.empty()) throw_error(where, "the image has no channels");
   const size_t pixels = size_t{image.width} * image.height, count = image.channels.size();
-  OIIO::ImageSpec spec(static_cast<int>(image.width), static_cast<int>(image.height), static_cast<int>(count),
+  const FilmImage::Window window = image.window.value_or(FilmImage::Window{0, 0, image.width, image.height});
+  if (window.left >= window.right || window.top >= window.bottom || window.right > image.width ||
+      window.bottom > image.height)
+    throw_error(where, "the stored part is empty or reaches out of the image");
+  OIIO::ImageSpec spec(static_cast<int>(window.right - window.left),
+                       static_cast<int>(window.bottom - window.top), static_cast<int>(count),
                        OIIO::TypeDesc::FLOAT);
+  spec.x = static_cast<int>(window.left), spec.y = static_cast<int>(window.top);
+  spec.full_width = static_cast<int>(image.width), spec.full_height = static_cast<int>(image.height);
   spec.channelnames.clear();
   std::set<std::string> names;
   for (const auto& [name, values] : image.channels) {
@@ -159,10 +166,13 @@ void write_exr(const fs::path& file, const FilmImage& image) {
   spec.attribute("oiio:ColorSpace", "Linear");
   for (const auto& [key, value] : image.metadata) spec.attribute("lucerna:" + key, value);
 
-  std::vector<float> interleaved(pixels * count);
+  std::vector<float> interleaved(spec.image_pixels() * count);
   for (size_t c = 0; c < count; ++c) {
     const std::vector<float>& values = image.channels[c].second;
-    for (size_t p = 0; p < pixels; ++p) interleaved[p * count + c] = values[p];
+    size_t to = c;
+    for (uint32_t y = window.top; y < window.bottom; ++y)
+      for (uint32_t x = window.left; x < window.right; ++x, to += count)
+        interleaved[to] = values[size_t{y} * image.width + x];
   }
   write_with_oiio(file, "openexr", spec, OIIO::TypeDesc::FLOAT, interleaved.data());
 }

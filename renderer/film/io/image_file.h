@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -29,6 +30,12 @@ struct FilmImage {
   uint32_t width = 0, height = 0;
   std::vector<std::pair<std::string, std::vector<float>>> channels;  ///< each width * height values
   std::set<std::string> halves;  ///< channels that files hold as 16-bit floats
+  /// Pixels that a file stores (EXR: data window): from left and top to before right and bottom, inside the
+  /// picture; nullopt: all.
+  struct Window {
+    uint32_t left = 0, top = 0, right = 0, bottom = 0;
+  };
+  std::optional<Window> window = {};
   std::map<std::string, std::string>
       metadata;  ///< string attributes; the film writes settings (JSON), seed, device, version
 
@@ -46,10 +53,10 @@ struct FilmImage {
 /// The largest width or height that is written or read.
 inline constexpr uint32_t k_max_image_size = 32768;
 
-/// Writes 32-bit float channels, or 16-bit ones where `halves` says so, ZIP-compressed scan lines. Values are
-/// stored bit for bit, NaN and infinity too. Throws Error located at `file` when the image is empty, a plane
-/// has the wrong length, a name is repeated, or the file cannot be written; a file already there is then
-/// untouched.
+/// Writes the window's 32-bit float channels, or 16-bit ones where `halves` says so, ZIP-compressed scan
+/// lines. Values are stored bit for bit, NaN and infinity too. Throws Error located at `file` when the image
+/// or its window is empty, a plane has the wrong length, a name is repeated, or the file cannot be written; a
+/// file already there is then untouched.
 void write_exr(const std::filesystem::path& file, const FilmImage& image);
 
 /// Reads any image that OpenImageIO knows (its first subimage, full resolution), as float. An EXR's data
