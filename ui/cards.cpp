@@ -102,8 +102,9 @@ void paused_card(const std::string& text, const Area& area) {
 }
 
 /// The current activity, at the lower left, with a Cancel button if a load or a measurement is in progress.
-void activity_card(Actions& actions, const session::Snapshot& picture, bool loads, const Area& area) {
-  const bool cancels = loads || picture.measures_effects;
+void activity_card(Actions& actions, const session::Snapshot& picture, bool loads, bool moves,
+                   const Area& area) {
+  const bool cancels = loads || moves || picture.measures_effects;
   const float w = std::min(px(360), area.width() - px(24)), h = px(cancels ? 60.0f : 36.0f);
   const bool empty = picture.rgba.empty();
   const ImVec2 lo(empty ? std::floor(0.5f * (area.lo.x + area.hi.x - w)) : area.lo.x + px(12),
@@ -115,9 +116,11 @@ void activity_card(Actions& actions, const session::Snapshot& picture, bool load
             elided(picture.activity, text_right - lo.x - px(12)), colour::text);
   if (!cancels) return;
   ImGui::SetCursorScreenPos({hi.x - px(84), lo.y + px(10)});
-  if (button("##cancel", "Cancel", false, px(72))) actions.act(loads ? "scene.cancel" : "effects.stop");
-  tooltip(loads ? "Cancels the load; the present scene stays. Esc."
-                : "Ends the measurement of effects without a result. Rendering continues.");
+  if (button("##cancel", "Cancel", false, px(72)))
+    actions.act(loads || moves ? "scene.cancel" : "effects.stop");
+  tooltip(loads   ? "Cancels the load; the present scene stays. Esc."
+          : moves ? "Leaves the objects where they were. Esc."
+                  : "Ends the measurement of effects without a result. Rendering continues.");
   const float track_lo = lo.x + px(12), track_hi = hi.x - px(12), y = hi.y - px(14);
   list->AddRectFilled({track_lo, y}, {track_hi, y + px(3)}, colour::field, px(1));
   list->AddRectFilled(
@@ -191,7 +194,7 @@ void draw_cards(Actions& actions, const commands::OpenScene& open, CardsView& vi
   const session::Snapshot* picture = open.snapshot.get();
   const double busy = view.busy_seconds(now);
   if (picture && !picture->activity.empty())
-    activity_card(actions, *picture, open.loading(), area);
+    activity_card(actions, *picture, open.loading(), open.moving_objects(), area);
   else if (busy > 0)
     busy_card(view, busy, area);
   const std::string paused = picture ? paused_text(*picture) : "";

@@ -32,6 +32,7 @@ std::vector<std::pair<std::string, std::string>> key_rows() {
       {"Hold", "the left button still: values, noise and surface of the pixel"},
       {"I", "trace the paths of the pixel that is held, or of the next clicked one"},
       {"F", "frame the selection, or the scene"},
+      {"Z", "handles of the selected object: move, turn, size; with Ctrl in steps"},
       {"L", "mark lamps and emissive surfaces; click to select, drag to move a lamp"},
       {"Drag on a lamp's mark",
        "move it parallel to the picture, with Shift vertically; a spot's aim follows surfaces"},
@@ -219,7 +220,9 @@ void handle_keys(Ui& ui) {
   if (ui.pressed(GLFW_KEY_F1)) ui.act("window.keys");
   if (ui.pressed(GLFW_KEY_TAB)) ui.act("window.panels", !ui.layout.panels), ui.wake(3);
   if (ui.pressed(GLFW_KEY_ESCAPE)) {
-    if (ui.cards.welcome)
+    if (ui.drag.object)
+      ui.cancel_object_drag();
+    else if (ui.cards.welcome)
       ui.cards.welcome = false;
     else if (ui.dropper)
       ui.act("exposure.dropper", false);
@@ -229,7 +232,7 @@ void handle_keys(Ui& ui) {
       ui.act("paths.pick", "none");
     else if (ui.region.picks)
       ui.act("region.pick", false);
-    else if (ui.open.loading())
+    else if (ui.open.loading() || (ui.open.moving_objects() && !ui.open.snapshot->activity.empty()))
       ui.act("scene.cancel");
     else if (!ui.cards.errors.empty())
       ui.act("dismiss");
@@ -248,6 +251,10 @@ void handle_keys(Ui& ui) {
       trace_pixel(ui, ui.work.pixel->at);
     else
       ui.act("paths.pick", ui.paths.pick == PathsView::Pick::pixel ? "none" : "pixel");
+  }
+  if (ui.pressed(GLFW_KEY_Z) && ui.camera.selection.kind == Kind::instance) {
+    const int next = ui.scene_view.gizmo == GizmoMode::size ? 1 : static_cast<int>(ui.scene_view.gizmo) + 1;
+    ui.act("view.gizmo", k_gizmo_names[static_cast<size_t>(next)]);
   }
   if (ui.pressed(GLFW_KEY_L)) ui.act("view.lamps", !ui.light_marks);
   if (ui.pressed(GLFW_KEY_T)) ui.toggle("overlay.tiles");

@@ -11,8 +11,7 @@ namespace {
 std::vector<bool> used_materials(const scene::Scene& scene) {
   std::vector<bool> used(scene.materials.size());
   for (const scene::Instance& instance : scene.instances)
-    if (instance.mesh < scene.meshes.size())
-      for (const scene::Primitive& p : scene.meshes[instance.mesh].primitives) used[p.material] = true;
+    for (const scene::Primitive& p : scene::shown_parts(scene, instance)) used[p.material] = true;
   return used;
 }
 
@@ -33,10 +32,12 @@ EmittingSurface measured(const scene::Primitive& p, const mat4& to_world) {
 
 const std::vector<uint32_t>& emitters(const commands::OpenScene& open, const commands::Navigation& camera) {
   static uint64_t of = 0;
+  static SharedVector<scene::Instance> in;
   static std::vector<bool> used;
   static std::vector<uint32_t> list;
-  if (of != camera.view_scene || used.size() != open.scene->materials.size())
-    used = used_materials(*open.scene), of = camera.view_scene;
+  if (of != camera.view_scene || !in.shares_with(open.scene->instances) ||
+      used.size() != open.scene->materials.size())
+    used = used_materials(*open.scene), of = camera.view_scene, in = open.scene->instances;
   list.clear();
   for (uint32_t i = 0; i < used.size(); ++i)
     if (used[i] && strength_of(open.emission(i)) > 0 && !open.scene->materials[i].unlit) list.push_back(i);
@@ -46,15 +47,15 @@ const std::vector<uint32_t>& emitters(const commands::OpenScene& open, const com
 const std::vector<EmittingSurface>& emitting_surfaces(const commands::OpenScene& open,
                                                       const commands::Navigation& camera) {
   static uint64_t of = 0;
+  static SharedVector<scene::Instance> in;
   static std::vector<uint32_t> materials;
   static std::vector<EmittingSurface> list;
   const std::vector<uint32_t>& now = emitters(open, camera);
-  if (of == camera.view_scene && materials == now) return list;
-  of = camera.view_scene, materials = now;
+  if (of == camera.view_scene && in.shares_with(open.scene->instances) && materials == now) return list;
+  of = camera.view_scene, materials = now, in = open.scene->instances;
   list.clear();
   for (const scene::Instance& instance : open.scene->instances) {
-    if (instance.mesh >= open.scene->meshes.size()) continue;
-    for (const scene::Primitive& p : open.scene->meshes[instance.mesh].primitives)
+    for (const scene::Primitive& p : scene::shown_parts(*open.scene, instance))
       if (std::binary_search(now.begin(), now.end(), p.material)) {
         const EmittingSurface surface = measured(p, instance.to_world);
         if (surface.area > 0) list.push_back(surface);

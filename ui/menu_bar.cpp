@@ -309,7 +309,7 @@ void view_menu(Ui& ui) {
   if (entry("Accuracy, passes and log", nullptr, "The strip at the bottom.", ui.shown.bottom_open))
     ui.act("window.fold", "bottom", ui.shown.bottom_open);
   divide();
-  if (entry("Selection", nullptr, "Marks the selected object in the picture.", ui.brackets))
+  if (entry("Selection", nullptr, "Shows the box and the handles of the selected object.", ui.brackets))
     ui.act("view.selection", !ui.brackets);
   if (entry(
           "Lights", "L",

@@ -17,7 +17,7 @@ constexpr float k_line = 16, k_pad = 10, k_edge = 12;
 bool inspect_while_held(Ui& ui, const Area& picture, bool active) {
   const ImGuiIO& io = ImGui::GetIO();
   HeldPixel& held = ui.held_pixel;
-  const bool pressed = active && io.MouseDown[0] && !ui.click_taken() && !ui.drag.lamp;
+  const bool pressed = active && io.MouseDown[0] && !ui.click_taken() && !ui.drag.lamp && !ui.drag.object;
   if (!pressed) {
     held.since.reset();
     if (!std::exchange(held.reported, false)) return false;

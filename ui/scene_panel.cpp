@@ -10,6 +10,7 @@
 #include "commands/light_edit.h"
 #include "emitters.h"
 #include "light_rows.h"
+#include "object_rows.h"
 #include "panel_block.h"
 #include "scene/display_name.h"
 #include "scene/lamp.h"
@@ -413,26 +414,6 @@ void materials(Controls& controls, const Selection& selection, SceneView& view, 
   }
 }
 
-void objects(Controls& controls, const Selection& selection, SceneView& view, bool reveal) {
-  const auto& list = controls.open.scene->instances;
-  if (reveal && selection.kind == Kind::instance)
-    show_row(ImGui::GetCursorScreenPos().y + px(24) * static_cast<float>(selection.index));
-  // Long lists draw only the visible rows.
-  ImGuiListClipper clipper;
-  clipper.Begin(static_cast<int>(list.size()), px(24));
-  while (clipper.Step())
-    for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
-      const auto index = static_cast<uint32_t>(i);
-      const scene::Instance& instance = list[index];
-      const bool chosen = selection.kind == Kind::instance && selection.index == index;
-      ImGui::PushID(i);
-      if (list_row("##object", chosen, display_name(instance.name, "Object", index), "", 0, 0))
-        choose(controls.actions, view, chosen, "object", index);
-      tooltip("Press to select the object; F frames it.");
-      ImGui::PopID();
-    }
-}
-
 }  // namespace
 
 void draw_scene_panel(Controls& controls, const commands::Navigation& camera, SceneView& view,
@@ -469,7 +450,7 @@ void draw_scene_panel(Controls& controls, const commands::Navigation& camera, Sc
   block("Materials", controls.open.scene->materials.size(), true,
         [&] { materials(controls, camera.selection, view, reveal); });
   block("Objects", controls.open.scene->instances.size(), false,
-        [&] { objects(controls, camera.selection, view, reveal); });
+        [&] { draw_object_rows(controls, camera, view, reveal); });
   hairline();
   ImGui::End();
 }

@@ -1,11 +1,24 @@
 #pragma once
 // What the scene panel remembers from frame to frame, and shares with the picture.
+#include <optional>
 #include <string>
 #include <utility>
 
 #include "commands/navigation.h"
+#include "gizmo.h"
 
 namespace lucerna::ui {
+
+/// An object's place while one of its numbers is dragged or typed. It is sent when the control rests or is
+/// let go, all of one control as one step.
+struct TypedPlace {
+  uint32_t object = 0;
+  scene::ObjectPlace place;
+  std::string line;       ///< the command that gives it; "": it was sent
+  unsigned control = 0;   ///< id of the control
+  uint64_t gesture = 0;   ///< Actions::new_gesture
+  double changed_at = 0;  ///< set when the line is noticed; 0: not yet
+};
 
 struct SceneView {
   bool to_top = false;  ///< another scene: the panel is not scrolled
@@ -14,7 +27,9 @@ struct SceneView {
   commands::Selection revealed;
   scene::Id named_light = scene::k_none;  ///< light whose name is being typed
   std::string light_name;                 ///< as typed so far
-  bool focusing = false;                  ///< the next click in the picture sets the plane of focus
+  GizmoMode gizmo = GizmoMode::move;      ///< handles of the selected object
+  std::optional<TypedPlace> typed;
+  bool focusing = false;  ///< the next click in the picture sets the plane of focus
 
   /// True if the selection is new since the last call and was not made in the list: its row must be scrolled
   /// into view.

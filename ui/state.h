@@ -18,6 +18,7 @@
 #include "lamp_handles.h"
 #include "layout.h"
 #include "log_view.h"
+#include "object_handles.h"
 #include "paths_panel.h"
 #include "region_view.h"
 #include "requests.h"
@@ -92,7 +93,12 @@ struct Ui {
     std::optional<vec3> point;       ///< of the scene
     float azimuth = 0;               ///< of what is turned by it, degrees
     std::optional<LampHandle> lamp;  ///< as it was then
+    std::optional<ObjectDrag> object;
+    bool over = false;  ///< Escape has ended it while the button is held
   } drag;
+  /// Ends a drag of an object; it goes back to where the drag began.
+  void cancel_object_drag();
+  RebuildTime rebuild;
   /// True: the next click in the picture sets the exposure.
   bool dropper = false;
   /// ... does not select: it sets the exposure or the plane of focus, traces paths, or begins a rectangle.

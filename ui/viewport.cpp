@@ -17,6 +17,13 @@
 #include "widgets.h"
 
 namespace lucerna::ui {
+
+void Ui::cancel_object_drag() {
+  drag.object->place = drag.object->start;
+  send_place(actions, open, *drag.object, rebuild, work.now);
+  drag.object.reset(), drag.over = true;
+}
+
 namespace {
 
 ImU32 layer_mark(const std::string& layer) {
@@ -92,41 +99,6 @@ bool dragging() {
   return false;
 }
 
-/// Marks the selected object by the corners of its box, which hide little of it.
-void draw_brackets(const Ui& ui, const Area& shown) {
-  if (ui.camera.selection.kind != Kind::instance || !ui.open.scene || !ui.open.snapshot) return;
-  const scene::Instance& instance = ui.open.scene->instances[ui.camera.selection.index];
-  if (instance.mesh >= ui.open.scene->meshes.size()) return;
-  // Bounds in the object's space, cached for the selection.
-  static std::pair<std::pair<uint64_t, uint32_t>, Box> known{{0, 0}, {}};
-  const scene::Mesh& mesh = ui.open.scene->meshes[instance.mesh];
-  if (const std::pair key{ui.camera.view_scene, ui.camera.selection.index}; known.first != key) {
-    known = {key, {}};
-    for (const scene::Primitive& p : mesh.primitives)
-      for (const vec3& v : p.positions) known.second.grow(v);
-  }
-  const Box& box = known.second;
-  if (box.empty()) return;
-  ImDrawList* list = ImGui::GetWindowDrawList();
-  list->PushClipRect(shown.lo, shown.hi, true);
-  const auto corner = [&](int bits) {
-    return vec3(bits & 1 ? box.hi.x : box.lo.x, bits & 2 ? box.hi.y : box.lo.y,
-                bits & 4 ? box.hi.z : box.lo.z);
-  };
-  for (int from = 0; from < 8; ++from)
-    for (int axis = 1; axis < 8; axis *= 2) {
-      const vec3 a = corner(from), b = glm::mix(a, corner(from ^ axis), 0.18f);
-      ImVec2 p, q;
-      if (!project(ui.open.snapshot->camera, shown, vec3(instance.to_world * vec4(a, 1)), p) ||
-          !project(ui.open.snapshot->camera, shown, vec3(instance.to_world * vec4(b, 1)), q))
-        continue;
-      if (std::abs(p.x - q.x) > 0.5f * shown.width()) continue;  // across the seam of a panorama
-      list->AddLine(p, q, IM_COL32(0, 0, 0, 120), px(3));
-      list->AddLine(p, q, colour::accent, std::max(1.0f, px(1)));
-    }
-  list->PopClipRect();
-}
-
 /// The point of the scene under the pointer, if any.
 std::optional<vec3> under_pointer(Ui& ui, const Area& shown) {
   const session::Probe* rays = ui.camera.probe();
@@ -171,7 +143,14 @@ void turn_sky(Ui& ui, float pixels, float width) {
 /// Stores the start of a drag.
 void begin_drag(Ui& ui, const Area& shown) {
   ui.drag.point = under_pointer(ui, shown);
-  ui.drag.lamp.reset();
+  ui.drag.lamp.reset(), ui.drag.object.reset();
+  ui.drag.over = false;
+  const ImVec2 at = ImGui::GetIO().MousePos;
+  if (!ui.click_taken() && ui.brackets && ImGui::GetIO().MouseDown[0])
+    if (const auto part = object_handle_at(ui.marked(), ui.scene_view.gizmo, shown, at)) {
+      ui.drag.object = begin_object_drag(ui.marked(), ui.scene_view.gizmo, *part, shown, at, ui.work.now);
+      return;
+    }
   if (!ui.click_taken() && !ImGui::GetIO().KeyCtrl && ImGui::GetIO().MouseDown[0])
     ui.drag.lamp = lamp_handle_at(ui.marked(), shown, ImGui::GetIO().MousePos);
   if (ui.drag.lamp && ui.drag.lamp->part == LampHandle::Part::surface) ui.drag.lamp.reset();
@@ -267,7 +246,10 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
     // Half a turn across the height of the picture.
     const vec2 angles = -drag * (k_pi / height);
     Viewpoint view = *ui.camera.view;
-    if (io.MouseDown[0] && ui.drag.lamp) {
+    if (ui.drag.object) {
+      follow_pointer(*ui.drag.object, ui.marked(), shown, io.MousePos, io.KeyCtrl, ui.work.now);
+    } else if (ui.drag.over) {
+    } else if (io.MouseDown[0] && ui.drag.lamp) {
       if (ui.camera.selection != Selection{Kind::light, ui.drag.lamp->light})
         ui.act("select", "light", ui.drag.lamp->light + 1);
       drag_lamp(ui.actions, ui.marked(), *ui.drag.lamp, shown);
@@ -299,6 +281,39 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
       commands::dolly(view, io.MouseWheel);
     go(ui, view, through, true);
   }
+}
+
+/// Sends a place given in numbers, when its control rests or is let go.
+void follow_typed_place(Ui& ui) {
+  if (!ui.scene_view.typed) return;
+  TypedPlace& typed = *ui.scene_view.typed;
+  if (typed.changed_at == 0) typed.changed_at = ui.work.now;
+  const bool held = ImGui::GetActiveID() == typed.control && typed.control != 0;
+  if (!typed.line.empty()) {
+    ui.wake(2);
+    if (held ? !ui.rebuild.follows(ui.work.now - typed.changed_at) : ui.rebuild.command != 0) return;
+    const uint64_t before = ui.work.session.commands();
+    ui.actions.act_in(typed.gesture, std::exchange(typed.line, {}));
+    if (ui.work.session.commands() > before) ui.rebuild.begin(ui.work.session.commands(), ui.work.now);
+  }
+  if (!held) ui.scene_view.typed.reset();
+}
+
+/// Sends where an object is dragged to, when the pointer rests or is let go.
+void follow_object_drag(Ui& ui, bool active) {
+  ui.rebuild.follow(ui.work.session.commands_done(), ui.work.now);
+  follow_typed_place(ui);
+  if (!ui.drag.object) return;
+  ObjectDrag& drag = *ui.drag.object;
+  if (!active) {
+    send_place(ui.actions, ui.open, drag, ui.rebuild, ui.work.now);
+    ui.drag.object.reset();
+    return;
+  }
+  if (drag.place == drag.sent) return;
+  ui.wake(2);
+  if (ui.rebuild.follows(ui.work.now - drag.moved_at))
+    send_place(ui.actions, ui.open, drag, ui.rebuild, ui.work.now);
 }
 
 /// A click selects the light whose mark is under it, otherwise the object. With the dropper it sets the
@@ -343,6 +358,18 @@ std::string help_of(Ui& ui, const LampHandle& handle) {
   }
   return fmt::format("{}. Drag to move it parallel to the picture, with Shift vertically.",
                      ui.open.light(handle.light).name);
+}
+
+std::string help_of(GizmoMode mode, GizmoPart part) {
+  if (mode == GizmoMode::turn)
+    return "Drag to turn the object about this axis, with Ctrl in steps of 15\xC2\xB0.";
+  if (mode == GizmoMode::size)
+    return part == GizmoPart::middle ? "Drag to the right or up to size the object."
+                                     : "Drag to size the object along this axis, with Ctrl in steps of 0.1.";
+  return part == GizmoPart::middle
+             ? "Drag to move the object parallel to the picture, with Ctrl in steps of 0.1 m."
+         : part <= GizmoPart::z ? "Drag to move the object along this axis, with Ctrl in steps of 0.1 m."
+                                : "Drag to move the object in this plane, with Ctrl in steps of 0.1 m.";
 }
 
 constexpr double k_rest = 0.15;  // seconds
@@ -459,6 +486,7 @@ void draw_picture(Ui& ui, const Area& area) {
   const bool shown = ui.has_picture() && ui.texture != 0;
   Area frame = area;  // of the picture itself
   std::optional<LampHandle> hot;
+  std::optional<GizmoPart> hot_part;
   if (shown) {
     // One picture pixel per window pixel; while the sizes differ the picture is centred and scaled down if
     // necessary.
@@ -477,10 +505,16 @@ void draw_picture(Ui& ui, const Area& area) {
     draw_comparison(ui.work, ui.compare, frame);
     if (ImGui::IsMouseDown(0))
       hot = ui.drag.lamp;
-    else if (ui.picture_hovered && !ui.click_taken())
-      hot = lamp_handle_at(ui.marked(), frame, ImGui::GetIO().MousePos);
+    else if (ui.picture_hovered && !ui.click_taken()) {
+      if (ui.brackets)
+        hot_part = object_handle_at(ui.marked(), ui.scene_view.gizmo, frame, ImGui::GetIO().MousePos);
+      if (!hot_part) hot = lamp_handle_at(ui.marked(), frame, ImGui::GetIO().MousePos);
+    }
     draw_lamp_handles(ui.marked(), frame, hot);
-    if (ui.brackets) draw_brackets(ui, frame);
+    if (ui.brackets)
+      draw_object(ui.marked(), ui.scene_view.gizmo, frame, hot_part,
+                  ui.drag.object ? &*ui.drag.object : nullptr,
+                  ui.scene_view.typed ? &*ui.scene_view.typed : nullptr);
     draw_region(ui.open, frame);
     draw_frame_guide(ui.frame_guide, ui.open.snapshot->camera, frame);
   }
@@ -510,10 +544,14 @@ void draw_picture(Ui& ui, const Area& area) {
     }
     if (ImGui::IsItemActivated()) begin_drag(ui, frame);
     if (hot && ui.picture_hovered && !active) tooltip(help_of(ui, *hot));
-    if ((ui.click_taken() || hot) && ui.picture_hovered) ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
+    if (hot_part && ui.picture_hovered && !active) tooltip(help_of(ui.scene_view.gizmo, *hot_part));
+    if ((ui.click_taken() || hot || hot_part) && ui.picture_hovered)
+      ImGui::SetMouseCursor(ImGuiMouseCursor_Hand);
     const bool inspected = inspect_while_held(ui, frame, active);
-    if (!inspected && ui.picture_hovered && ImGui::IsMouseReleased(0) && ImGui::IsItemDeactivated() &&
-        ImGui::GetIO().MouseDragMaxDistanceSqr[0] < px(k_drag) * px(k_drag))
+    // A click on the middle means what is under it; the other handles take theirs.
+    const bool kept = ui.drag.object && ui.drag.object->part != GizmoPart::middle;
+    if (!inspected && !kept && ui.picture_hovered && ImGui::IsMouseReleased(0) &&
+        ImGui::IsItemDeactivated() && ImGui::GetIO().MouseDragMaxDistanceSqr[0] < px(k_drag) * px(k_drag))
       click(ui, frame);
   }
   if (shown && ui.side == k_paths_side) draw_paths_marks(ui.work, frame);
@@ -525,6 +563,7 @@ void draw_picture(Ui& ui, const Area& area) {
   }
   inspect_at_rest(ui, frame, active);
   navigate(ui, frame, ui.picture_hovered, active);
+  follow_object_drag(ui, active);
   ImGui::End();
 }
 

@@ -236,8 +236,14 @@ void add_picture_commands(Ui& ui, const Add& add) {
                                 static_cast<uint32_t>(a.integer("height")));
         ui.camera.set_size(ui.picture_size->first, ui.picture_size->second);
       });
-  add("view.selection", "Marks the selected object in the picture.", {on()},
+  add("view.selection", "Shows the box and the handles of the selected object in the picture.", {on()},
       [&ui](const Arguments& a) { ui.brackets = a.boolean("on"); });
+  add("view.gizmo", "Sets what the handles of the selected object do.",
+      {{.name = "mode", .type = Type::choice, .choices = {k_gizmo_names.begin(), k_gizmo_names.end()}}},
+      [&ui](const Arguments& a) {
+        ui.scene_view.gizmo = GizmoMode(
+            std::find(k_gizmo_names.begin(), k_gizmo_names.end(), a.text("mode")) - k_gizmo_names.begin());
+      });
   add("view.lamps", "Marks lamps and emissive surfaces in the picture.", {on()},
       [&ui](const Arguments& a) { ui.light_marks = a.boolean("on"); });
 }

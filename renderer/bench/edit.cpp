@@ -28,7 +28,7 @@ template <class Weight>
 std::optional<uint32_t> heaviest_material(const Scene& s, const Weight& weight) {
   std::vector<double> area(s.materials.size(), 0);
   for (const scene::Instance& i : s.instances)
-    for (const scene::Primitive& p : s.meshes[i.mesh].primitives)
+    for (const scene::Primitive& p : scene::shown_parts(s, i))
       for (const uvec3& t : p.triangles) {
         vec3 v[3];
         for (int k = 0; k < 3; ++k) v[k] = vec3(i.to_world * vec4(p.positions[t[k]], 1));

@@ -13,6 +13,7 @@ class Workspace;
 
 void add_setting_commands(Workspace& work);
 void add_light_commands(Workspace& work);
+void add_object_commands(Workspace& work);
 void add_sun_commands(Registry& registry, OpenScene& open);
 void add_material_commands(Registry& registry, OpenScene& open);
 void add_environment_commands(Registry& registry, OpenScene& open);

@@ -7,10 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "scene/object_place.h"
 #include "scene/scene.h"
 #include "session/session.h"
 
 namespace lucerna::commands {
+
+/// Places of objects by their number from 0; the others are where their file has them.
+using Objects = std::map<uint32_t, scene::ObjectPlace>;
 
 struct Document {
   struct Material {
@@ -33,6 +37,8 @@ struct Document {
   std::map<std::string, std::string> settings;          ///< by key
   std::vector<scene::Light> lights;                     ///< as commands number them
   std::vector<Material> materials;                      ///< likewise
+  /// None that equals its file's.
+  Objects objects;
   float environment_scale = 1;
   float environment_rotation = 0;      ///< degrees
   std::string environment_file;        ///< image that replaces the scene's own environment; "": none

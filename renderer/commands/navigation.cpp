@@ -33,8 +33,22 @@ void Navigation::begin_scene(std::shared_ptr<const scene::Scene> scene, const se
   probe_.reset();
   std::erase_if(retired_, [](auto& f) { return is_ready(f); });
   if (probing_.valid()) retired_.push_back(std::move(probing_));
-  probing_ = std::async(std::launch::async,
-                        [s = std::move(scene)] { return std::make_shared<const session::Probe>(s); });
+  to_probe_ = std::move(scene);
+  probe_next();
+}
+
+void Navigation::probe_next() {
+  probed_ = std::exchange(to_probe_, nullptr);
+  probing_ = std::async(std::launch::async, [s = probed_, before = probe_] {
+    return before ? std::make_shared<const session::Probe>(s, *before)
+                  : std::make_shared<const session::Probe>(s);
+  });
+}
+
+void Navigation::follow_objects(std::shared_ptr<const scene::Scene> scene) {
+  if (!probed_ || !scene) return;
+  to_probe_ = scene->instances.shares_with(probed_->instances) ? nullptr : std::move(scene);
+  probe();
 }
 
 bool Navigation::follow(const session::Snapshot& picture) {
@@ -82,12 +96,17 @@ std::string Navigation::place_line(const Viewpoint& v) {
 }
 
 const session::Probe* Navigation::probe(bool wait) {
-  if (probing_.valid() && (wait || is_ready(probing_))) {
+  while (probing_.valid() && (wait || is_ready(probing_))) {
     try {
       probe_ = probing_.get();
     } catch (const std::exception& error) {
       log::warning("walls will not stop the camera: {}", error.what());
     }
+    if (to_probe_) probe_next();
+  }
+  if (!probing_.valid() && to_probe_) {
+    probe_next();
+    if (wait) return probe(wait);
   }
   return probe_.get();
 }
@@ -150,7 +169,8 @@ Box selection_bounds(const scene::Scene* scene, const std::vector<scene::Light>&
   Box box;
   if (!scene) return box;
   const auto add = [&](const scene::Instance& instance, auto&& wanted) {
-    if (instance.mesh >= scene->meshes.size()) return;
+    if (instance.mesh >= scene->meshes.size() || (instance.hidden && selection.kind == Kind::material))
+      return;
     for (const scene::Primitive& primitive : scene->meshes[instance.mesh].primitives)
       if (wanted(primitive))
         for (const vec3& p : primitive.positions) box.grow(vec3(instance.to_world * vec4(p, 1)));

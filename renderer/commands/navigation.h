@@ -71,6 +71,8 @@ class Navigation {
   /// Ray queries against the shown scene; null until they are ready, shortly after a new scene. `wait`: waits
   /// for them.
   const session::Probe* probe(bool wait = false);
+  /// Objects were moved: further queries are against this scene, once they are ready. Call regularly.
+  void follow_objects(std::shared_ptr<const scene::Scene> scene);
   /// Obstacles by these queries; none until they are ready.
   Look look();
   /// Ignores selected objects.
@@ -93,6 +95,8 @@ class Navigation {
   std::future<std::shared_ptr<const session::Probe>> probing_;
   std::vector<std::future<std::shared_ptr<const session::Probe>>> retired_;  ///< of former scenes
   std::shared_ptr<const session::Probe> probe_;
+  std::shared_ptr<const scene::Scene> probed_, to_probe_;  ///< scene of the latest queries; wanted next
+  void probe_next();
 };
 
 }  // namespace lucerna::commands

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "base/error.h"
+#include "commands/refusal.h"
 #include "commands/text.h"
 #include "plan/choose.h"
 #include "plan/views.h"
@@ -37,6 +38,8 @@ std::vector<uint64_t> OpenScene::take_refused() {
     // A file that cannot be read lights nothing.
     if (std::erase_if(sources_sent_, [&](const auto& sent) { return sent.first == number; }) > 0)
       source_ = sources_sent_.empty() ? source_in_force_ : sources_sent_.back().second;
+    for (const SentObjects& sent : objects_sent_)
+      if (sent.number == number) take_back(objects_, sent.before, sent.after);
   }
   return numbers;
 }
@@ -54,12 +57,14 @@ void OpenScene::drop_executed() {
     return over(sent.first);
   });
   if (pending_environment_ && (!scene || over(pending_environment_->sent))) pending_environment_.reset();
+  std::erase_if(objects_sent_, [&](const SentObjects& sent) { return over(sent.number); });
 }
 
 void OpenScene::begin_scene() {
   pending_lights_.reset(), pending_materials_.clear(), pending_environment_.reset();
   own_environment_ = {scene->environment.scale, scene->environment.rotation};
   dark_.clear(), sources_sent_.clear();
+  objects_.clear(), objects_sent_.clear(), boxes_.clear();
   for (uint32_t i = 0; i < scene->materials.size(); ++i)
     if (const vec3 off = scene->materials[i].off_emission; off != vec3(0)) dark_[i] = off;
   source_ = source_in_force_ = {};
@@ -89,6 +94,7 @@ Document OpenScene::document() const {
       d.materials.push_back(Document::of(material(i)));
       d.materials.back().emission = emission(i), d.materials.back().emits = emits(i);
     }
+  d.objects = objects_;
   std::tie(d.environment_scale, d.environment_rotation) = environment();
   d.environment_file = source_.file;
   d.sky = source_.sky;
@@ -118,6 +124,34 @@ scene::Material OpenScene::material(uint32_t index) const {
   if (const auto found = pending_materials_.find(index); found != pending_materials_.end())
     found->second.value.put(m);
   return m;
+}
+
+scene::ObjectPlace OpenScene::loaded_place(uint32_t index) const {
+  return {.hidden = loaded->instances.at(index).hidden};
+}
+
+scene::ObjectPlace OpenScene::object(uint32_t index) const {
+  const auto found = objects_.find(index);
+  return found != objects_.end() ? found->second : loaded_place(index);
+}
+
+const Box& OpenScene::object_box(uint32_t index) const {
+  const scene::Id mesh = loaded->instances.at(index).mesh;
+  const auto [place, fresh] = boxes_.try_emplace(mesh);
+  if (fresh && mesh < loaded->meshes.size()) place->second = scene::box_of(loaded->meshes[mesh]);
+  return place->second;
+}
+
+mat4 OpenScene::object_matrix(uint32_t index, const scene::ObjectPlace& place) const {
+  scene::Instance instance = loaded->instances.at(index);
+  scene::check_range(place, instance.name);
+  instance.to_world = scene::placed(instance.to_world, object_box(index), place);
+  scene::check_range(instance, object_box(index));
+  return instance.to_world;
+}
+
+mat4 OpenScene::object_matrix(uint32_t index) const {
+  return scene::placed(loaded->instances.at(index).to_world, object_box(index), object(index));
 }
 
 vec3 OpenScene::emission(uint32_t index) const {
@@ -234,11 +268,29 @@ uint32_t OpenScene::material_index(const std::string& which) const {
   return index_of("material", which, names_of(scene->materials));
 }
 
+uint32_t OpenScene::object_index(const std::string& which) const {
+  needs_scene();
+  return index_of("object", which, names_of(scene->instances));
+}
+
 void OpenScene::begin_edit(Document from) { working_ = std::move(from), named_.clear(); }
 
 Document& OpenScene::edit() {
   assert(working_ && "only commands marked undoable change the document");
   return *working_;
+}
+
+scene::ObjectPlace OpenScene::edited_object(uint32_t index) {
+  const auto found = edit().objects.find(index);
+  return found != edit().objects.end() ? found->second : loaded_place(index);
+}
+
+void OpenScene::put_object(uint32_t index, const scene::ObjectPlace& place) {
+  object_matrix(index, place);
+  if (place == loaded_place(index))
+    edit().objects.erase(index);
+  else
+    edit().objects[index] = place;
 }
 
 void OpenScene::set_by_name(const std::string& key, const std::string& value) {
@@ -325,6 +377,7 @@ void OpenScene::send(const Document& before, const Document& after) {
     pending_[key] = {value, session.commands()};
   }
   send_lights(before.lights, after.lights);
+  send_objects(before, after);
   if (scene)
     for (uint32_t i = 0; i < std::min(after.materials.size(), scene->materials.size()); ++i) {
       if (i < before.materials.size() && before.materials[i] == after.materials[i]) continue;
@@ -338,6 +391,23 @@ void OpenScene::send(const Document& before, const Document& after) {
   send_environment(before, after);
   solo_ = after.solo;
   shown_before_ = after.shown_before;
+}
+
+void OpenScene::send_objects(const Document& before, const Document& after) {
+  if (!scene || before.objects == after.objects) return;
+  const auto of = [&](const Objects& list, uint32_t index) {
+    const auto found = list.find(index);
+    return found == list.end() ? loaded_place(index) : found->second;
+  };
+  Objects all = before.objects;
+  all.insert(after.objects.begin(), after.objects.end());
+  std::vector<session::ObjectEdit> edits;
+  for (const auto& [index, unused] : all)
+    if (const scene::ObjectPlace place = of(after.objects, index); place != of(before.objects, index))
+      edits.push_back({index, object_matrix(index, place), place.hidden});
+  objects_ = after.objects;
+  session.set_instances(edits, id_);
+  objects_sent_.push_back({session.commands(), before.objects, after.objects});
 }
 
 void OpenScene::send_environment(const Document& before, const Document& after) {
@@ -373,6 +443,13 @@ scene::Scene OpenScene::edited_scene() const {
     edited.materials[i] = material(i);
     const auto off = dark_.find(i);
     edited.materials[i].off_emission = off != dark_.end() ? off->second : vec3(0);
+  }
+  // With edits on their way, and without those that the session alone has.
+  edited.instances = loaded->instances;
+  for (const auto& [index, place] : objects_) {
+    scene::Instance& instance = edited.instances[index];
+    instance.to_world = object_matrix(index), instance.hidden = place.hidden;
+    instance.flipped = glm::determinant(glm::dmat3(instance.to_world)) < 0;
   }
   scene::Environment& e = edited.environment;
   e = loaded->environment;

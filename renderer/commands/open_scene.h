@@ -60,6 +60,18 @@ class OpenScene {
   const std::vector<scene::Light>& lights() const;
   const scene::Light& light(uint32_t index) const { return lights().at(index); }
   scene::Material material(uint32_t index) const;
+  /// Where an object is, relative to where its file has it.
+  scene::ObjectPlace object(uint32_t index) const;
+  /// Its box in its own space; cached.
+  const Box& object_box(uint32_t index) const;
+  /// Its matrix at a place, or at its present one. Throws Error like both scene::check_range: it cannot be
+  /// there.
+  mat4 object_matrix(uint32_t index, const scene::ObjectPlace& place) const;
+  mat4 object_matrix(uint32_t index) const;
+  /// True if the session has edits of objects to execute.
+  bool moving_objects() const { return !objects_sent_.empty(); }
+  /// True if it is not as its file has it.
+  bool is_edited(uint32_t object) const { return objects_.contains(object); }
   /// Emission of a material, also if switched off.
   vec3 emission(uint32_t index) const;
   bool emits(uint32_t index) const { return !dark_.contains(index); }
@@ -100,6 +112,7 @@ class OpenScene {
   /// Index of the light with that name, or with that number from 1.
   uint32_t light_index(const std::string& which) const;
   uint32_t material_index(const std::string& which) const;
+  uint32_t object_index(const std::string& which) const;
   /// An id that no light of the scene has had.
   scene::Id new_light_id() { return next_light_id_++; }
 
@@ -108,6 +121,10 @@ class OpenScene {
   void begin_edit(Document from);
   /// The edited document. Only between begin_edit() and end_edit().
   Document& edit();
+  /// Puts an object of the edited document there. Throws Error like object_matrix().
+  void put_object(uint32_t index, const scene::ObjectPlace& place);
+  /// Its place in the edited document.
+  scene::ObjectPlace edited_object(uint32_t index);
   /// Sets a setting by name, also for a scene that is being loaded.
   void set_by_name(const std::string& key, const std::string& value);
   /// True if the latest edit has set settings by name, changed or not.
@@ -139,6 +156,9 @@ class OpenScene {
   /// Sends lights that differ: one by one if the list has the same lights, else as a whole.
   void send_lights(const std::vector<scene::Light>& before, const std::vector<scene::Light>& after);
   void send_environment(const Document& before, const Document& after);
+  void send_objects(const Document& before, const Document& after);
+  /// As the file has it.
+  scene::ObjectPlace loaded_place(uint32_t index) const;
   std::pair<float, float> environment() const;
   /// Keeps the emission of a material that is switched off.
   void note_dark(uint32_t material, const Document::Material& value);
@@ -163,6 +183,13 @@ class OpenScene {
   std::pair<float, float> own_environment_{1, 0};
   /// Numbers and sources sent to the session.
   std::vector<std::pair<uint64_t, EnvironmentSource>> sources_sent_;
+  Objects objects_;  ///< with edits on their way
+  struct SentObjects {
+    uint64_t number;
+    Objects before, after;
+  };
+  std::vector<SentObjects> objects_sent_;
+  mutable std::map<uint32_t, Box> boxes_;          ///< by mesh
   std::shared_ptr<const scene::Scene> groups_of_;  ///< scene of groups_, with these rules
   std::string groups_by_;
   scene::LightGroups groups_;

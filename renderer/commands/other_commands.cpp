@@ -52,7 +52,7 @@ void add_scene_commands(Workspace& work) {
          work.open.load(a.text("file"));
        }});
   work.registry.add({.name = "scene.cancel",
-                     .help = "Cancels the load in progress; the shown scene stays.",
+                     .help = "Cancels the load in progress, or the edit of objects; the shown scene stays.",
                      .parameters = {},
                      .run = [&work](const Arguments&) { work.session.cancel(); },
                      .done = [&work](const Arguments&) { return !work.open.loading(); },

@@ -8,5 +8,6 @@ namespace lucerna::commands {
 /// become those of `before`. Later changes stay. Lights and materials are compared only if all three
 /// documents have equally many.
 void take_back(Document& d, const Document& before, const Document& after);
+void take_back(Objects& values, const Objects& before, const Objects& after);
 
 }  // namespace lucerna::commands

@@ -23,8 +23,8 @@ bool is_kept(const std::string& key) {
 
 bool same_scene(const Document& a, const Document& b) {
   const auto values = [](const Document& d) {
-    return std::tie(d.lights, d.materials, d.environment_scale, d.environment_rotation, d.environment_file,
-                    d.sky);
+    return std::tie(d.lights, d.materials, d.objects, d.environment_scale, d.environment_rotation,
+                    d.environment_file, d.sky);
   };
   if (values(a) != values(b)) return false;
   return std::all_of(a.settings.begin(), a.settings.end(), [&](const auto& setting) {

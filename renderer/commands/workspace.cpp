@@ -18,6 +18,7 @@ Workspace::Workspace(session::Session& s, WorkspaceEvents e)
       events(std::move(e)) {
   add_setting_commands(*this);
   add_light_commands(*this);
+  add_object_commands(*this);
   add_sun_commands(registry, open);
   add_environment_commands(registry, open);
   add_environment_file_commands(registry, open);
@@ -60,6 +61,7 @@ void Workspace::refresh(double time) {
   now = time;
   history.refuse(open.refresh());
   follow_scene();
+  if (open.id() == camera.view_scene) camera.follow_objects(open.scene);
   if (open.up_to_date() && !open.snapshot->rgba.empty() && open.snapshot->scene_id == camera.view_scene &&
       camera.follow(*open.snapshot) && events.size_refused)
     events.size_refused(open.snapshot->width, open.snapshot->height);

@@ -60,6 +60,18 @@ const Part<session::ComponentStatus> k_component_parts[] = {
     {"share", [](const session::ComponentStatus& c) { return word(c.share); }},
 };
 
+/// An object with where it is.
+struct PlacedObject {
+  scene::ObjectPlace place;
+  vec3 middle;
+};
+const Part<PlacedObject> k_object_parts[] = {
+    {"position", [](const PlacedObject& o) { return word(o.middle); }},
+    {"rotation", [](const PlacedObject& o) { return word(o.place.turned); }},
+    {"scale", [](const PlacedObject& o) { return word(o.place.scaled); }},
+    {"visible", [](const PlacedObject& o) { return word(!o.place.hidden); }},
+};
+
 /// The newest picture. Throws Error if there is none.
 const session::Snapshot& picture_of(const Workspace& work) {
   if (!work.open.snapshot || work.open.snapshot->rgba.empty()) throw Error("", "there is no picture yet");
@@ -125,6 +137,25 @@ void add_object_values(Workspace& work) {
                        [&work](const Words& w) {
                          const uint32_t index = work.open.material_index(w[0]);
                          return part_of(work.open.document().materials.at(index), w[1], k_material_parts);
+                       }});
+  work.values.add({.name = "object",
+                   .help = fmt::format(
+                       "of an object: {}; position is the middle of its box, rotation (degrees) and scale "
+                       "are relative to its file",
+                       fmt::join(names_in(k_object_parts), ", ")),
+                   .words = {"OBJECT", "PART"},
+                   .names =
+                       [&work](const Words& before) {
+                         if (!before.empty()) return names_in(k_object_parts);
+                         return work.open.scene ? given_names(work.open.scene->instances) : Words();
+                       },
+                   .read =
+                       [&work](const Words& w) {
+                         const uint32_t index = work.open.object_index(w[0]);
+                         return part_of(PlacedObject{work.open.object(index),
+                                                     scene::middle_of(work.open.object_box(index),
+                                                                      work.open.object_matrix(index))},
+                                        w[1], k_object_parts);
                        }});
   work.values.add(
       {.name = "component",

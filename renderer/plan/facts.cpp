@@ -22,11 +22,15 @@ using List = std::vector<Evidence>;
 /// A scene with what its rows ask for more than once.
 struct Context {
   const Scene& scene;
-  std::vector<uint8_t> used;  ///< by material: a surface has it
-  explicit Context(const Scene& s) : scene(s), used(s.materials.size(), 0) {
+  std::vector<uint8_t> used;    ///< by material: a surface has it
+  std::vector<uint8_t> hidden;  ///< by mesh: all its instances are hidden
+  explicit Context(const Scene& s) : scene(s), used(s.materials.size(), 0), hidden(s.meshes.size(), 0) {
     for (const scene::Instance& instance : s.instances)
-      if (instance.mesh != scene::k_none)
-        for (const scene::Primitive& p : s.meshes[instance.mesh].primitives) used[p.material] = 1;
+      if (instance.hidden && instance.mesh < hidden.size()) hidden[instance.mesh] = 1;
+    for (const scene::Instance& instance : s.instances)
+      if (!instance.hidden && instance.mesh < hidden.size()) hidden[instance.mesh] = 0;
+    for (const scene::Instance& instance : s.instances)
+      for (const scene::Primitive& p : scene::shown_parts(s, instance)) used[p.material] = 1;
   }
   /// Materials of surfaces that meet the condition.
   List materials(const std::function<bool(const Material&)>& meets) const {
@@ -48,7 +52,7 @@ struct Context {
     List list;
     for (size_t i = 0; i < scene.meshes.size(); ++i) {
       const auto& parts = scene.meshes[i].primitives;
-      if (std::any_of(parts.begin(), parts.end(), meets))
+      if (!hidden[i] && std::any_of(parts.begin(), parts.end(), meets))
         list.push_back({Evidence::Kind::mesh, Id(i), scene::display_name(scene.meshes[i].name, "Mesh", i)});
     }
     return list;

@@ -67,8 +67,7 @@ namespace {
 std::vector<std::string> polished_materials(const scene::Scene& scene) {
   std::vector<bool> used(scene.materials.size(), false);
   for (const scene::Instance& instance : scene.instances)
-    if (instance.mesh != scene::k_none)
-      for (const scene::Primitive& p : scene.meshes[instance.mesh].primitives) used[p.material] = true;
+    for (const scene::Primitive& p : scene::shown_parts(scene, instance)) used[p.material] = true;
   std::vector<std::string> names;
   for (size_t i = 0; i < used.size(); ++i)
     if (used[i] && polished(scene.materials[i])) names.push_back(scene.materials[i].name);

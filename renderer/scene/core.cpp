@@ -50,7 +50,7 @@ std::optional<Box> core_of(std::span<const vec3> positions) {
 Box core_bounds(const Scene& scene) {
   std::vector<vec3> positions;
   for (const Instance& instance : scene.instances)
-    for (const Primitive& primitive : scene.meshes[instance.mesh].primitives)
+    for (const Primitive& primitive : shown_parts(scene, instance))
       for (const uvec3& t : primitive.triangles)
         for (const uint32_t corner : {t.x, t.y, t.z})
           positions.push_back(vec3(instance.to_world * vec4(primitive.positions[corner], 1)));

@@ -12,7 +12,7 @@ namespace lucerna::scene {
 /// where the next one reaches more than 16 times as far as the last. `positions`: three per triangle.
 std::optional<Box> core_of(std::span<const vec3> positions);
 
-/// The core of all instances, in world space; bounds() if all lie together.
+/// The core of all shown instances, in world space; bounds() if all lie together.
 Box core_bounds(const Scene& scene);
 
 }  // namespace lucerna::scene

@@ -62,8 +62,8 @@ uint64_t geometry(const Scene& scene) {
   }
   Hash hash;
   for (const Instance& instance : scene.instances) {
-    const auto& [name, mesh, to_world, flipped, group] = instance;
-    add_all(hash, mesh < meshes.size() ? meshes[mesh] : 0, to_world, flipped);
+    const auto& [name, mesh, to_world, flipped, group, hidden, node] = instance;
+    if (!hidden) add_all(hash, mesh < meshes.size() ? meshes[mesh] : 0, to_world, flipped);
   }
   if (scene.origin != glm::dvec3(0)) hash.add_value(scene.origin);
   return hash.low();

@@ -8,10 +8,16 @@
 
 namespace lucerna::scene {
 
+const std::vector<Primitive>& shown_parts(const Scene& scene, const Instance& instance) {
+  static const std::vector<Primitive> none;
+  return instance.hidden || instance.mesh >= scene.meshes.size() ? none
+                                                                 : scene.meshes[instance.mesh].primitives;
+}
+
 Box bounds(const Scene& scene) {
   Box box;
   for (const Instance& instance : scene.instances)
-    for (const Primitive& p : scene.meshes[instance.mesh].primitives)
+    for (const Primitive& p : shown_parts(scene, instance))
       for (const uvec3& t : p.triangles)
         for (int k = 0; k < 3; ++k) box.grow(vec3(instance.to_world * vec4(p.positions[t[k]], 1)));
   return box;
@@ -20,7 +26,7 @@ Box bounds(const Scene& scene) {
 uint64_t count_triangles(const Scene& scene) {
   uint64_t count = 0;
   for (const Instance& instance : scene.instances)
-    for (const Primitive& p : scene.meshes[instance.mesh].primitives) count += p.triangles.size();
+    for (const Primitive& p : shown_parts(scene, instance)) count += p.triangles.size();
   return count;
 }
 

@@ -162,6 +162,8 @@ struct Instance {
   mat4 to_world{1};
   bool flipped = false;
   std::string group{};  ///< light group of its emitting parts: the node's extras.light_group; "": none given
+  bool hidden = false;  ///< it has no surface (KHR_node_visibility), and keeps its place in the list
+  Id node = k_none;     ///< its node in the file, which may have several instances; k_none: not known
 };
 
 /// Thin lens of a perspective camera, for depth of field. The film is 36 mm wide, so the field of view gives
@@ -298,9 +300,12 @@ struct Scene {
   std::vector<Id> material_indices;
 };
 
-/// World-space bounds of all instances; empty for a scene without triangles.
+/// The parts of an instance that are surfaces of the scene: those of its mesh, or none if it is hidden.
+const std::vector<Primitive>& shown_parts(const Scene& scene, const Instance& instance);
+
+/// World-space bounds of all shown instances; empty for a scene without triangles.
 Box bounds(const Scene& scene);
-/// Triangles after instancing.
+/// Triangles of all shown instances.
 uint64_t count_triangles(const Scene& scene);
 /// The camera of a scene that has none: looks at the bounds' centre from the front, slightly above.
 Camera default_camera(const Scene& scene);

@@ -82,11 +82,11 @@ std::optional<Picked> pick(const scene::Scene& scene, const scene::Camera& camer
   float nearest = k_infinity;
   for (uint32_t i = 0; i < scene.instances.size(); ++i) {
     const scene::Instance& instance = scene.instances[i];
-    if (instance.mesh >= scene.meshes.size()) continue;
+    const std::vector<scene::Primitive>& primitives = scene::shown_parts(scene, instance);
+    if (primitives.empty()) continue;
     // The ray keeps its parameter in object space, so distances are comparable.
     const mat4 to_object = glm::inverse(instance.to_world);
     const vec3 o(to_object * vec4(origin, 1)), d(to_object * vec4(direction, 0));
-    const std::vector<scene::Primitive>& primitives = scene.meshes[instance.mesh].primitives;
     for (uint32_t part = 0; part < primitives.size(); ++part) {
       const scene::Primitive& p = primitives[part];
       for (uint32_t triangle = 0; triangle < p.triangles.size(); ++triangle) {
@@ -117,23 +117,33 @@ std::optional<Picked> pick(const scene::Scene& scene, const scene::Camera& camer
 
 namespace {
 
+std::vector<bvh::InstancedTracer::Instance> traced_instances(const scene::Scene& scene) {
+  std::vector<bvh::InstancedTracer::Instance> instances;
+  for (const scene::Instance& instance : scene.instances)
+    instances.push_back({instance.hidden ? scene::k_none : instance.mesh, instance.to_world});
+  return instances;
+}
+
 bvh::InstancedTracer make_tracer(const scene::Scene& scene) {
   std::vector<bvh::InstancedTracer::Mesh> meshes;
   for (const scene::Mesh& mesh : scene.meshes) {
     meshes.emplace_back();
     for (const scene::Primitive& p : mesh.primitives) meshes.back().push_back({p.positions, p.triangles});
   }
-  std::vector<bvh::InstancedTracer::Instance> instances;
-  for (const scene::Instance& instance : scene.instances)
-    instances.push_back({instance.mesh, instance.to_world});
   // One thread: the others render.
-  return {meshes, instances, 1};
+  return {meshes, traced_instances(scene), 1};
 }
 
 }  // namespace
 
 Probe::Probe(std::shared_ptr<const scene::Scene> scene)
     : scene_(std::move(scene)), tracer_(make_tracer(*scene_)) {}
+
+Probe::Probe(std::shared_ptr<const scene::Scene> scene, const Probe& before)
+    : scene_(std::move(scene)),
+      tracer_(scene_->meshes.shares_with(before.scene_->meshes)
+                  ? bvh::InstancedTracer(before.tracer_, traced_instances(*scene_))
+                  : make_tracer(*scene_)) {}
 
 std::optional<Picked> Probe::nearest(const vec3& origin, const vec3& direction, float limit,
                                      const std::function<bool(const Picked&)>& wanted) const {

@@ -41,6 +41,8 @@ class Probe {
  public:
   /// Takes about 0.3 s per million triangles. Throws Error: memory.
   explicit Probe(std::shared_ptr<const scene::Scene> scene);
+  /// Faster, if both scenes share their meshes.
+  Probe(std::shared_ptr<const scene::Scene> scene, const Probe& before);
   /// The first hit nearer than `limit` [m]; passes through surfaces for which `wanted` is false.
   std::optional<Picked> nearest(const vec3& origin, const vec3& direction, float limit = k_infinity,
                                 const std::function<bool(const Picked&)>& wanted = {}) const;

@@ -29,6 +29,7 @@
 #include "session/held_picture.h"
 #include "session/image_progress.h"
 #include "session/lights_edit.h"
+#include "session/object_edit.h"
 #include "session/overlays.h"
 #include "session/path_recording.h"
 #include "session/pilot.h"
@@ -110,6 +111,12 @@ class Renderer {
   /// All of these as one edit. If the total light is unchanged, with the former group mix written into the
   /// lights or the reverse, the picture continues. Throws Error; then nothing changes.
   void set_lights(const LightsEdit& edit);
+  /// Puts instances of the scene elsewhere, hides or shows them, as one edit. All surfaces are flattened and
+  /// their tree is built again: seconds for a large scene. Lights, materials and settings stay; data that
+  /// solvers have prepared are dropped, since light changes everywhere. Recorded paths are no longer shown.
+  /// Throws Error, located at the object: there is none, its matrix is invalid; memory; `progress` cancels.
+  /// Then nothing changes.
+  void set_instances(const std::vector<ObjectEdit>& edits, const Progress& progress = {});
   /// The scene's light groups, and what the settings make of them.
   const Relight& relight() const { return setup_.relight; }
   /// In the window, a new mix is shown at once; the film's sums follow with the next step(), or with this

@@ -1,9 +1,10 @@
-// Edits of a renderer's scene: lights, environment, materials.
+// Edits of a renderer's scene: lights, environment, materials, objects.
 #include <algorithm>
 #include <utility>
 
 #include "scene/io/environment_file.h"
 #include "scene/light_factor.h"
+#include "scene/object_place.h"
 #include "scene/range.h"
 #include "scene/sky_image.h"
 #include "session/found_portals.h"
@@ -153,6 +154,27 @@ void Renderer::set_lights(const LightsEdit& e) {
   scene::Changes changes;
   changes.edits = {scene::Change::lamp, scene::Change::environment, scene::Change::colour};
   edit(std::move(target), changes, true);
+}
+
+void Renderer::set_instances(const std::vector<ObjectEdit>& edits, const Progress& progress) {
+  if (!setup_.world.scene) throw Error("object", "there is no scene");
+  auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
+  bool changed = false;
+  for (const ObjectEdit& e : edits) {
+    if (e.index >= edited->instances.size()) throw_error("object", "there is no object {}", e.index + 1);
+    scene::Instance& instance = edited->instances[e.index];
+    changed |= instance.to_world != e.to_world || instance.hidden != e.hidden;
+    instance.to_world = e.to_world, instance.hidden = e.hidden;
+    instance.flipped = glm::determinant(glm::dmat3(e.to_world)) < 0;
+    scene::check_range(instance, scene::box_of(std::as_const(edited->meshes).at(instance.mesh)));
+  }
+  if (!changed) return;
+  Transaction::Target target(setup_);
+  // What stood in a window may be gone.
+  target.scene =
+      with_portals(std::move(edited), loaded_->portals, setup_.settings.text("lights.portals"), progress);
+  install(std::move(target), progress, scene::Change::shape);
+  overlays_.show_paths({});
 }
 
 void Renderer::edit(std::shared_ptr<const scene::Scene> edited, const scene::Changes& changes, bool factors) {

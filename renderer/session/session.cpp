@@ -148,6 +148,31 @@ void Session::set_lights(const LightsEdit& edit, SceneId scene) {
   impl_->post({.run = run, .subject = "the lights", .scene = scene});
 }
 
+void Session::set_instances(const std::vector<ObjectEdit>& edits, SceneId scene) {
+  const uint64_t number = ++impl_->loads;
+  const auto run = [s = impl_.get(), edits, number](Renderer& r) {
+    constexpr double k_silent_seconds = 0.3;
+    const Timer timer;
+    Timer since;
+    const uint64_t before = r.restarts();
+    try {
+      r.set_instances(edits, [&](float fraction, const std::string& what) {
+        if (timer.seconds() > k_silent_seconds && since.seconds() > 0.05) {
+          s->publish_activity("moving objects: " + what, fraction);
+          since.restart();
+        }
+        return number > s->given_up;
+      });
+    } catch (const Error&) {
+      if (number > s->given_up) throw;
+      log::info("the objects stay where they were: given up");
+      throw Abandoned();
+    }
+    if (r.restarts() != before) s->restarted();
+  };
+  impl_->post({.run = run, .subject = "an object", .scene = scene});
+}
+
 void Session::set_paused(bool paused) {
   const auto run = [s = impl_.get(), paused](Renderer&) { s->paused = paused; };
   impl_->post({.run = run, .subject = "rendering"});

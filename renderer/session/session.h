@@ -23,6 +23,7 @@
 #include "session/command_queue.h"
 #include "session/held_picture.h"
 #include "session/lights_edit.h"
+#include "session/object_edit.h"
 #include "session/shown_paths.h"
 #include "solvers/report.h"
 
@@ -173,6 +174,8 @@ class Session {
   /// Renderer::set_material
   void set_material(uint32_t index, const scene::Material& material, SceneId scene = k_any_scene);
   void set_lights(const LightsEdit& edit, SceneId scene = k_any_scene);  ///< Renderer::set_lights
+  /// Renderer::set_instances, with progress in snapshots if it takes long; cancel() ends it too.
+  void set_instances(const std::vector<ObjectEdit>& edits, SceneId scene = k_any_scene);
   void set_paused(bool paused);
   void restart();         ///< discards all samples and restarts
   void reload_shaders();  ///< compiles again; on error the old kernels stay and the message is logged
@@ -219,7 +222,7 @@ class Session {
   void solver_load(const std::string& solver, const std::filesystem::path& file, SceneId scene = k_any_scene);
   /// Runs one of SolverInfo::commands. Resumes paused rendering.
   void solver_command(const std::string& solver, const std::string& command, SceneId scene = k_any_scene);
-  void cancel();  ///< cancels all loads requested so far and not done
+  void cancel();  ///< cancels all loads and set_instances() requested so far and not done
 
   /// Number of the newest command, from 1 on. A snapshot with that count includes its effect.
   uint64_t commands() const;

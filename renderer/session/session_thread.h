@@ -32,7 +32,7 @@ struct Session::Impl {
   CommandQueue queue;
   std::atomic<bool> quit{false}, pending{false};
   uint64_t done = 0;  // number of the last command carried out
-  // Loads are numbered in order of request; those up to a number are cancelled.
+  // Loads and edits of objects are numbered in order of request; those up to a number are cancelled.
   std::atomic<uint64_t> loads{0}, given_up{0};
   std::shared_ptr<const Snapshot> snapshot;
   State state;

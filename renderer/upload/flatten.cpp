@@ -27,8 +27,8 @@ void flatten_geometry(const scene::Scene& scene, FlatScene& flat) {
     flat.effects.normal_maps |= bool(m.normal_texture);
     flat.effects.tangents |= scene::needs_tangents(m);
   }
-  for (const scene::Mesh& mesh : scene.meshes)
-    for (const scene::Primitive& p : mesh.primitives)
+  for (const scene::Instance& instance : scene.instances)
+    for (const scene::Primitive& p : scene::shown_parts(scene, instance))
       flat.effects.vertex_extra |= !p.colors.empty() || !p.uv1.empty();
   const uint64_t count = scene::count_triangles(scene);
   if (count > (1u << 27) / 3)
@@ -38,7 +38,7 @@ void flatten_geometry(const scene::Scene& scene, FlatScene& flat) {
   for (const scene::Instance& instance : scene.instances) {
     const mat3 linear(instance.to_world);
     const mat3 normal_matrix = glm::transpose(glm::inverse(linear));
-    for (const scene::Primitive& p : scene.meshes[instance.mesh].primitives) {
+    for (const scene::Primitive& p : scene::shown_parts(scene, instance)) {
       const uint32_t first = uint32_t(flat.vertices.size() / 2);
       const scene::Material& material = scene.materials[p.material];
       for (size_t i = 0; i < p.positions.size(); ++i) {

@@ -92,7 +92,7 @@ std::vector<uint8_t> surface_groups(const scene::Scene& scene, const FlatScene& 
   std::vector<uint8_t> groups;
   groups.reserve(flat.triangles.size());
   for (size_t i = 0; i < scene.instances.size(); ++i) {
-    const auto& primitives = scene.meshes[scene.instances[i].mesh].primitives;
+    const auto& primitives = scene::shown_parts(scene, scene.instances[i]);
     const std::vector<uint8_t>& of = flat.groups->surfaces[i];
     for (size_t p = 0; p < primitives.size(); ++p)
       groups.insert(groups.end(), primitives[p].triangles.size(), of.empty() ? uint8_t(0) : of[p]);

@@ -65,6 +65,12 @@ const std::vector<Action>& actions() {
          m.metallic = 1, m.roughness = 0.3f, m.emission = vec3(0.1f);
          r.set_material(0, m);
        }},
+      {"an object moved",
+       [](session::Renderer& r) {
+         mat4 there = r.scene()->instances[1].to_world;
+         there[3].x += 0.5f;
+         r.set_instances({{1, there}});
+       }},
       {"the environment", [](session::Renderer& r) { r.set_environment(3, 10); }},
       {"tertiary light path traced",
        [](session::Renderer& r) {

@@ -64,6 +64,7 @@ TEST_CASE("a change of light changes the hash of its part, and no other") {
   CHECK(moved([](Scene& s) { s.meshes[0].primitives[0].material = 1; }) == "g");
   CHECK(moved([](Scene& s) { s.instances[1].to_world[3].y = 0.5f; }) == "g");
   CHECK(moved([](Scene& s) { s.instances[1].flipped = true; }) == "g");
+  CHECK(moved([](Scene& s) { s.instances[1].hidden = true; }) == "g");
   CHECK(moved([](Scene& s) { std::swap(s.instances[0].mesh, s.instances[1].mesh); }) == "g");
   CHECK(moved([](Scene& s) { s.instances.pop_back(); }) == "g");
   CHECK(moved([](Scene& s) { s.materials[1].base_color.x = 0.5f; }) == "m");

@@ -57,6 +57,10 @@ struct WorkspaceBench {
         if (!std::exchange(m.emits, true)) m.emission = vec3(0);
         if (!(commands::Document::of(scene->materials[i]) == m)) return false;
       }
+      for (uint32_t i = 0; i < scene->instances.size(); ++i)
+        if (scene->instances[i].to_world != work.open.object_matrix(i) ||
+            scene->instances[i].hidden != work.open.object(i).hidden)
+          return false;
       return scene->environment.scale == d.environment_scale &&
              scene->environment.rotation == d.environment_rotation;
     });

@@ -602,6 +602,16 @@ struct Session::Impl {
       },
       scene, false);
 }
+[[gnu::weak]] void Session::set_instances(const std::vector<ObjectEdit>& edits, SceneId scene) {
+  impl_->post_edit(
+      [edits](scene::Scene& s) {
+        for (const ObjectEdit& e : edits) {
+          scene::Instance& instance = s.instances[e.index];
+          instance.to_world = e.to_world, instance.hidden = e.hidden;
+        }
+      },
+      scene);
+}
 [[gnu::weak]] void Session::set_paused(bool paused) {
   impl_->post([this, paused] { impl_->paused = paused, impl_->publish(); });
 }

@@ -30,15 +30,25 @@ void filter(const RTCFilterFunctionNArguments* a) {
 }  // namespace
 
 struct InstancedTracer::Impl {
-  EmbreeDevice device;
-  std::vector<EmbreeScene> meshes;
+  /// Shared between tracers; the device is destroyed last.
+  struct MeshTrees {
+    EmbreeDevice device;
+    std::vector<EmbreeScene> meshes;
+  };
+  std::shared_ptr<MeshTrees> trees = std::make_shared<MeshTrees>();
+  EmbreeDevice& device = trees->device;
+  std::vector<EmbreeScene>& meshes = trees->meshes;
   std::vector<mat4> to_world;  // of every instance
   EmbreeScene top;
+
+  Impl() = default;
+  explicit Impl(std::shared_ptr<MeshTrees> of) : trees(std::move(of)) {}
 
   void check(const char* what) const {
     if (const std::string error = embree_error(device.get()); !error.empty())
       throw_error("embree", "{}: {}", what, error);
   }
+  void place(const std::vector<Instance>& instances);
   EmbreeScene scene() const {
     EmbreeScene s(rtcNewScene(device.get()));
     rtcSetSceneFlags(s.get(), RTCSceneFlags(RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_COMPACT |
@@ -72,19 +82,28 @@ InstancedTracer::InstancedTracer(const std::vector<Mesh>& meshes, const std::vec
     }
     rtcCommitScene(scene.get());
   }
-  impl_->top = impl_->scene();
+  impl_->place(instances);
+}
+
+InstancedTracer::InstancedTracer(const InstancedTracer& meshes, const std::vector<Instance>& instances)
+    : impl_(std::make_unique<Impl>(meshes.impl_->trees)) {
+  impl_->place(instances);
+}
+
+void InstancedTracer::Impl::place(const std::vector<Instance>& instances) {
+  top = scene();
   for (uint32_t i = 0; i < instances.size(); ++i) {
-    impl_->to_world.push_back(instances[i].to_world);
+    to_world.push_back(instances[i].to_world);
     if (instances[i].mesh >= meshes.size()) continue;
-    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_INSTANCE);
-    rtcSetGeometryInstancedScene(geometry, impl_->meshes[instances[i].mesh].get());
+    RTCGeometry geometry = rtcNewGeometry(device.get(), RTC_GEOMETRY_TYPE_INSTANCE);
+    rtcSetGeometryInstancedScene(geometry, meshes[instances[i].mesh].get());
     rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT4X4_COLUMN_MAJOR, &instances[i].to_world[0][0]);
     rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(impl_->top.get(), geometry, i);
+    rtcAttachGeometryByID(top.get(), geometry, i);
     rtcReleaseGeometry(geometry);
   }
-  rtcCommitScene(impl_->top.get());
-  impl_->check("cannot build the tree of the scene's meshes");
+  rtcCommitScene(top.get());
+  check("cannot build the tree of the scene's meshes");
 }
 
 InstancedTracer::~InstancedTracer() = default;

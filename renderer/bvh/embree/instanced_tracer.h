@@ -33,6 +33,8 @@ class InstancedTracer {
   /// Copies what it needs. `threads`: for building. Throws Error: memory. An instance of a missing or empty
   /// mesh is never hit.
   InstancedTracer(const std::vector<Mesh>& meshes, const std::vector<Instance>& instances, int threads);
+  /// Other instances of the same meshes, which are shared.
+  InstancedTracer(const InstancedTracer& meshes, const std::vector<Instance>& instances);
   ~InstancedTracer();
   InstancedTracer(InstancedTracer&&) noexcept;
   InstancedTracer& operator=(InstancedTracer&&) noexcept;

@@ -32,6 +32,7 @@ const std::set<std::string_view> k_known_extensions{"KHR_materials_emissive_stre
                                                     "KHR_materials_dispersion",
                                                     "KHR_materials_variants",
                                                     "KHR_mesh_quantization",
+                                                    "KHR_node_visibility",
                                                     "EXT_mesh_gpu_instancing"};
 
 size_t count_of(const Item& root, const char* list) {

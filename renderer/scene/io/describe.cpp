@@ -161,7 +161,7 @@ nlohmann::ordered_json describe(const Scene& scene) {
     for (const Primitive& primitive : mesh.primitives) vertices += primitive.positions.size();
   }
   for (const Instance& instance : scene.instances)
-    for (const Primitive& primitive : scene.meshes[instance.mesh].primitives) {
+    for (const Primitive& primitive : shown_parts(scene, instance)) {
       const Material& m = scene.materials[primitive.material];
       if (m.emission != vec3(0) && !m.unlit) emissive += primitive.triangles.size();
     }
@@ -169,6 +169,9 @@ nlohmann::ordered_json describe(const Scene& scene) {
   out["emissive_triangles"] = emissive;
   out["vertices"] = vertices;
   out["instances"] = scene.instances.size();
+  const auto hidden = std::count_if(scene.instances.begin(), scene.instances.end(),
+                                    [](const Instance& instance) { return instance.hidden; });
+  if (hidden > 0) out["hidden_instances"] = hidden;
   out["meshes"] = scene.meshes.size();
   out["primitives"] = primitives;
   out["materials"] = describe_materials(scene);
@@ -235,9 +238,10 @@ std::string describe_text(const Scene& scene) {
     return fmt::format("{:.4g} {:.4g} {:.4g}", v[0].get<double>(), v[1].get<double>(), v[2].get<double>());
   };
   line("{}", scene.file);
-  line("triangles    {} ({} emissive), from {} vertices in {} meshes ({} primitives), {} instances",
+  line("triangles    {} ({} emissive), from {} vertices in {} meshes ({} primitives), {} instances{}",
        number("triangles"), number("emissive_triangles"), number("vertices"), number("meshes"),
-       number("primitives"), number("instances"));
+       number("primitives"), number("instances"),
+       d.contains("hidden_instances") ? fmt::format(" ({} hidden)", number("hidden_instances")) : "");
   if (!d["bounds"].is_null())
     line("bounds       {} to {} m", triple(d["bounds"]["lo"]), triple(d["bounds"]["hi"]));
   if (scene.origin != glm::dvec3(0))

@@ -87,7 +87,7 @@ void load_meshes(Document& document, Scene& scene, Placement& placement, Materia
     if (ids[use] == k_none) continue;
     instance.mesh = ids[use];
     glm::dmat4 matrix = placement.instances[i];
-    matrix[3] += glm::dvec4(origins[use], 0);
+    matrix[3] += glm::dvec4(glm::dmat3(matrix) * origins[use], 0);
     matrices.push_back(matrix);
     shown.push_back(std::move(instance));
   }
@@ -144,6 +144,21 @@ void check_lights(const Document& document, const Scene& scene) {
   }
 }
 
+// The matrix in single precision: `known`, as it was saved, unless it is another one.
+mat4 rounded(const glm::dmat4& matrix, const mat4& known) {
+  double size = 0, linear = 0;
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 3; ++r) {
+      size = std::max(size, std::abs(matrix[c][r]));
+      if (c < 3) linear = std::max(linear, std::abs(matrix[c][r]));
+    }
+  for (int c = 0; c < 4; ++c)
+    for (int r = 0; r < 4; ++r)
+      if (!(std::abs(double{known[c][r]} - matrix[c][r]) <= 1e-6 * (c < 3 ? linear : size)))
+        return mat4(matrix);
+  return known;
+}
+
 // Chooses the scene's origin and puts everything in its place.
 void place(Scene& scene, Placement& placement, const std::vector<Box>& boxes, Document& document) {
   const auto is_lamp = [&scene](const Mesh& mesh) {
@@ -189,7 +204,8 @@ void place(Scene& scene, Placement& placement, const std::vector<Box>& boxes, Do
   for (size_t i = 0; i < scene.instances.size(); ++i) {
     glm::dmat4 matrix = placement.instances[i];
     matrix[3] += glm::dvec4(glm::dmat3(matrix) * shifts[scene.instances[i].mesh] - scene.origin, 0);
-    scene.instances[i].to_world = mat4(matrix);
+    mat4& to_world = scene.instances[i].to_world;
+    to_world = rounded(matrix, to_world);
   }
   for (size_t i = 0; i < cameras.size(); ++i) {
     scene.cameras[i].to_world[3] = vec4(vec3(cameras[i] - scene.origin), 1);

@@ -21,7 +21,8 @@
 // Supported extensions: KHR_materials_emissive_strength, _ior, _specular, _transmission, _volume,
 // _diffuse_transmission, _clearcoat (which does not dim emission below it), _sheen, _anisotropy,
 // _iridescence, _unlit, _variants, KHR_lights_punctual (range ignored), EXT_lights_ies,
-// KHR_texture_transform, KHR_mesh_quantization, EXT_mesh_gpu_instancing.
+// KHR_texture_transform, KHR_mesh_quantization, EXT_mesh_gpu_instancing, KHR_node_visibility (what it hides
+// is loaded as hidden instances and lights that are off).
 //
 // The environment comes from the scene's extras, {"environment": {"file": .., "scale": .., "rotation": ..}}
 // or {"environment": {"radiance": [r, g, b]}} (unknown keys are accepted there), or, overriding it as a
@@ -31,7 +32,7 @@
 //
 // extras.lucerna of the default scene, which save.h writes, overrides both: "environment", also with a sky by
 // formula ("sky"), and "settings", flat, to Scene::own_settings. extras.lucerna of a light's node: whether it
-// is off, and the date and place of a sun (own_extras.h).
+// is off, and the date and place of a sun; of a node with a mesh: all digits of its matrix (own_extras.h).
 //
 // Perspective cameras with extras {"lucerna": {"f_number": .., "focus_distance": ..}} have a lens (Lens),
 // with "aperture_blades" and "aperture_rotation" [radians] if given; "shift_right" and "shift_up" are

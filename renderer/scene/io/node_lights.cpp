@@ -78,6 +78,7 @@ Light NodeLights::punctual(const Item& reference, const Place& place) {
   if (light.name.empty()) light.name = place.name;
   light.group = place.group.empty() ? light_group(item) : place.group;
   light.id = place.node;
+  light.enabled = !place.hidden;
   const std::string& type = item.at("type").text();
   if (type == "point") {
     light.kind = LightKind::point;
@@ -115,7 +116,11 @@ Light NodeLights::punctual(const Item& reference, const Place& place) {
 }
 
 std::optional<Light> NodeLights::with_profile(const Item& reference, const Place& place) {
-  Light light{.name = place.name, .kind = LightKind::profile, .group = place.group, .id = place.node};
+  Light light{.name = place.name,
+              .kind = LightKind::profile,
+              .enabled = !place.hidden,
+              .group = place.group,
+              .id = place.node};
   try {
     light.profile = profile_of(reference);
   } catch (const OverBudget&) {

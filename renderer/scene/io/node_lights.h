@@ -17,6 +17,7 @@ class NodeLights {
     uint32_t node;
     const std::string &name, &group;  ///< of the node; the group may be empty
     const glm::dmat4& world;
+    bool hidden = false;  ///< the light is off unless extras.lucerna says otherwise
   };
   /// The light of a node's KHR_lights_punctual. Throws a located Error; a shape that cannot be used is a
   /// warning.

@@ -48,14 +48,20 @@ class Walker {
       : document_(document), scene_(scene), root_(document.root()), lights_(document) {}
 
   Placement walk() {
-    std::vector<std::pair<uint32_t, dmat4>> stack;
+    struct Step {
+      uint32_t node;
+      dmat4 parent;
+      bool hidden;
+    };
+    std::vector<Step> stack;
     const std::vector<uint32_t> roots = find_roots();
-    for (size_t i = roots.size(); i-- > 0;) stack.emplace_back(roots[i], dmat4(1));
+    for (size_t i = roots.size(); i-- > 0;) stack.push_back({roots[i], dmat4(1), false});
     while (!stack.empty()) {
-      const auto [index, parent] = stack.back();
+      const auto [index, parent, below_hidden] = stack.back();
       stack.pop_back();
       const tinygltf::Node& node = document_.model.nodes[index];
       const Item item = root_.at("nodes").at(index);
+      const bool hidden = below_hidden || !is_visible(item);
       dmat4 world;
       try {
         world = parent * local_matrix(node, item);
@@ -63,9 +69,9 @@ class Walker {
         if (holds_anything(index)) throw;
         continue;
       }
-      visit(index, node, item, world);
+      visit(index, node, item, world, hidden);
       for (size_t i = node.children.size(); i-- > 0;)
-        stack.emplace_back(static_cast<uint32_t>(node.children[i]), world);
+        stack.push_back({static_cast<uint32_t>(node.children[i]), world, hidden});
     }
     return std::move(placement_);
   }
@@ -85,6 +91,12 @@ class Walker {
     for (uint32_t i = 0; i < is_child.size(); ++i)
       if (!is_child[i]) roots.push_back(i);
     return roots;
+  }
+
+  static bool is_visible(const Item& node) {
+    const auto extensions = node.find("extensions");
+    const auto visibility = extensions ? extensions->find("KHR_node_visibility") : std::nullopt;
+    return !visibility || visibility->boolean("visible", true);
   }
 
   std::optional<Item> light_of(uint32_t index) const {
@@ -196,7 +208,7 @@ class Walker {
     return static_cast<Id>(placement_.uses.size() - 1);
   }
 
-  void visit(uint32_t index, const tinygltf::Node& node, const Item& item, const dmat4& world) {
+  void visit(uint32_t index, const tinygltf::Node& node, const Item& item, const dmat4& world, bool hidden) {
     const auto extensions = item.find("extensions");
     const auto light = light_of(index);
     const bool portal = is_portal(item, node.mesh);
@@ -219,14 +231,18 @@ class Walker {
         document_.warnings.add("{} skinned meshes with EXT_mesh_gpu_instancing: shown once",
                                instancing->path());
       if (skin)
-        place_instance(name, add_use({mesh, {weights, joint_matrices(*skin), world}}), dmat4(1));
+        place_skinned(name, add_use({mesh, {weights, joint_matrices(*skin), world}}), item);
       else if (instancing)
         add_instances(*instancing, name, mesh, weights, world);
       else
         add_instance(name, mesh, weights, world, item.path());
-      for (size_t i = before; !group.empty() && i < scene_.instances.size(); ++i)
-        scene_.instances[i].group = group;
-      if (portal) make_portals(before, item.path());
+      const std::optional<dmat4> exact = instancing ? std::nullopt : own_matrix(item, "to_world");
+      for (size_t i = before; i < scene_.instances.size(); ++i) {
+        Instance& instance = scene_.instances[i];
+        instance.group = group, instance.hidden = hidden, instance.node = index;
+        if (exact) instance.to_world = mat4(*exact);
+      }
+      if (portal) make_portals(before, item.path(), hidden);
     }
     if ((node.camera >= 0 || light || profile) && kind == Kind::nothing) {
       document_.warnings.add("{} cameras or lamps in nodes of scale 0: left out", item.path());
@@ -236,9 +252,9 @@ class Walker {
     // A punctual light beside a profile is for programs that do not read profiles.
     std::optional<Light> read;
     if (profile)
-      read = lights_.with_profile(*profile, {index, name, group, world});
+      read = lights_.with_profile(*profile, {index, name, group, world, hidden});
     else if (light)
-      read = lights_.punctual(*light, {index, name, group, world});
+      read = lights_.punctual(*light, {index, name, group, world, hidden});
     if (read) {
       scene_.lights.push_back(*std::move(read));
       placement_.lights.emplace_back(world[3]);
@@ -250,9 +266,9 @@ class Walker {
     return mesh >= 0 && portal_mark(root_.at("meshes").at(static_cast<size_t>(mesh))).value_or(false);
   }
 
-  // Turns the instances from there on into portals.
-  void make_portals(size_t first, const std::string& where) {
-    for (size_t i = first; i < placement_.instances.size(); ++i) {
+  // Turns the instances from there on into portals, unless they are hidden.
+  void make_portals(size_t first, const std::string& where, bool hidden) {
+    for (size_t i = first; !hidden && i < placement_.instances.size(); ++i) {
       const Instance& instance = std::as_const(scene_.instances)[i];
       placement_.portals.push_back(
           {instance.name, where, instance.mesh, placement_.instances[i], instance.flipped});
@@ -262,8 +278,14 @@ class Walker {
   }
 
   void place_instance(const std::string& name, Id use, const dmat4& world) {
-    scene_.instances.push_back({name, use, mat4(1), glm::determinant(dmat3(world)) < 0, {}});
+    scene_.instances.push_back({name, use, mat4(0), glm::determinant(dmat3(world)) < 0, {}});
     placement_.instances.push_back(world);
+  }
+
+  void place_skinned(const std::string& name, Id use, const Item& node) {
+    const dmat4 to_world = own_matrix(node, "skin_to_world").value_or(dmat4(1));
+    if (kind_of(to_world) != Kind::regular) node.fail("extras.lucerna.skin_to_world cannot be inverted");
+    place_instance(name, use, to_world);
   }
 
   void add_instance(const std::string& name, uint32_t mesh, const std::vector<float>& weights,

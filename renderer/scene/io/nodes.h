@@ -33,7 +33,9 @@ struct Placement {
 };
 
 /// Walks the default scene (scenes[scene], else the first, else all roots) and fills instances, cameras and
-/// lights except their positions.
+/// lights except their positions. Instance::to_world is what extras.lucerna.to_world says (own_extras.h), or
+/// 0.
+/// - KHR_node_visibility hides instances, switches lights off and removes portals, also of nodes below.
 /// - The matrix of a skinned mesh's node is ignored (glTF 2.0, 3.7.3.3).
 /// - A matrix that is singular in single precision but of rank 2 flattens meshes, which then have a separate
 ///   pose; cameras and lights keep the orientation of their other axes. Objects with a matrix of rank 1 or 0

@@ -40,6 +40,22 @@ SunTime read_sun(const Item& item) {
 
 const char* name_of(SkyKind kind) { return k_sky_names[static_cast<size_t>(kind)]; }
 
+std::optional<glm::dmat4> own_matrix(const Item& node, const char* key) {
+  const auto own = own_extras(node);
+  const auto found = own ? own->find(key) : std::nullopt;
+  if (!found) return std::nullopt;
+  if (found->size() != 16) found->fail("{} numbers, expected 16", found->size());
+  glm::dmat4 m;
+  for (size_t i = 0; i < 16; ++i) {
+    const double value = found->at(i).number();
+    if (!std::isfinite(value)) found->at(i).fail("{} is not finite", value);
+    m[glm::length_t(i / 4)][glm::length_t(i % 4)] = value;
+  }
+  const glm::dvec4 last(m[0][3], m[1][3], m[2][3], m[3][3] - 1);
+  if (glm::length(last) > 1e-4) found->fail("the last row is not 0 0 0 1");
+  return m;
+}
+
 void read_own_shape(const Item& definition, Light& light) {
   const auto own = own_extras(definition);
   const auto shape = own ? own->find("shape") : std::nullopt;
@@ -80,7 +96,7 @@ void read_own_emission(const Item& item, Material& material) {
 void read_own_extras(const Item& node, Light& light) {
   const auto own = own_extras(node);
   if (!own) return;
-  light.enabled = own->boolean("enabled", true);
+  light.enabled = own->boolean("enabled", light.enabled);
   if (const auto right = own->find("right"); right && can_roll(light)) {
     const vec3 value = right->rgb();
     if (glm::distance(value, light.right) < glm::radians(0.01f)) light.right = value;

@@ -12,6 +12,14 @@ namespace lucerna::scene {
 /// within 0.01 degrees, so that it keeps all digits.
 void read_own_extras(const Item& node, Light& light);
 
+/// Of a node with a mesh, 16 numbers by columns:
+/// - "to_world": Instance::to_world as this program had it, used if it differs from what the nodes give by
+///   rounding alone: so it keeps all digits. A node that was moved elsewhere has another matrix.
+/// - "skin_to_world": places a skinned mesh, whose node's matrix does nothing, after its joints; in the
+///   file's coordinates.
+/// Nothing if it is not given. Throws a located Error for other types and numbers.
+std::optional<glm::dmat4> own_matrix(const Item& node, const char* key);
+
 /// Of a light in KHR_lights_punctual: {"shape": "sphere" | "disk", "radius": m}, {"shape": "rectangle",
 /// "width": m, "height": m}, {"shape": "tube", "length": m, "radius": m}; optional "two_sided" (false) and
 /// "visible" (true). Gives the light that kind; unchanged without a shape. Throws a located Error for other

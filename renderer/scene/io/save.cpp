@@ -101,11 +101,12 @@ SavedScene save(const SaveRequest& request) {
   const Folders folders{absolute_path(loaded.file).parent_path(), absolute_path(request.file).parent_path()};
   EditedJson root = EditedJson::parse(*loaded.document);
   EditedJson before = root;
+  SavedScene saved;
   write_lights(root, loaded, *request.edited);
+  write_objects(root, loaded, *request.edited, saved.notes);
   write_materials(root, loaded, *request.edited);
   write_cameras(root, loaded.origin, request.cameras);
 
-  SavedScene saved;
   std::vector<uint8_t> chunk;
   if (binary && !source.binary) chunk = embed_files(root, folders, request.outside, where);
   move_uris(root, folders);

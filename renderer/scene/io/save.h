@@ -5,6 +5,8 @@
 // What is written, beyond the values of glTF and KHR_lights_punctual:
 // - extras.light_group of a light's node; extras.lucerna of the node: whether it is off, and the date and
 //   place of a sun (own_extras.h);
+// - matrices of nodes with a mesh, and KHR_node_visibility; extras.lucerna where a node's matrix gives other
+//   last digits (own_extras.h);
 // - extras.lucerna of the default scene: settings, and an environment that was edited;
 // - extras.lucerna of cameras: lens, shift, section plane.
 // Values that were not edited are not touched. Reading the file gives exactly the edited values (but for
@@ -21,7 +23,7 @@ namespace lucerna::scene {
 
 struct SaveRequest {
   std::shared_ptr<const Scene> loaded;  ///< as load() gave it
-  std::shared_ptr<const Scene> edited;  ///< the same with edited lights, materials and environment
+  std::shared_ptr<const Scene> edited;  ///< the same with edited lights, materials, instances and environment
   /// Cameras to add; one with the name of a camera of the file replaces it. In the scene's coordinates.
   std::vector<Camera> cameras = {};
   /// All settings that reading the file must give, whatever settings.json is beside it.

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "base/base64.h"
-#include "scene/io/node_matrix.h"
+#include "scene/io/node_tree.h"
 #include "scene/lamp.h"
 #include "scene/solar.h"
 
@@ -61,31 +61,13 @@ std::vector<double> numbers(const EditedJson& node, const char* key) {
   return found != node.end() && found->is_array() ? found->get<std::vector<double>>() : std::vector<double>();
 }
 
-/// The node's own matrix, as load_nodes reads it.
-dmat4 local_matrix(const EditedJson& node) {
-  if (const std::vector<double> m = numbers(node, "matrix"); m.size() == 16) {
-    dmat4 matrix;
-    for (int c = 0; c < 4; ++c)
-      for (int r = 0; r < 4; ++r) matrix[c][r] = m[size_t(4 * c + r)];
-    return matrix;
-  }
-  dvec3 t(0), s(1);
-  dquat r(1, 0, 0, 0);
-  if (const auto v = numbers(node, "translation"); v.size() == 3) t = {v[0], v[1], v[2]};
-  if (const auto v = numbers(node, "scale"); v.size() == 3) s = {v[0], v[1], v[2]};
-  if (const auto v = numbers(node, "rotation"); v.size() == 4)
-    r = glm::normalize(dquat(v[3], v[0], v[1], v[2]));
-  return node_matrix(t, r, s);
-}
-
 class LightWriter {
  public:
   LightWriter(EditedJson& root, const Scene& loaded, const Scene& edited)
-      : root_(root), loaded_(loaded), edited_(edited) {}
+      : root_(root), loaded_(loaded), edited_(edited), tree_(root) {}
 
   void write() {
     if (loaded_.lights == edited_.lights) return;
-    find_parents();
     for (const Light& before : loaded_.lights)
       if (std::none_of(edited_.lights.begin(), edited_.lights.end(),
                        [&](const Light& l) { return l.id == before.id; }))
@@ -112,21 +94,6 @@ class LightWriter {
   }
   EditedJson& reference(size_t index) { return node(index)["extensions"][k_punctual]["light"]; }
 
-  void find_parents() {
-    if (!root_.contains("nodes")) return;
-    parents_.assign(root_["nodes"].size(), k_none);
-    for (uint32_t i = 0; i < parents_.size(); ++i)
-      if (const auto children = node(i).find("children"); children != node(i).end())
-        for (const EditedJson& child : *children) parents_[child.get<size_t>()] = i;
-  }
-
-  dmat4 world_of(Id index) {
-    dmat4 world(1);
-    for (Id at = index; at != k_none; at = at < parents_.size() ? parents_[at] : k_none)
-      world = local_matrix(node(at)) * world;
-    return world;
-  }
-
   void remove(Id index) {
     for (const char* extension : {k_punctual, k_ies}) remove_extension(node(index), extension);
     for (const char* key : {"enabled", "sun", "right"}) remove_own(node(index), key);
@@ -146,7 +113,7 @@ class LightWriter {
       extension_at(root_, made, k_punctual)["light"] = index;
     }
     if (!light.group.empty()) object_at(made, "extras")["light_group"] = light.group;
-    write_own(made, light);
+    write_own(made, light, true);
     add_root_node(root_, std::move(made));
   }
 
@@ -156,11 +123,11 @@ class LightWriter {
     const bool turned =
         (before.direction != after.direction || before.right != after.right) && has_direction(after);
     if ((moved || turned) && !holds_light_only(index)) index = move_to_own_node(index, after);
-    const dmat4 parent = world_of(index < parents_.size() ? parents_[index] : k_none);
+    const dmat4 parent = tree_.world_of(tree_.parent(index));
     if (turned) turn(node(index), parent, after);
     if (moved) place(node(index), parent, after);
     if (before.group != after.group) regroup(index, after.group);
-    write_own(node(index), after);
+    write_own(node(index), after, tree_.is_visible(index));
     if (has_profile(after)) {
       if (before.name != after.name) node(index)["name"] = after.name;
       if (before.intensity != after.intensity || before.profile != after.profile)
@@ -182,19 +149,7 @@ class LightWriter {
     const EditedJson& n = node(index);
     for (const char* key : {"mesh", "camera", "children", "skin"})
       if (n.contains(key)) return false;
-    return n.at("extensions").size() == 1 && !is_animated(index);
-  }
-
-  bool is_animated(Id index) const {
-    const auto animations = root_.find("animations");
-    if (animations == root_.end() || !animations->is_array()) return false;
-    for (const EditedJson& animation : *animations)
-      if (const auto channels = animation.find("channels"); channels != animation.end())
-        for (const EditedJson& channel : *channels)
-          if (const auto target = channel.find("target"); target != channel.end())
-            if (const auto at = target->find("node"); at != target->end() && at->get<size_t>() == index)
-              return true;
-    return false;
+    return n.at("extensions").size() == 1 && !tree_.is_animated(index);
   }
 
   /// Moves the light to a new first child of its node, which keeps its place in the order of lights.
@@ -206,14 +161,7 @@ class LightWriter {
       if (const auto group = extras->find("light_group"); group != extras->end())
         made["extras"]["light_group"] = *group;
     remove(index);
-    const auto child = static_cast<Id>(root_["nodes"].size());
-    root_["nodes"].push_back(std::move(made));
-    EditedJson& children = node(index)["children"];
-    if (!children.is_array()) children = EditedJson::array();
-    children.insert(children.begin(), child);
-    parents_.resize(root_["nodes"].size(), k_none);
-    parents_[child] = index;
-    return child;
+    return tree_.add_first_child(index, std::move(made));
   }
 
   void place(EditedJson& n, const dmat4& parent, const Light& light) {
@@ -229,7 +177,7 @@ class LightWriter {
 
   static void turn(EditedJson& n, const dmat4& parent, const Light& light) {
     const dvec3 local = glm::normalize(glm::inverse(dmat3(parent)) * unit_within(light.direction));
-    const dvec3 translation(local_matrix(n)[3]);
+    const dvec3 translation(NodeTree::local_matrix(n)[3]);
     // A scale may turn the axis; a light has none.
     n.erase("matrix"), n.erase("scale");
     if (translation != dvec3(0)) n["translation"] = json_of(translation);
@@ -250,11 +198,12 @@ class LightWriter {
     remove_from(definitions()[reference(index).get<size_t>()], "extras", "light_group");
   }
 
-  static void write_own(EditedJson& n, const Light& light) {
-    if (light.enabled)
+  /// `shown`: nothing hides the node.
+  static void write_own(EditedJson& n, const Light& light, bool shown) {
+    if (light.enabled == shown)
       remove_own(n, "enabled");
     else
-      set_own(n, "enabled", false);
+      set_own(n, "enabled", light.enabled);
     if (can_roll(light) && has_direction(light))
       set_own(n, "right", vector_json(light.right));
     else
@@ -380,7 +329,7 @@ class LightWriter {
 
   EditedJson& root_;
   const Scene &loaded_, &edited_;
-  std::vector<Id> parents_;                                        // by node; k_none: a root
+  NodeTree tree_;
   std::map<std::shared_ptr<const LightProfile>, size_t> written_;  // their definitions
 };
 

@@ -14,6 +14,12 @@ namespace lucerna::scene {
 /// holds something else gets a node of its own there.
 void write_lights(EditedJson& root, const Scene& loaded, const Scene& edited);
 
+/// Writes places and visibility of instances that differ. A node that holds something else besides the mesh
+/// gets a child for it; EXT_mesh_gpu_instancing becomes nodes. `notes`: what other programs will not see.
+/// Throws Error located at the object: too many of them.
+void write_objects(EditedJson& root, const Scene& loaded, const Scene& edited,
+                   std::vector<std::string>& notes);
+
 /// Writes colours, roughness, metalness and emission that differ.
 void write_materials(EditedJson& root, const Scene& loaded, const Scene& edited);
 

@@ -1,0 +1,158 @@
+// links: session
+// Objects moved, turned, mirrored and hidden by hand: the picture is, bit for bit, that of a scene with the
+// objects there; going back gives the picture before.
+#include <catch2/catch.hpp>
+#include <glm/gtc/matrix_transform.hpp>
+
+#include "scene/object_place.h"
+#include "session/renderer.h"
+#include "support/device.h"
+#include "support/rooms.h"
+
+namespace objects_tests {
+
+using namespace lucerna;
+using session::ObjectEdit;
+
+namespace {
+
+using Changes = std::vector<session::SettingChange>;
+
+struct Bench {
+  session::Renderer r;
+  explicit Bench(const scene::Scene& s, const Changes& more = {}) : r(test::renderer_options(true)) {
+    r.set_size(40, 28);
+    Changes all{{"samples", "4", ""}, {"path.batch", "2048", ""}, {"path.max_depth", "6", ""}};
+    all.insert(all.end(), more.begin(), more.end());
+    r.set_scene(std::make_shared<scene::Scene>(s), {}, all);
+  }
+  film::Image image() {
+    while (r.step()) {
+    }
+    REQUIRE(r.done());
+    return r.image();
+  }
+};
+
+bool same(const film::Image& a, const film::Image& b) { return a.components == b.components; }
+
+/// The object's matrix after a place.
+mat4 put(const scene::Scene& s, uint32_t object, const scene::ObjectPlace& place) {
+  return scene::placed(s.instances[object].to_world, scene::box_of(s.meshes[s.instances[object].mesh]),
+                       place);
+}
+
+scene::Scene with(scene::Scene s, const std::vector<ObjectEdit>& edits) {
+  for (const ObjectEdit& e : edits) {
+    scene::Instance& instance = s.instances[e.index];
+    instance.to_world = e.to_world, instance.hidden = e.hidden;
+    instance.flipped = glm::determinant(mat3(e.to_world)) < 0;
+  }
+  return s;
+}
+
+const Changes k_cache{
+    {"components.secondary", "cache", ""}, {"components.tertiary", "cache", ""}, {"cache.rays", "64", ""},
+    {"cache.max_rays", "64", ""},          {"cache.max_records", "2000", ""},    {"cache.passes", "1", ""}};
+const Changes k_photons{{"components.caustic", "photons", ""}, {"photons.per_round", "4000", ""}};
+
+}  // namespace
+
+TEST_CASE("a moved object lights and shades as if its scene had it there, by every solver") {
+  const scene::Scene s = test::block_room(true);
+  const std::vector<ObjectEdit> edits{
+      {1, put(s, 1, {.moved = {0.7f, 0.2f, 0.4f}, .turned = {10, 40, 5}, .scaled = {1.5f, -0.5f, 1}})}};
+  for (const Changes& changes : {Changes{}, k_cache, k_photons, Changes{{"tracer", "compute-bvh", ""}}}) {
+    INFO(changes.size() << (changes.empty() ? "" : changes[0].value));
+    Bench edited(s, changes), made(with(s, edits), changes);
+    const film::Image old = edited.image();
+    edited.r.set_instances(edits);
+    CHECK(edited.r.scene()->instances[1].flipped);
+    const film::Image image = edited.image();
+    CHECK(same(image, made.image()));
+    CHECK_FALSE(same(image, old));
+    edited.r.set_instances({{1, s.instances[1].to_world}});
+    CHECK(same(edited.image(), old));
+  }
+}
+
+TEST_CASE("a hidden object is as if its scene did not have it, also if it shines") {
+  scene::Scene s = test::PanelRoom().s;
+  const auto panel = static_cast<uint32_t>(s.instances.size() - 1);
+  s.lights.push_back({.name = "lamp", .intensity = vec3(1), .position = {-0.5f, 0.5f, 0.5f}});
+  for (const uint32_t object : {1u, panel}) {
+    INFO("object " << object);
+    scene::Scene without = s;
+    std::vector<scene::Instance> rest = s.instances;
+    rest.erase(rest.begin() + object);
+    without.instances = rest;
+    Bench edited(s), made(without);
+    const film::Image old = edited.image();
+    edited.r.set_instances({{object, s.instances[object].to_world, true}});
+    CHECK(same(edited.image(), made.image()));
+    edited.r.set_instances({{object, s.instances[object].to_world, false}});
+    CHECK(same(edited.image(), old));
+  }
+}
+
+TEST_CASE("an object that shines takes its light with it, and other edits stay") {
+  const scene::Scene s = test::PanelRoom().s;
+  const auto panel = static_cast<uint32_t>(s.instances.size() - 1);
+  const std::vector<ObjectEdit> edits{
+      {panel, put(s, panel, {.moved = {-0.8f, -0.1f, 0}, .scaled = {0.5f, 1, 2}})}};
+  scene::Scene after = with(s, edits);
+  after.materials[0].base_color = {0.2f, 0.7f, 0.3f, 1};
+  Bench edited(s), made(after);
+  edited.r.set_material(0, after.materials[0]);
+  edited.r.set_instances(edits);
+  CHECK(same(edited.image(), made.image()));
+  CHECK(edited.r.scene()->materials[0].base_color.y == 0.7f);
+}
+
+TEST_CASE("openings are searched again when what stands in them moves") {
+  scene::Scene s = test::block_room(true);
+  // A lid over the open room.
+  test::add_quad(s, {-2, 2.5f, -2}, {0, 0, 4}, {4, 0, 0});
+  const Changes found{{"lights.portals", "found", ""}};
+  const std::vector<ObjectEdit> away{{2, put(s, 2, {.moved = {9, 0, 0}})}};
+  Bench edited(s, found), made(with(s, away), found);
+  CHECK(edited.r.scene()->portals.empty());
+  edited.r.set_instances(away);
+  CHECK(edited.r.scene()->portals == made.r.scene()->portals);
+  CHECK_FALSE(edited.r.scene()->portals.empty());
+  CHECK(same(edited.image(), made.image()));
+}
+
+TEST_CASE("a refused or cancelled edit leaves the picture, which goes on bit for bit") {
+  const scene::Scene s = test::block_room(true);
+  Bench undisturbed(s), b(s);
+  const film::Image wanted = undisturbed.image();
+  while (b.r.samples() < 2) REQUIRE(b.r.step());
+  const auto scene = b.r.scene();
+  const uint64_t restarts = b.r.restarts();
+  const auto failure = [&](const std::vector<ObjectEdit>& edits, const session::Progress& progress = {}) {
+    try {
+      b.r.set_instances(edits, progress);
+    } catch (const Error& e) {
+      return std::string(e.what());
+    }
+    return std::string();
+  };
+  const mat4 here = s.instances[1].to_world;
+  CHECK_THAT(failure({{7, here}}), Catch::Contains("there is no object 8"));
+  CHECK_THAT(failure({{1, mat4(std::numeric_limits<float>::quiet_NaN())}}),
+             Catch::Contains("object 'box': its matrix is not finite"));
+  CHECK_THAT(failure({{1, glm::scale(mat4(1), vec3(0, 1, 1))}}), Catch::Contains("cannot be inverted"));
+  CHECK_THAT(failure({{0, here, true}, {1, glm::translate(mat4(1), vec3(1e10f, 0, 0))}}),
+             Catch::Contains("beyond"));
+  const mat4 there = glm::translate(here, vec3(1, 0, 0));
+  for (const float until : {0.0f, 0.2f, 0.8f, 0.9f})
+    CHECK_THAT(failure({{1, there}}, [&](float fraction, const std::string&) { return fraction < until; }),
+               Catch::Contains("cancelled"));
+  CHECK(failure({{1, here}}).empty());  // no change
+  CHECK(b.r.scene() == scene);
+  CHECK(b.r.restarts() == restarts);
+  CHECK(same(b.image(), wanted));
+}
+
+}  // namespace objects_tests
