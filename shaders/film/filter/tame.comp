@@ -19,6 +19,12 @@ bool by_chance(float both, float expected) {
   return both <= expected || both - expected + both * log(expected / both) > log(k_filter_chance);
 }
 
+// Maximum of what is usual among `count` pixels with these sums of values and squares.
+vec2 usual_limit(vec2 sum, vec2 squares, vec2 count) {
+  vec2 mean = sum / count;
+  return mean + k_filter_usual * sqrt(max(squares / count - mean * mean, vec2(0.0)));
+}
+
 void main() {
   uint pixel = global_index();
   if (pixel >= push.width * push.height) return;
@@ -29,7 +35,7 @@ void main() {
   // Brightness that the other half has too, in the pixel and near it.
   float met = min(own.x, own.y);
   vec2 level = min(own, here.wz);
-  // The usual brightness, without the pixels as bright as this one.
+  // Of the pixels less bright than this one, and of all.
   vec2 others = vec2(0.0), sum = vec2(0.0), squares = vec2(0.0), all = vec2(0.0), all_squares = vec2(0.0);
   for (int y = -k_reach; y <= k_reach; ++y)
     for (int x = -k_reach; x <= k_reach; ++x) {
@@ -42,9 +48,8 @@ void main() {
       all += value;
       all_squares += value * value;
     }
-  vec2 usual = sum / max(others, vec2(1.0)), variance = squares / max(others, vec2(1.0)) - usual * usual;
-  vec2 usual_limit = usual + k_filter_usual * sqrt(max(variance, vec2(0.0)));
-  bvec2 unusual = bvec2(own.x > usual_limit.x && others.x > 0.5 * k_pixels, own.y > usual_limit.y && others.y > 0.5 * k_pixels);
+  vec2 usual = usual_limit(sum, squares, max(others, vec2(1.0)));
+  bvec2 unusual = bvec2(own.x > usual.x && others.x > 0.5 * k_pixels, own.y > usual.y && others.y > 0.5 * k_pixels);
   // Direct light has highlights of a pixel or two, and caustics have them where they are dense.
   float rare = push.component == 0u ? 0.0 : push.component == 3u ? k_filter_rare_caustic : k_filter_rare;
   if (any(unusual)) {
@@ -69,11 +74,10 @@ void main() {
     bool confirmed = !lone && !by_chance(both, bright.x * bright.y / k_wide_pixels);
     vec2 expected = ones * near / k_wide_pixels;
     if (!confirmed) {
-      vec2 mean = (all - own) / (k_pixels - 1.0), spread = (all_squares - own * own) / (k_pixels - 1.0) - mean * mean;
-      vec2 wide = mean + k_filter_usual * sqrt(max(spread, vec2(0.0)));
-      limit = min(limit, vec2(max(wide.x, wide.y)));
-      if (unusual.x && expected.x < rare && by_chance(meet.x, expected.x)) limit.x = min(limit.x, usual_limit.x);
-      if (unusual.y && expected.y < rare && by_chance(meet.y, expected.y)) limit.y = min(limit.y, usual_limit.y);
+      vec2 around = usual_limit(all - own, all_squares - own * own, vec2(k_pixels - 1.0));
+      limit = min(limit, vec2(max(around.x, around.y)));
+      if (unusual.x && expected.x < rare && by_chance(meet.x, expected.x)) limit.x = min(limit.x, usual.x);
+      if (unusual.y && expected.y < rare && by_chance(meet.y, expected.y)) limit.y = min(limit.y, usual.y);
     }
   }
   FilterLight light = filter_light(texelFetch(filter_lights, int(pixel)));
