@@ -101,4 +101,32 @@ void option_control(Controls& controls, const std::string& key, const std::strin
   ImGui::PopID();
 }
 
+bool position_row(const Box& core, vec3& position) {
+  const vec3 middle = core.empty() ? vec3(0) : core.centre();
+  const float radius = std::max(core.empty() ? 1.0f : core.radius(), 1e-2f);
+  const float reach = 4 * radius + glm::length(middle);
+  return slider_row("##position", "Position", position,
+                    {.lo = -reach,
+                     .hi = reach,
+                     .decimals = radius < 1 ? 3 : 2,
+                     .bar = false,
+                     .travel = 0.25f * radius / reach,
+                     .typed_lo = -1e6f,
+                     .typed_hi = 1e6f}) >= 0;
+}
+
+const ChoiceButton* choice_buttons(const std::string& prefix, std::span<const ChoiceButton> buttons,
+                                   size_t on) {
+  const auto count = static_cast<float>(buttons.size());
+  const float width = (ImGui::CalcItemWidth() - (count - 1) * px(4)) / count;
+  const ChoiceButton* pressed = nullptr;
+  for (size_t i = 0; i < buttons.size(); ++i) {
+    if (i > 0) ImGui::SameLine(0, px(4));
+    const ChoiceButton& b = buttons[i];
+    if (button(fmt::format("##{}_{}", prefix, b.name).c_str(), b.title, i == on, width)) pressed = &b;
+    tooltip(b.help);
+  }
+  return pressed;
+}
+
 }  // namespace lucerna::ui

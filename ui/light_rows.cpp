@@ -166,19 +166,8 @@ void light_details(Actions& actions, const Box& core, size_t i, const scene::Lig
             {.lo = 1e-3f, .hi = 1e6f, .log = true, .decimals = 2, .unit = "W", .bar = false, .travel = 0.2f}))
       actions.act("light.set", i + 1, named("power", power));
     tooltip("Total power of the lamp, in its strongest channel.");
-    const vec3 middle = core.empty() ? vec3(0) : core.centre();
-    const float radius = std::max(core.empty() ? 1.0f : core.radius(), 1e-2f);
-    const float reach = 4 * radius + glm::length(middle);
     vec3 position = light.position;
-    if (slider_row("##position", "Position", position,
-                   {.lo = -reach,
-                    .hi = reach,
-                    .decimals = radius < 1 ? 3 : 2,
-                    .bar = false,
-                    .travel = 0.25f * radius / reach,
-                    .typed_lo = -1e6f,
-                    .typed_hi = 1e6f}) >= 0)
-      actions.act("light.set", i + 1, named("position", position));
+    if (position_row(core, position)) actions.act("light.set", i + 1, named("position", position));
     tooltip("Position of the lamp: x, y (up), z in metres.");
   }
   if (has_shape(light.kind)) shape_rows(actions, i, light);

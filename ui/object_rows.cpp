@@ -17,20 +17,17 @@ using commands::named;
 using scene::display_name;
 
 void mode_buttons(Controls& controls, GizmoMode mode) {
-  constexpr const char* k_titles[] = {"Move", "Turn", "Size"};
-  constexpr const char* k_help[] = {
-      "Arrows and squares in the picture move the object. Z shows the next handles.",
-      "Rings in the picture turn the object about the middle of its box. Z shows the next handles.",
-      "Arms in the picture size the object along its axes, the middle in all. Z shows the next handles."};
-  const float width = (ImGui::CalcItemWidth() - 2 * px(4)) / 3;
-  for (size_t i = 0; i < std::size(k_titles); ++i) {
-    if (i > 0) ImGui::SameLine(0, px(4));
-    const char* name = k_gizmo_names[i + 1];
-    const bool on = mode == GizmoMode(i + 1);
-    if (button(fmt::format("##gizmo_{}", name).c_str(), k_titles[i], on, width))
-      controls.act("view.gizmo", on ? k_gizmo_names[0] : name);
-    tooltip(k_help[i]);
-  }
+  static constexpr ChoiceButton k_buttons[] = {
+      {k_gizmo_names[1], "Move",
+       "Arrows and squares in the picture move the object. Z shows the next handles."},
+      {k_gizmo_names[2], "Turn",
+       "Rings in the picture turn the object about the middle of its box. Z shows the next handles."},
+      {k_gizmo_names[3], "Size",
+       "Arms in the picture size the object along its axes, the middle in all. Z shows the next handles."}};
+  static_assert(GizmoMode::move == GizmoMode(1) && std::size(k_buttons) + 1 == k_gizmo_names.size());
+  const size_t on = mode == GizmoMode::off ? std::size(k_buttons) : size_t(mode) - 1;
+  if (const ChoiceButton* pressed = choice_buttons("gizmo", k_buttons, on))
+    controls.act("view.gizmo", pressed == k_buttons + on ? k_gizmo_names[0] : pressed->name);
 }
 
 /// Notes a place that a control gives; the picture's part of the window sends it.
@@ -54,19 +51,9 @@ void place_fields(Controls& controls, const commands::Navigation& camera, SceneV
     note_place(controls, view, index, to, commands::line("object.set", index + 1, named(key, value)));
   };
   const Box& box = controls.open.object_box(index);
-  const vec3 core = camera.core.empty() ? vec3(0) : camera.core.centre();
-  const float radius = std::max(camera.core.empty() ? 1.0f : camera.core.radius(), 1e-2f);
-  const float reach = 4 * radius + glm::length(core);
   const vec3 loaded = scene::middle_of(box, controls.open.loaded->instances[index].to_world);
   vec3 position = loaded + place.moved;
-  if (slider_row("##position", "Position", position,
-                 {.lo = -reach,
-                  .hi = reach,
-                  .decimals = radius < 1 ? 3 : 2,
-                  .bar = false,
-                  .travel = 0.25f * radius / reach,
-                  .typed_lo = -1e6f,
-                  .typed_hi = 1e6f}) >= 0)
+  if (position_row(camera.core, position))
     set({position - loaded, place.turned, place.scaled}, "position", position);
   tooltip("Where the middle of its box is: x, y (up), z in metres.");
   vec3 turned = place.turned;

@@ -123,19 +123,14 @@ void depth_of_field(Controls& controls, const scene::Lens& lens, bool focusing) 
 }
 
 void projections(Controls& controls, const scene::Camera& camera) {
-  constexpr const char* k_titles[] = {"Plane", "Panorama", "Fisheye"};
-  constexpr const char* k_help[] = {
-      "Perspective: straight lines stay straight.",
-      "All directions, by longitude and latitude. Best in a picture twice as wide as high.",
-      "180 degrees in a circle: the distance from its middle is the angle from the view axis."};
-  const float width = (ImGui::CalcItemWidth() - 2 * px(4)) / 3;
-  for (size_t i = 0; i < std::size(k_titles); ++i) {
-    if (i > 0) ImGui::SameLine(0, px(4));
-    const char* name = scene::k_projection_names[i];
-    if (button(fmt::format("##projection_{}", name).c_str(), k_titles[i], size_t(camera.wide) == i, width))
-      controls.act("camera.projection", name);
-    tooltip(k_help[i]);
-  }
+  static constexpr ChoiceButton k_buttons[] = {
+      {scene::k_projection_names[0], "Plane", "Perspective: straight lines stay straight."},
+      {scene::k_projection_names[1], "Panorama",
+       "All directions, by longitude and latitude. Best in a picture twice as wide as high."},
+      {scene::k_projection_names[2], "Fisheye",
+       "180 degrees in a circle: the distance from its middle is the angle from the view axis."}};
+  if (const ChoiceButton* pressed = choice_buttons("projection", k_buttons, size_t(camera.wide)))
+    controls.act("camera.projection", pressed->name);
 }
 
 /// What few views need: shift, depth of field, section.
