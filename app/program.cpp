@@ -552,7 +552,7 @@ int Program::run(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app_.exit(e) == 0 ? 0 : 1;
   }
-  if (verbose_) log::set_console_level(log::Level::info);
+  if (verbose_) log::set_console_level(log::Level::debug);
   scenes_.most_bytes = uint64_t(scene_memory_ * k_gib);
   r.scenes = b.scenes = bm.scenes = bt.load = bn.scenes = ba.scenes = scenes_;
   for (std::string* device :

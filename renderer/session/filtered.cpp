@@ -15,6 +15,7 @@ void PictureFilter::stop() {
   if (filter_) filter_->release();
   job_.reset();
   result_ = {};
+  steps_ms_.clear();
   begun_ = filtered_ = false;
 }
 
@@ -37,10 +38,15 @@ void PictureFilter::step(Engine& engine, const PictureView& view, PixelSight& si
         stream.run();
         stream.take_times();
         filtered_ = !filter_->step(stream);
-        for (const gpu::StageTime& t : stream.take_times()) result_.ms += t.milliseconds;
+        for (const gpu::StageTime& t : stream.take_times()) {
+          result_.ms += t.milliseconds;
+          steps_ms_[t.stage] += t.milliseconds;
+        }
       });
     } else {
       filter_->release();
+      for (const auto& [step, ms] : steps_ms_) log::debug("filter: {}: {:.1f} ms", step, ms);
+      steps_ms_.clear();
       result_.error =
           film::filter_error(film.read(), result_.film->read(), job_->tile, double{job_->luminance_floor});
       job_.reset();

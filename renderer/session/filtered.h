@@ -2,6 +2,7 @@
 // A filtered picture (film/filter/): of a finished picture at once, or of the window's in work items between
 // its samples.
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -48,6 +49,7 @@ class PictureFilter {
   gpu::ShaderCompiler& compiler_;
   std::optional<film::Filter> filter_;  ///< kernels are compiled at the first use
   std::optional<FilterJob> job_;
+  std::map<std::string, double> steps_ms_;  ///< device time by kernel
   bool begun_ = false,
        filtered_ = false;  ///< progress: visible surfaces known; filtered, error not estimated yet
   Filtered result_;

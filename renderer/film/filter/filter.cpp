@@ -16,7 +16,8 @@ Filter::Filter(gpu::Device& device, gpu::ShaderCompiler& compiler)
       outliers_(device, compiler, "film/filter/outliers.comp"),
       noise_(device, compiler, "film/filter/noise.comp"),
       guide_(device, compiler, "film/filter/guide.comp"),
-      regress_(device, compiler, "film/filter/regress.comp"),
+      regress_(device, compiler, "film/filter/regress.comp", {{"LUCERNA_FILTER_GUIDED", "1"}}),
+      regress_again_(device, compiler, "film/filter/regress.comp", {{"LUCERNA_FILTER_GUIDED", "0"}}),
       judge_(device, compiler, "film/filter/judge.comp"),
       choose_(device, compiler, "film/filter/choose.comp"),
       blend_(device, compiler, "film/filter/blend.comp") {}
@@ -105,44 +106,47 @@ void Filter::plan_component(uint32_t component, Film& filtered) {
   const uint32_t pixels = push_.width * push_.height;
   FilterPush push = push_;
   push.component = component;
-  const auto run = [&](const gpu::Kernel& kernel, const Names& names, uint32_t count) {
-    work_.push_back([this, &kernel, names, count, push](gpu::Stream& stream) {
+  const auto run = [&](const char* step, const gpu::Kernel& kernel, const Names& names, uint32_t count) {
+    work_.push_back([this, step, &kernel, names, count, push](gpu::Stream& stream) {
       for (const auto& [name, buffer] : names) resources_.set(name, *buffer);
-      stream.dispatch(kernel, resources_, push, gpu::groups_for(count, 64), "filter");
+      stream.dispatch(kernel, resources_, push, gpu::groups_for(count, 64), step);
     });
   };
-  run(pack_, {{"FilterLights", &lights_}}, pixels);
-  run(spread_, {{"filter_lights", &lights_}, {"FilterSpread", &judged_}}, pixels);
-  run(tame_, {{"filter_lights", &lights_}, {"filter_spread", &judged_}, {"FilterTamed", &tamed_}}, pixels);
-  run(outliers_, {{"filter_lights", &lights_}, {"filter_tamed", &tamed_}}, uint32_t(taken_.bytes() / 16));
+  run("pack", pack_, {{"FilterLights", &lights_}}, pixels);
+  run("spread", spread_, {{"filter_lights", &lights_}, {"FilterSpread", &judged_}}, pixels);
+  run("tame", tame_, {{"filter_lights", &lights_}, {"filter_spread", &judged_}, {"FilterTamed", &tamed_}},
+      pixels);
+  run("outliers", outliers_, {{"filter_lights", &lights_}, {"filter_tamed", &tamed_}},
+      uint32_t(taken_.bytes() / 16));
   // Later comparisons use the samples without their outliers.
-  run(noise_, {{"filter_noisy", &tamed_}, {"FilterMeasured", &lights_}}, pixels);
-  run(guide_, {{"filter_lights", &lights_}, {"FilterGuides", &guides_}}, pixels);
-  const gpu::Buffer *before = &lights_, *guide = &guides_, *after = &chosen_;
+  run("noise", noise_, {{"filter_noisy", &tamed_}, {"FilterMeasured", &lights_}}, pixels);
+  run("guide", guide_, {{"filter_lights", &lights_}, {"FilterGuides", &guides_}}, pixels);
+  const gpu::Buffer *before = &lights_, *after = &chosen_;
   for (size_t stage = 0; stage < std::size(k_strides); ++stage) {
     push.stride = k_strides[stage];
     for (push.first = 0; push.first < pixels; push.first += k_piece)
-      run(regress_, {{"filter_data", before}, {"filter_guides", guide}, {"FilterFitted", &fitted_}},
+      run("regress", stage == 0 ? regress_ : regress_again_,
+          {{"filter_data", before}, {"filter_guides", &guides_}, {"FilterFitted", &fitted_}},
           std::min(k_piece, pixels - push.first));
     push.first = 0;
-    run(judge_,
+    run("judge", judge_,
         {{"filter_lights", &lights_},
          {"filter_before", before},
          {"filter_fitted", &fitted_},
          {"FilterJudged", &judged_}},
         pixels);
-    run(choose_,
+    run("choose", choose_,
         {{"filter_before", before},
          {"filter_fitted", &fitted_},
          {"filter_judged", &judged_},
          {"FilterChosen", after}},
         pixels);
     if (stage + 1 < std::size(k_strides)) {
-      run(noise_, {{"filter_noisy", after}, {"FilterMeasured", &guides_}}, pixels);
-      before = guide = &guides_;
+      run("noise", noise_, {{"filter_noisy", after}, {"FilterMeasured", &guides_}}, pixels);
+      before = &guides_;
     }
   }
-  run(blend_, {{"filter_chosen", after}, {"FilteredSums", &filtered.sums(component)}}, pixels);
+  run("blend", blend_, {{"filter_chosen", after}, {"FilteredSums", &filtered.sums(component)}}, pixels);
 }
 
 }  // namespace lucerna::film

@@ -34,7 +34,9 @@ class Filter {
   void plan_component(uint32_t component, Film& filtered);
 
   gpu::Device& device_;
-  gpu::Kernel pack_, spread_, tame_, outliers_, noise_, guide_, regress_, judge_, choose_, blend_;
+  // The first regression compares pixels by guides, later ones by the light that they fit.
+  gpu::Kernel pack_, spread_, tame_, outliers_, noise_, guide_, regress_, regress_again_, judge_, choose_,
+      blend_;
   gpu::Buffer lights_, tamed_, taken_, surfaces_, guides_, fitted_, judged_, chosen_;
   gpu::Resources resources_;
   shared::FilterPush push_{};

@@ -30,13 +30,17 @@ struct FilterSurface {
   vec3 albedo;     // divisor of the light; samples without a hit count as 1
   float covered;   // share of the samples with a hit
 };
+// The last 8 bits of the depth hold the coverage; 0 is kept for no hit at all.
 vec4 filter_texel(FilterSurface s) {
-  return vec4(s.depth, uintBitsToFloat(preview_normal(s.normal)), uintBitsToFloat(packHalf2x16(s.albedo.rg)),
-              uintBitsToFloat(packHalf2x16(vec2(s.albedo.b, s.covered))));
+  uint covered = uint(ceil(255.0 * clamp(s.covered, 0.0, 1.0)));
+  return uintBitsToFloat(uvec4((floatBitsToUint(s.depth) & ~255u) | covered, packHalf2x16(s.normal.xy),
+                               packHalf2x16(vec2(s.normal.z, s.albedo.r)), packHalf2x16(s.albedo.gb)));
 }
+float filter_depth(vec4 texel) { return uintBitsToFloat(floatBitsToUint(texel.x) & ~255u); }
 FilterSurface filter_surface(vec4 texel) {
-  vec2 rg = unpackHalf2x16(floatBitsToUint(texel.z)), b = unpackHalf2x16(floatBitsToUint(texel.w));
-  return FilterSurface(texel.x, b.y > 0.0 ? preview_normal(floatBitsToUint(texel.y)) : vec3(0.0), vec3(rg, b.x), b.y);
+  uvec4 t = floatBitsToUint(texel);
+  vec2 a = unpackHalf2x16(t.y), b = unpackHalf2x16(t.z), c = unpackHalf2x16(t.w);
+  return FilterSurface(filter_depth(texel), vec3(a, b.x), vec3(b.y, c), float(t.x & 255u) / 255.0);
 }
 
 // Weight, along one axis, of a pixel `offset` away in the evidence for or against a fit.
@@ -50,8 +54,9 @@ float filter_slope(float before, float here, float after) {
   return abs(a) < abs(b) ? a : b;
 }
 
-// Similarity of the surface of a pixel `offset` away, 0..1. `slope`: slope of depth per pixel at the first pixel.
-float filter_alike(FilterSurface a, FilterSurface b, vec2 offset, vec2 slope) {
+// Binary logarithm of the likeness, 1 for equal surfaces, of the surface of a pixel `offset` away. `slope`: slope of depth per pixel
+// at the first pixel.
+float filter_log_alike(FilterSurface a, FilterSurface b, vec2 offset, vec2 slope) {
   float z = max(a.depth, 1e-20);
   float reach = 0.01 * z + 0.5 * (abs(slope.x * offset.x) + abs(slope.y * offset.y));
   float depth = (b.depth - a.depth - dot(slope, offset)) / reach;
@@ -60,7 +65,6 @@ float filter_alike(FilterSurface a, FilterSurface b, vec2 offset, vec2 slope) {
   float cover = a.covered - b.covered;
   bool met = a.covered > 0.0 && b.covered > 0.0;
   float far = met ? depth * depth + facing * facing * 100.0 : 0.0;
-  float other = far + 30.0 * dot(colour, colour) + 16.0 * cover * cover;
-  return exp2(-other);
+  return -(far + 30.0 * dot(colour, colour) + 16.0 * cover * cover);
 }
 #endif

@@ -22,8 +22,8 @@ void main() {
       bool inside = window_has(at);
       int there = inside ? at.y * int(push.width) + at.x : int(pixel);
       FilterLight l = filter_light(texelFetch(filter_lights, there));
-      float w = filter_alike(window.surface, filter_surface(texelFetch(filter_surfaces, there)), vec2(x, y), window.slope);
-      w *= inside ? exp2(-0.5 * float(x * x + y * y)) : 0.0;
+      float alike = filter_log_alike(window.surface, filter_surface(texelFetch(filter_surfaces, there)), vec2(x, y), window.slope);
+      float w = inside ? exp2(alike - 0.5 * float(x * x + y * y)) : 0.0;
       even += w * l.even;
       odd += w * l.odd;
       variance += square(w * l.deviation);

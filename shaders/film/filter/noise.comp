@@ -23,8 +23,8 @@ void main() {
       FilterLight l = filter_light(texelFetch(filter_noisy, there));
       FilterSurface s = filter_surface(texelFetch(filter_surfaces, there));
       vec3 d = l.even - l.odd;
-      float w = inside ? filter_alike(window.surface, s, vec2(step), window.slope) : 0.0;
-      w *= exp2(-0.08 * float(x * x + y * y));
+      float alike = filter_log_alike(window.surface, s, vec2(step), window.slope);
+      float w = inside ? exp2(alike - 0.08 * float(x * x + y * y)) : 0.0;
       sum += w * dot(d, d);
       weights += w;
     }

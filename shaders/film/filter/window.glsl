@@ -12,7 +12,7 @@ bool window_has(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(le
 float window_depth(ivec2 at) {
   ivec2 last = ivec2(push.width, push.height) - 1;
   ivec2 there = clamp(at, ivec2(0), last);
-  return there == at ? texelFetch(filter_surfaces, at.y * int(push.width) + at.x).x : 0.0;
+  return there == at ? filter_depth(texelFetch(filter_surfaces, at.y * int(push.width) + at.x)) : 0.0;
 }
 
 Window window_at(uint pixel) {
