@@ -73,7 +73,7 @@ struct Ui {
 
   Flight flight;
   Actions actions{work, flight, [this](int frames) { wake(frames); }};
-  // The same, in short.
+  // Short forms.
   template <class... A>
   void act(const std::string& command, const A&... words) {
     actions.act(command, words...);
@@ -94,18 +94,18 @@ struct Ui {
     float azimuth = 0;               ///< of what is turned by it, degrees
     std::optional<LampHandle> lamp;  ///< as it was then
     std::optional<ObjectDrag> object;
-    bool over = false;  ///< Escape has ended it while the button is held
+    bool over = false;  ///< Esc has ended it while the button is held
   } drag;
   /// Ends a drag of an object; it goes back to where the drag began.
   void cancel_object_drag();
   RebuildTime rebuild;
-  /// True: the next click in the picture sets the exposure.
-  bool dropper = false;
-  /// ... does not select: it sets the exposure or the plane of focus, traces paths, or begins a rectangle.
+  bool dropper = false;  ///< the next click in the picture sets the exposure
+  /// True if the next click in the picture does not select: it sets the exposure or the plane of focus,
+  /// traces paths, or begins a rectangle.
   bool click_taken() const {
     return dropper || scene_view.focusing || paths.pick != PathsView::Pick::none || region.picks;
   }
-  /// Ends what the next click was to do.
+  /// Makes the next click select again.
   void take_click();
   /// Turns the camera about what it looks at, once in that many seconds; 0: stops.
   void start_turntable(float seconds);
@@ -174,11 +174,11 @@ struct Ui {
   /// True if a view is on that inspects the place under the pointer.
   bool inspects_pointer() const;
   /// The last inspected place of a pointer at rest, as inspect.at takes it.
-  std::optional<vec2> asked;
-  /// Inspections known here, and whether a script has inspected a point since the pointer moved: then the
-  /// pointer inspects nothing.
+  std::optional<vec2> inspected_place;
+  /// Number of inspections seen here, and whether a script has inspected a point since the pointer moved:
+  /// then the pointer inspects nothing.
   uint64_t inspections_known = 0;
-  bool script_asked = false;
+  bool script_inspects = false;
 
   AccuracyView accuracy{open};
 

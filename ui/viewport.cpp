@@ -380,24 +380,24 @@ void inspect_at_rest(Ui& ui, const Area& shown, bool active) {
   static ImVec2 last;
   static double since = 0;
   const ImVec2 at = ImGui::GetIO().MousePos;
-  if (at.x != last.x || at.y != last.y) last = at, since = ui.work.now, ui.script_asked = false;
+  if (at.x != last.x || at.y != last.y) last = at, since = ui.work.now, ui.script_inspects = false;
   if (std::exchange(ui.inspections_known, ui.work.inspections) != ui.work.inspections) {
-    ui.script_asked = true;
-    ui.asked.reset();
+    ui.script_inspects = true;
+    ui.inspected_place.reset();
   }
-  if (ui.script_asked) return;
+  if (ui.script_inspects) return;
   const vec2 place((at.x - shown.lo.x) / std::max(1.0f, shown.width()),
                    (at.y - shown.lo.y) / std::max(1.0f, shown.height()));
   const bool inside = place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
   // During a load the renderer refuses inspections.
   const bool still = !(active && dragging()) && !ui.flight.moving() && !ui.open.loading();
   if (ui.inspects_pointer() && ui.picture_hovered && inside && still) {
-    if (active || ui.asked == place || ui.work.now - since < k_rest) return;
-    ui.asked = place;
+    if (active || ui.inspected_place == place || ui.work.now - since < k_rest) return;
+    ui.inspected_place = place;
     ++ui.inspections_known;
     ui.act("inspect.at", place.x, place.y);
-  } else if (ui.asked) {
-    ui.asked.reset();
+  } else if (ui.inspected_place) {
+    ui.inspected_place.reset();
     ui.act("inspect.none");
   }
 }

@@ -44,7 +44,7 @@ void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, 
     throw_error(
         "size", "{}x{} is {} pixels; this device can hold at most {} (for example {}x{}){}", width, height,
         pixels, largest, uint32_t(std::sqrt(largest * 16.0 / 9)), uint32_t(std::sqrt(largest * 9.0 / 16)),
-        groups > 1 ? fmt::format(" with {} groups of lights apart; more with relight.enabled=off", groups)
+        groups > 1 ? fmt::format(" with {} separate light groups; more with relight.enabled=off", groups)
                    : std::string());
 }
 

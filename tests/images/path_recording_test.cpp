@@ -103,7 +103,7 @@ TEST_CASE("the light of all recorded paths is the film's, by component") {
       const auto events = all.events_of(path);
       for (uint32_t i = 0; i < events.size(); ++i) {
         const std::string word = recording::word_of(events, i);
-        if (!recording::brings_light(events[i]) || word.find('.') != std::string::npos) continue;
+        if (!recording::contributes_light(events[i]) || word.find('.') != std::string::npos) continue;
         if (automaton.classify(word) != recording::component_of(events[i])) FAIL_CHECK(word);
         ++words;
       }

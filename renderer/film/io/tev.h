@@ -60,7 +60,8 @@ class TevSender {
   void open(const std::string& file);
   /// True while a picture or a file waits or is being sent.
   bool busy() const;
-  /// The problem that has ended it, located at the address, the first time it is asked for; else "".
+  /// The problem that ended the connection, located at the address; "" if there is none, and after the
+  /// first call.
   std::string take_problem();
   bool ended() const;
   /// Waits until all is sent. False if it has ended with a problem.
