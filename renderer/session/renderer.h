@@ -147,7 +147,7 @@ class Renderer {
   /// image_error().
   std::vector<film::TileError> tile_errors() const;
   uint32_t tile_side() const { return setup_.tile_side(); }  ///< sampling.tile [pixels]
-  /// True once the lookup-error estimate is complete (film::RecordsError).
+  /// True once the lookup-error estimate is complete (film::LookupsError).
   bool lookup_errors_known() const;
   /// False if some solver's lookups have a bias that none of these errors contains.
   bool lookup_bias_estimated() const;

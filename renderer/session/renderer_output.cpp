@@ -234,7 +234,7 @@ HeldPicture Renderer::held_picture() {
   }
   if (samples() >= 2) {
     const film::ImageError e = image_error();
-    held.error = error_sum(e.seen(0), e.seen_records, e.seen_interpolation);
+    held.error = error_sum(e.seen(0), e.seen_lookup_noise, e.seen_interpolation);
   }
   return held;
 }
@@ -337,7 +337,7 @@ film::FilmImage Renderer::film_image_with_halves() {
   std::vector<float> noise(sum.size()), bias(sum.size());
   for (size_t i = 0; i < sum.size(); ++i) {
     const film::TileError& t = tiles[i / image.width / k_tile * across + i % image.width / k_tile];
-    noise[i] = float(t.records.noise), bias[i] = float(t.records.interpolation);
+    noise[i] = float(t.lookups.noise), bias[i] = float(t.lookups.interpolation);
   }
   out.channels.emplace_back("lookup.noise", std::move(noise));
   out.channels.emplace_back("lookup.bias", std::move(bias));

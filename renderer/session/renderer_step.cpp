@@ -78,7 +78,7 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
       wavefront.account_stages();
       for (size_t i = 0; i < tiles.size(); ++i) {
         const film::RelativeError e = film::relative_error(*setup_.film, adaptive->blocks_of(tiles[i]));
-        errors[i] = {float(e.paths), float(e.records), float(e.interpolation)};
+        errors[i] = {float(e.paths), float(e.lookup_noise), float(e.interpolation)};
       }
     }
     adaptive->report(errors);

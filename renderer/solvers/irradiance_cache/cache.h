@@ -201,7 +201,7 @@ class Cache {
   /// wavefront must have the view's frame. False if cancelled.
   bool look_at_picture(transport::Wavefront& wavefront, const CacheView& view,
                        const std::function<bool()>& cancel = {});
-  /// Runs one work item of the film's record errors (picture_error.h), until Film::record_errors_complete().
+  /// Runs one work item of the film's record errors (picture_error.h), until Film::lookup_errors_complete().
   /// Requires ready(); the wavefront must have the view's frame. `restarted`: the picture has begun. False if
   /// cancelled: it will be repeated.
   bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const CacheView& view,
