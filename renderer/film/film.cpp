@@ -21,6 +21,8 @@ constexpr uint64_t k_coarse_pixels = shared::k_coarse_step * shared::k_coarse_st
 
 uint64_t sum_bytes(uint32_t groups, GroupStorage kept) {
   constexpr uint64_t k_all = k_components * k_sum_bytes;
+  // As in the help of relight.enabled and in README.md.
+  static_assert(k_all == 192 && k_all + sizeof(shared::GroupLight) == 200 && sizeof(shared::GroupSums) == 16);
   if (groups <= 1) return k_all;
   return k_all + groups * (kept == GroupStorage::compact ? sizeof(shared::GroupSums)
                                                          : k_all + sizeof(shared::GroupLight));

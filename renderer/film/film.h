@@ -69,8 +69,7 @@ inline constexpr uint32_t k_max_side = 32768;
 /// memory. `groups`: separate light groups.
 void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, uint32_t groups = 1,
                 GroupStorage kept = GroupStorage::by_component);
-/// Bytes of the sums per pixel: 192 for the picture, and with several light groups 200 (by component) or 16
-/// (compact) for each.
+/// Bytes of the sums per pixel: of the picture and, if there are several, of the light groups.
 uint64_t sum_bytes(uint32_t groups, GroupStorage kept = GroupStorage::by_component);
 
 class Film {
@@ -121,7 +120,7 @@ class Film {
   /// Empty while unknown.
   std::span<const shared::BlockLookups> lookup_errors() const;
   /// Allocates the sums of lookup bias, which arrives with the light of paths (LUCERNA_LOOKUP_BIAS):
-  /// FilmBiasEven and FilmBiasOdd, 8 bytes a pixel, empty after a clear(). From then on lookup_bias_known().
+  /// FilmBiasEven and FilmBiasOdd, empty after a clear(). From then on lookup_bias_known().
   void make_room_for_lookup_bias(gpu::Stream& stream);
   bool lookup_bias_known() const { return lookup_bias_known_; }
   /// Means over the even and over the odd samples: estimated excess of the luminance. Empty while unknown.

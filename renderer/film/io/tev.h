@@ -40,7 +40,7 @@ struct TevAddress {
 /// "HOST:PORT", "HOST" or ":PORT"; "localhost" is a host. "": the default. Throws Error located at `where`.
 TevAddress parse_tev_address(const std::string& text, const std::string& where);
 
-/// A connection to a viewer, on a thread of its own: nothing here waits for it but finish(). It connects with
+/// A connection to a viewer, on a separate thread: only finish() waits for it. It connects with
 /// the first picture. If the viewer is missing, hangs up or stops reading, it ends with a problem, and
 /// ignores further pictures. All methods are for one thread.
 class TevSender {

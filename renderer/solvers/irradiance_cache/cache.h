@@ -135,7 +135,7 @@ class Cache {
         const CacheOptions& options);
   ~Cache();
 
-  /// For kernels of a wavefront that reads a cache with these routes of its own and this metric. `gathers`:
+  /// For kernels of a wavefront that reads a cache with its own routes and this metric. `gathers`:
   /// CacheOptions::gather.
   static gpu::Defines defines(const paths::LookupRoutes& own, Metric metric, bool gathers);
   /// Binds the names of shaders/irradiance_cache/lookup.glsl.
