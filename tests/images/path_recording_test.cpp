@@ -1,6 +1,7 @@
 // links: session
 // Recorded paths are the picture's: their contributions sum to its film, component by component; recording
 // changes no picture; two recordings are equal; what does not fit is counted.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
