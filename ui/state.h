@@ -51,6 +51,9 @@ struct Dialog {
   bool as_shown = true;   ///< a PNG is saved as the window shows it
 };
 
+/// OpenGL name of an image file's picture, created on first use; 0 if it cannot be read.
+using PictureOf = std::function<unsigned(const std::string&)>;
+
 /// The left button held on the picture, for the pixel inspector.
 struct HeldPixel {
   std::optional<double> since;  ///< when it was pressed; none: it is not
@@ -148,9 +151,7 @@ struct Ui {
   std::vector<std::string> recent;  ///< files, newest first, from the root
   unsigned texture = 0;             ///< OpenGL name of the picture
   uint32_t texture_width = 0, texture_height = 0;
-  /// OpenGL name of an image file's picture, created on first use; 0 if it cannot be read. Null without a
-  /// window.
-  std::function<unsigned(const std::string&)> picture_of;
+  PictureOf picture_of;     ///< null without a window
   int picture_divisor = 1;  ///< window pixels per picture pixel
   /// Frames to draw until the picture's area reflects the commands so far.
   int frames_to_settle = 0;
@@ -247,8 +248,11 @@ void draw_inspection(const session::Snapshot& picture, const Area& area, const A
 void keep_view(Ui& ui);
 void draw_splitters(Ui& ui, const Areas& areas);
 void draw_dialogs(Ui& ui);
-void draw_file_dialog(Ui& ui);     ///< part of draw_dialogs
-void draw_leaving_dialog(Ui& ui);  ///< likewise
+/// Part of draw_dialogs. `escape`: Esc was pressed.
+void draw_file_dialog(Actions& actions, const commands::OpenScene& open,
+                      const std::vector<std::string>& recent, const PictureOf& picture_of, Dialog& dialog,
+                      bool escape);
+void draw_leaving_dialog(Ui& ui);  ///< part of draw_dialogs
 void handle_keys(Ui& ui);
 
 /// GLFW's key and modifiers of a name such as "ctrl+z". Throws Error if there is none.
