@@ -25,7 +25,7 @@ Verb add_paths(CLI::App& app) {
   CLI::App* verb = app.add_subcommand("paths", "search recorded paths (render --record-paths)");
   verb->add_option("FILE", a.file, "recorded paths (.lpath)")->required();
   verb->add_option("--where", a.where,
-                   "rows that are wanted: FIELD == != < <= > >= VALUE, word ~ 'E[SG]*DL', joined by and, or, "
+                   "only rows with FIELD == != < <= > >= VALUE, word ~ 'E[SG]*DL', joined by and, or, "
                    "not, ( )");
   verb->add_option("--group-by", a.group_by, "sums per value of this field");
   verb->add_flag("--csv", a.csv, "all rows, or sums, as CSV");
