@@ -106,7 +106,7 @@ bool Renderer::run_pilot(const std::function<bool()>& cancel) {
   try {
     apply_plan(Transaction::Target(setup_), changes);
   } catch (const Error& e) {
-    log::warning("components: paths compute what is chosen automatically: {}", e.what());
+    log::warning("components: the automatic choice failed, path tracing is used: {}", e.what());
     plan::Plan paths = setup_.engine->plan();
     paths.undecided = false;
     setup_.engine->set_plan(paths);
