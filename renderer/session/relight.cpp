@@ -47,7 +47,7 @@ std::string obstacle(const plan::Settings& settings, const scene::LightGroups& g
 std::string unknown_group(const std::string& name, const scene::LightGroups& groups) {
   std::vector<std::string> names;
   for (const scene::LightGroup& group : groups.groups) names.push_back(group.name);
-  return fmt::format("relight.mix: the scene has no group of lights '{}'; there are: {}", name,
+  return fmt::format("relight.mix: the scene has no light group '{}'; there are: {}", name,
                      fmt::join(names, ", "));
 }
 
