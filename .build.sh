@@ -52,7 +52,7 @@ install_packages() {
     command -v sudo >/dev/null || die "Neither root nor sudo. Let root do: apt-get install ${missing[*]}"
     as_root=(sudo)
     say "Installing needs root:"
-    sudo -v || die "No leave to use sudo. Let root do: apt-get install ${missing[*]}"
+    sudo -v || die "Not permitted to use sudo. Let root do: apt-get install ${missing[*]}"
   fi
   as_root+=(env DEBIAN_FRONTEND=noninteractive apt-get -q)
   # A slightly old package list can be sufficient; otherwise the installation fails.

@@ -75,7 +75,8 @@ class Findings {
     if (arguments_.csv && !group_) print_line({std::begin(k_columns), std::end(k_columns)});
   }
   void add(const Row& row) {
-    const double light = recording::brings_light(row.at()) ? double(luminance(row.at().contribution)) : 0;
+    const double light =
+        recording::contributes_light(row.at()) ? double(luminance(row.at().contribution)) : 0;
     ++found_.rows, found_.light += light;
     if (group_) {
       Sum& sum = groups_[recording::text_of(*group_, row)];
@@ -172,7 +173,7 @@ class Findings {
 
 std::string describe_path_fields() {
   std::string text =
-      "\nFields for --where and --group-by; each row is an event that brings light, or a blocked light "
+      "\nFields for --where and --group-by; each row is an event that contributes light, or a blocked light "
       "sample:\n";
   for (const Field& f : recording::fields()) text += fmt::format("  {:<14}{}\n", f.name, f.help);
   return text;
@@ -190,7 +191,7 @@ int search_paths(const PathsArguments& a) {
     paths += chunk->paths.size();
     recording::visit_rows(*chunk, [&](const Row& row) {
       ++all.rows;
-      if (recording::brings_light(row.at())) all.light += double(luminance(row.at().contribution));
+      if (recording::contributes_light(row.at())) all.light += double(luminance(row.at().contribution));
       if (query(row)) findings.add(row);
     });
   }

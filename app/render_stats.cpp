@@ -19,7 +19,7 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   j["of"] = "sum";
   j["seen"] = error.seen_sum();
   j["of_mean"] = error.relative_sum();
-  j["rms"] = error_sum(error.rms[0], error.records_rms, error.interpolation_rms);
+  j["rms"] = error_sum(error.rms[0], error.lookup_noise_rms, error.interpolation_rms);
   j["white"] = error.white, j["dark"] = error.dark;
   const std::vector<film::TileError> tiles = r.tile_errors();
   const auto write_tiles = [](nlohmann::ordered_json& to, const film::TileSpread& spread) {
@@ -41,8 +41,8 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   part("paths", error.seen(0), error.relative(0), error.rms[0], &film::TileError::relative);
   if (r.looks_up() && !r.lookup_errors_known()) j["records"] = j["bias"] = nullptr;
   if (r.looks_up() && r.lookup_errors_known()) {
-    part("records", error.seen_records, error.relative_records(), error.records_rms,
-         &film::TileError::relative_records);
+    part("records", error.seen_lookup_noise, error.relative_lookup_noise(), error.lookup_noise_rms,
+         &film::TileError::relative_lookup_noise);
     part("bias", error.seen_interpolation, error.relative_interpolation(), error.interpolation_rms,
          &film::TileError::relative_interpolation);
   }
@@ -60,7 +60,7 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
 }
 
 double filtered_error(const film::ImageError& samples, const film::FilterError& filter) {
-  return error_sum(filter.relative(), samples.relative_records(), samples.relative_interpolation());
+  return error_sum(filter.relative(), samples.relative_lookup_noise(), samples.relative_interpolation());
 }
 
 /// Errors of the filtered picture: its noise and bias, and the error of its lookups.
@@ -68,7 +68,7 @@ nlohmann::ordered_json make_filtered(session::Renderer& r, const session::Filter
   const film::FilterError& f = filtered.error;
   const film::ImageError samples = r.image_error();
   nlohmann::ordered_json j;
-  j["rms"] = error_sum(f.rms, samples.records_rms, samples.interpolation_rms);
+  j["rms"] = error_sum(f.rms, samples.lookup_noise_rms, samples.interpolation_rms);
   j["of_mean"] = filtered_error(samples, f);
   j["filter"] = {{"rms", f.rms}, {"of_mean", f.relative()}};
   j["filter"]["tile_median"] = f.tile_median;

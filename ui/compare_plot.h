@@ -31,8 +31,8 @@ PlotRange compare_range(const std::vector<CompareLine>& lines);
 /// "2.1 %": the estimated error of samples as seen; of a filtered picture "3.4 % off, filtered": of the
 /// median tile. "" if it is not known.
 std::string held_error_text(const session::HeldPicture& picture);
-/// "cache, 12 s, 2.1 %", with what else is to be known: "before: path, caustic only, 12 s, 3.4 % off,
-/// filtered".
+/// "cache, 12 s, 2.1 %". In full: "before: path, caustic only, 12 s, 3.4 % off, filtered", with the state of
+/// the light, the methods, the shown components, time and error.
 std::string held_text(const commands::HeldResult& held);
 /// The same of the live picture.
 std::string live_text(const session::Snapshot& live);

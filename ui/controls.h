@@ -29,7 +29,8 @@ struct Controls {
 bool panel_section(Controls& controls, const char* title, bool fallback, const std::string& note = "");
 /// A control for an option of the settings table, by its type; the tooltip is its help.
 void option_control(Controls& controls, const std::string& key, const std::string& name);
-/// A place in the scene, whose core gives range and precision. True if it has changed.
+/// A row of numbers for a place in the scene, whose core gives their range and precision. True if it has
+/// changed.
 bool position_row(const Box& core, vec3& position);
 
 struct ChoiceButton {

@@ -152,7 +152,7 @@ void begin_panel(const char* name, const Area& area, ImU32 background, bool scro
 }
 
 void draw_dialogs(Ui& ui) {
-  draw_file_dialog(ui);
+  draw_file_dialog(ui.actions, ui.open, ui.recent, ui.picture_of, ui.dialog, ui.pressed(GLFW_KEY_ESCAPE));
   draw_leaving_dialog(ui);
   key_page(ui);
 }

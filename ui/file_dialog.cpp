@@ -179,7 +179,8 @@ bool row(const char* id, const std::string& text, bool on, ImU32 ink, const std:
 }
 
 /// Places, on the left.
-void places(Ui& ui, Dialog& dialog, std::string& chosen) {
+void places(const commands::OpenScene& open, const std::vector<std::string>& recent, Dialog& dialog,
+            std::string& chosen) {
   const bool opens = dialog.purpose == Dialog::Purpose::open;
   const fs::path here = folder_of(expanded(dialog.path));
   std::error_code error;
@@ -195,14 +196,14 @@ void places(Ui& ui, Dialog& dialog, std::string& chosen) {
   const char* home = std::getenv("HOME");
   place("##home", "Home", home ? home : "");
   place("##working", "Working folder", fs::current_path(error));
-  if (ui.open.scene && !ui.open.scene->file.empty())
-    place("##of_scene", "The scene's folder", folder_of(ui.open.scene->file));
+  if (open.scene && !open.scene->file.empty())
+    place("##of_scene", "The scene's folder", folder_of(open.scene->file));
   place("##root", "Computer", "/");
-  if (!opens || ui.recent.empty()) return;
+  if (!opens || recent.empty()) return;
   gap(6);
   label("  Recent", colour::text_faint, theme().fonts.small);
   gap(2);
-  const std::vector<std::string> files = ui.recent;
+  const std::vector<std::string> files = recent;
   for (size_t i = 0; i < files.size(); ++i) {
     ImGui::PushID(static_cast<int>(i));
     if (row("##recent", fs::path(files[i]).filename().string(), false, colour::text_dim, files[i]))
@@ -212,7 +213,7 @@ void places(Ui& ui, Dialog& dialog, std::string& chosen) {
 }
 
 /// The program's scenes as pictures with their names.
-void pictures(Ui& ui, std::string& chosen) {
+void pictures(const PictureOf& picture_of, std::string& chosen) {
   const float space = px(8), all = ImGui::GetContentRegionAvail().x;
   const float across = std::max(1.0f, std::floor((all + space) / (px(150) + space)));
   const float w = std::floor((all + space) / across) - space, h = std::floor(w * 9 / 16);
@@ -230,7 +231,7 @@ void pictures(Ui& ui, std::string& chosen) {
     const bool hovered = ImGui::IsItemHovered();
     tooltip(scene.file.string());
     ImGui::PopID();
-    if (const unsigned texture = ui.picture_of ? ui.picture_of(scene.picture.string()) : 0)
+    if (const unsigned texture = picture_of ? picture_of(scene.picture.string()) : 0)
       list->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(texture)), lo, hi, {0, 0},
                             {1, 1}, IM_COL32_WHITE, px(3));
     else
@@ -283,8 +284,9 @@ void way_of_saving(Dialog& dialog) {
 
 }  // namespace
 
-void draw_file_dialog(Ui& ui) {
-  Dialog& dialog = ui.dialog;
+void draw_file_dialog(Actions& actions, const commands::OpenScene& open,
+                      const std::vector<std::string>& recent, const PictureOf& picture_of, Dialog& dialog,
+                      bool escape) {
   if (dialog.purpose == Dialog::Purpose::none) return;
   const Question asked = question(dialog);
   // Each dialog has a separate field, so texts typed into one do not appear in another.
@@ -334,13 +336,13 @@ void draw_file_dialog(Ui& ui) {
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
     if (width > px(520)) {
       ImGui::BeginChild("##places", {px(176), rows});
-      places(ui, dialog, chosen);
+      places(open, recent, dialog, chosen);
       ImGui::EndChild();
       ImGui::SameLine(0, px(12));
     }
     ImGui::BeginChild("##completions", {0, rows});
     if (dialog.pictures)
-      pictures(ui, chosen);
+      pictures(picture_of, chosen);
     else
       files(dialog, asked, list, chosen);
     ImGui::EndChild();
@@ -362,7 +364,7 @@ void draw_file_dialog(Ui& ui) {
     if (button("##cancel", "Cancel", false, w)) done = true;
     ImGui::SameLine(0, px(8));
     if (button("##accept", asked.answer, true, w)) accept = true;
-    if (ui.pressed(GLFW_KEY_ESCAPE)) done = true;
+    if (escape) done = true;
     if (accept && !dialog.path.empty()) {
       const std::string file = expanded(dialog.path);
       if (is_folder(file)) {
@@ -372,17 +374,18 @@ void draw_file_dialog(Ui& ui) {
       } else {
         if (dialog.purpose == Dialog::Purpose::save && dialog.as_shown &&
             fs::path(file).extension() == ".png")
-          ui.act(asked.command, file, named("as", "shown"));
+          actions.act(asked.command, file, named("as", "shown"));
         else if (dialog.purpose == Dialog::Purpose::scene)
-          ui.act(asked.command, named("file", file), named("replace", fs::is_regular_file(file, ignored)));
+          actions.act(asked.command, named("file", file),
+                      named("replace", fs::is_regular_file(file, ignored)));
         else
-          ui.act(asked.command, file);
+          actions.act(asked.command, file);
         done = true;
       }
     }
     if (done) dialog = {}, ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
-    if (dialog.focus) ui.wake(3);
+    if (dialog.focus) actions.wake(3);
   } else {
     dialog = {};
   }

@@ -81,7 +81,7 @@ std::vector<PlacedMark> place_marks(std::span<const Mark> marks, float apart, co
         // Upwards first, then to either side by turns.
         const int turn = step % 2 ? (step + 1) / 2 : -step / 2;
         const float angle = 2 * k_pi * static_cast<float>(turn) / static_cast<float>(8 * ring);
-        // A little more than asked for, so that rounding does not bring two marks closer.
+        // A little more than asked for, so that rounding does not move two marks closer.
         const float away = 1.001f * apart * static_cast<float>(ring);
         const ImVec2 at(anchor.x + away * std::sin(angle), anchor.y - away * std::cos(angle));
         found = placed.inside(at) && placed.free(at);

@@ -95,7 +95,7 @@ const char* key_name(char shortcut) {
 }
 
 /// The displays and views of $OCIO, with the tone curve; nothing if it is not set.
-void ocio_menu(Ui& ui) {
+void ocio_menu(Actions& actions, const commands::OpenScene& open) {
   static const bool has_ocio = [] {
     const char* file = std::getenv("OCIO");
     return file && *file;
@@ -103,9 +103,9 @@ void ocio_menu(Ui& ui) {
   if (!has_ocio ||
       !begin_submenu("OCIO display", "Displays and views of the configuration that $OCIO names."))
     return;
-  const std::string& chosen = ui.open.setting("film.ocio");
+  const std::string& chosen = open.setting("film.ocio");
   if (entry("Tone curve", nullptr, "The picture by its tone curve, without OCIO.", chosen.empty()))
-    ui.act("view.ocio", "off");
+    actions.act("view.ocio", "off");
   try {
     const auto config = film::ocio_config();
     for (const film::OcioDisplay& display : config->displays()) {
@@ -114,7 +114,7 @@ void ocio_menu(Ui& ui) {
         const std::string text = film::ocio_text(display.name, view);
         const bool on = chosen == text || (chosen == display.name && view == display.views.front());
         if (entry(elided(text, px(240)).c_str(), nullptr, config->file().c_str(), on))
-          ui.act("view.ocio", display.name, view);
+          actions.act("view.ocio", display.name, view);
       }
     }
   } catch (const Error& e) {
@@ -124,12 +124,11 @@ void ocio_menu(Ui& ui) {
 }
 
 /// Loading and saving the work of solvers that can store it in files.
-void solver_files(Ui& ui) {
-  const bool picture = ui.has_picture();
+void solver_files(Actions& actions, const commands::OpenScene& open, bool picture) {
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     if (!solver->file) continue;
-    const bool used = ui.open.uses(*solver) && picture;
-    const solvers::Report* report = ui.open.report(*solver);
+    const bool used = open.uses(*solver) && picture;
+    const solvers::Report* report = open.report(*solver);
     const bool complete = used && report && report->ready;
     const std::string unused = fmt::format("No component is computed by {}.", solver->name);
     const std::string name = uncapitalised(solver->label);
@@ -139,7 +138,7 @@ void solver_files(Ui& ui) {
                   ? fmt::format("Loads {} from a file {}.", solver->file->content, solver->file->fits).c_str()
                   : unused.c_str(),
               false, used))
-      ui.act("dialog." + solver->name + "_load");
+      actions.act("dialog." + solver->name + "_load");
     if (entry(("Save " + name + "\xE2\x80\xA6").c_str(), nullptr,
               complete
                   ? fmt::format("Saves {}, so this scene need not compute them again.", solver->file->content)
@@ -147,94 +146,94 @@ void solver_files(Ui& ui) {
               : used ? fmt::format("{} is not complete yet.", capitalised(solver->title)).c_str()
                      : unused.c_str(),
               false, complete))
-      ui.act("dialog." + solver->name + "_save");
+      actions.act("dialog." + solver->name + "_save");
     ImGui::PopID();
     divide();
   }
 }
 
-void file_menu(Ui& ui) {
+void file_menu(Actions& actions, const commands::OpenScene& open, const commands::SceneFile& file,
+               const std::vector<std::string>& recent, bool picture) {
   if (!begin_menu("File")) return;
   if (entry("Open\xE2\x80\xA6", "Ctrl+O",
             "Opens a glTF scene (.gltf or .glb). A file dropped on the window opens too."))
-    ui.act("dialog.open");
-  const std::vector<std::string> files(ui.recent.begin(), ui.recent.end());
+    actions.act("dialog.open");
+  const std::vector<std::string> files = recent;
   if (!files.empty()) divide();
   for (size_t i = 0; i < std::min<size_t>(files.size(), 5); ++i) {
     ImGui::PushID(static_cast<int>(i));
     const std::string name = std::filesystem::path(files[i]).filename().string();
-    if (entry(elided(name, px(240)).c_str(), nullptr, files[i].c_str())) ui.act("window.open", files[i]);
+    if (entry(elided(name, px(240)).c_str(), nullptr, files[i].c_str())) actions.act("window.open", files[i]);
     ImGui::PopID();
   }
   divide();
-  const bool picture = ui.has_picture();
-  if (entry("Save scene", "Ctrl+Shift+S",
-            ui.work.scene_file.unsaved() ? ("Saves the edits in " + ui.work.scene_file.file() + ".").c_str()
-                                         : "There is nothing to save.",
-            false, picture))
-    ui.act("scene.save");
+  if (entry(
+          "Save scene", "Ctrl+Shift+S",
+          file.unsaved() ? ("Saves the edits in " + file.file() + ".").c_str() : "There is nothing to save.",
+          false, picture))
+    actions.act("scene.save");
   if (entry("Save scene as\xE2\x80\xA6", nullptr,
             "Saves the scene with its edits as another .gltf or .glb file.", false, picture))
-    ui.act("dialog.scene");
+    actions.act("dialog.scene");
   divide();
   if (entry("Save picture\xE2\x80\xA6", "Ctrl+S",
             "Saves the present picture: all layers as EXR, or the displayed one as PNG.", false, picture))
-    ui.act("dialog.save");
+    actions.act("dialog.save");
   if (entry("Screenshot", "F12", "Saves the window with its panels as a PNG in the working folder."))
-    ui.act("screenshot");
-  const std::string viewer = ui.open.snapshot ? ui.open.snapshot->tev : "";
+    actions.act("screenshot");
+  const std::string viewer = open.snapshot ? open.snapshot->tev : "";
   if (entry("Send to tev", nullptr,
             viewer.empty()
                 ? "Sends all layers to a running tev (127.0.0.1:14158) while the picture is rendered."
                 : ("Sends all layers to " + viewer + "; select it again to end this.").c_str(),
             !viewer.empty(), picture))
-    ui.act(viewer.empty() ? "tev.send" : "tev.stop");
+    actions.act(viewer.empty() ? "tev.send" : "tev.stop");
   divide();
-  const session::Accuracy* accuracy = ui.open.snapshot ? ui.open.snapshot->accuracy.get() : nullptr;
+  const session::Accuracy* accuracy = open.snapshot ? open.snapshot->accuracy.get() : nullptr;
   const bool reference = accuracy && !accuracy->reference.empty();
   if (entry("Load reference\xE2\x80\xA6", nullptr,
             "Loads a converged EXR of this view and size, rendered with another seed. The Accuracy plot then "
             "shows the true error too.",
             false, picture))
-    ui.act("dialog.reference");
+    actions.act("dialog.reference");
   if (entry("Clear reference", nullptr,
             reference ? ("Removes " + accuracy->reference + ".").c_str() : "No reference is loaded.", false,
             reference))
-    ui.act("reference.clear");
+    actions.act("reference.clear");
   divide();
-  solver_files(ui);
+  solver_files(actions, open, picture);
   if (entry("Save session as script\xE2\x80\xA6", nullptr,
             "Saves the commands of this session, one per line; lucerna --script repeats them."))
-    ui.act("dialog.script");
+    actions.act("dialog.script");
   if (entry(
           "Save session as test\xE2\x80\xA6", nullptr,
           "Saves a script that repeats this session and expects the present picture; lucerna script runs it.",
           false, picture))
-    ui.act("dialog.test");
+    actions.act("dialog.test");
   divide();
-  if (entry("Quit", "Ctrl+Q", "Closes the window and ends the render.")) ui.act("window.close");
+  if (entry("Quit", "Ctrl+Q", "Closes the window and ends the render.")) actions.act("window.close");
   end_menu();
 }
 
-void edit_menu(Ui& ui) {
+void edit_menu(Actions& actions, const commands::History& history, const Selection& selection) {
   if (!begin_menu("Edit")) return;
   if (entry("Undo", "Ctrl+Z",
-            ui.history.can_undo() ? ("Undoes: " + ui.history.undo_text()).c_str() : "Nothing to undo.", false,
-            ui.history.can_undo()))
-    ui.act("undo");
+            history.can_undo() ? ("Undoes: " + history.undo_text()).c_str() : "Nothing to undo.", false,
+            history.can_undo()))
+    actions.act("undo");
   if (entry("Redo", "Ctrl+Shift+Z",
-            ui.history.can_redo() ? ("Redoes: " + ui.history.redo_text()).c_str() : "Nothing to redo.", false,
-            ui.history.can_redo()))
-    ui.act("redo");
+            history.can_redo() ? ("Redoes: " + history.redo_text()).c_str() : "Nothing to redo.", false,
+            history.can_redo()))
+    actions.act("redo");
   divide();
   if (entry("Deselect", nullptr, "Clears the selection. A click in the picture selects an object.", false,
-            ui.camera.selection.kind != Kind::none))
-    ui.act("select.none");
+            selection.kind != Kind::none))
+    actions.act("select.none");
   end_menu();
 }
 
 /// Views of a solver that can be drawn over the picture.
-void solver_views(Ui& ui, const solvers::SolverInfo& solver) {
+void solver_views(Controls& controls, const solvers::SolverInfo& solver) {
   for (size_t i = 0; i < solver.views.size(); ++i) {
     const solvers::ViewInfo& view = solver.views[i];
     const OptionInfo* option = plan::find_option(view.option);
@@ -243,14 +242,13 @@ void solver_views(Ui& ui, const solvers::SolverInfo& solver) {
       // One entry per value; the key cycles through them, from the first.
       for (size_t k = 1; k < option->choices.size(); ++k) {
         const std::string& value = option->choices[k];
-        const bool on = ui.open.setting(option->key) == value;
+        const bool on = controls.open.setting(option->key) == value;
         if (entry(fmt::format("{}: {}", name, value).c_str(), k == 1 ? key_name(view.shortcut) : nullptr,
                   option->help.c_str(), on))
-          ui.act("set", option->key, on ? option->choices.front() : value);
+          controls.act("set", option->key, on ? option->choices.front() : value);
       }
-    } else if (entry(name.c_str(), key_name(view.shortcut), option->help.c_str(),
-                     ui.controls.view_on(view))) {
-      ui.controls.turn_view(view);
+    } else if (entry(name.c_str(), key_name(view.shortcut), option->help.c_str(), controls.view_on(view))) {
+      controls.turn_view(view);
     }
     for (const std::string& key : view.refined_by) {
       // Behind the last of the views that it refines, if any of them is on.
@@ -258,15 +256,15 @@ void solver_views(Ui& ui, const solvers::SolverInfo& solver) {
       for (size_t k = 0; k < solver.views.size(); ++k) {
         const std::vector<std::string>& keys = solver.views[k].refined_by;
         if (std::find(keys.begin(), keys.end(), key) == keys.end()) continue;
-        on = on || ui.controls.view_on(solver.views[k]);
+        on = on || controls.view_on(solver.views[k]);
         last = last && k <= i;
       }
       const OptionInfo* by = plan::find_option(key);
       if (!on || !last || !by) continue;
       for (const std::string& choice : by->choices)
         if (entry(fmt::format("   {} {}", uncapitalised(option_label(*by)), choice).c_str(), nullptr,
-                  by->help.c_str(), ui.open.setting(key) == choice))
-          ui.act("set", key, choice);
+                  by->help.c_str(), controls.open.setting(key) == choice))
+          controls.act("set", key, choice);
     }
   }
 }
@@ -344,12 +342,12 @@ void view_menu(Ui& ui) {
     ImGui::PushID(solver->name.c_str());
     if (begin_submenu((title_of(*solver) + ": views").c_str(),
                       fmt::format("No component is computed by {}.", solver->title).c_str(), used)) {
-      solver_views(ui, *solver);
+      solver_views(ui.controls, *solver);
       end_submenu();
     }
     ImGui::PopID();
   }
-  ocio_menu(ui);
+  ocio_menu(ui.actions, ui.open);
   if (entry("Clear earlier renders", nullptr, "Removes the lines of earlier renders from the Accuracy plot.",
             false, !ui.accuracy.runs.earlier().empty()))
     ui.act("accuracy.clear_runs");
@@ -410,44 +408,43 @@ void camera_menu(Ui& ui) {
   end_menu();
 }
 
-void render_menu(Ui& ui) {
+void render_menu(Actions& actions, const commands::OpenScene& open, bool picks_region) {
   if (!begin_menu("Render")) return;
-  const bool paused = ui.open.snapshot && ui.open.snapshot->paused;
+  const bool paused = open.snapshot && open.snapshot->paused;
   if (entry(paused ? "Resume" : "Pause", "Space",
-            "Pauses sampling; Resume continues with the present samples.", false,
-            ui.open.snapshot != nullptr))
-    ui.act(paused ? "render.resume" : "render.pause");
+            "Pauses sampling; Resume continues with the present samples.", false, open.snapshot != nullptr))
+    actions.act(paused ? "render.resume" : "render.pause");
   if (entry("Restart", "R", "Discards all samples and restarts the picture.", false,
-            ui.open.snapshot != nullptr))
-    ui.act("render.restart");
+            open.snapshot != nullptr))
+    actions.act("render.restart");
   if (entry("Region", "Ctrl+R",
             "The next drag in the picture chooses a rectangle that gets all samples; the rest keeps those it "
             "has.",
-            ui.region.picks, ui.open.scene != nullptr))
-    ui.act("region.pick", !ui.region.picks);
-  const bool region = !ui.open.setting("sampling.region").empty();
+            picks_region, open.scene != nullptr))
+    actions.act("region.pick", !picks_region);
+  const bool region = !open.setting("sampling.region").empty();
   if (entry("Clear region", nullptr,
             region ? "Gives samples to the whole picture again." : "There is no region.", false, region))
-    ui.act("region.clear");
+    actions.act("region.clear");
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const solvers::CommandInfo& command : solver->commands)
       if (entry(fmt::format("{}: {}", solver->label, uncapitalised(command.label)).c_str(),
-                key_name(command.shortcut), command.help.c_str(), false, ui.open.uses(*solver)))
-        ui.act(solver->name + "." + command.name);
+                key_name(command.shortcut), command.help.c_str(), false, open.uses(*solver)))
+        actions.act(solver->name + "." + command.name);
   if (entry("Reload shaders", "F5", "Compiles the shaders again; if that fails the present ones stay."))
-    ui.act("shaders.reload");
+    actions.act("shaders.reload");
   divide();
-  if (entry("Cancel loading", "Esc", "Cancels the load; the present scene stays.", false, ui.open.loading()))
-    ui.act("scene.cancel");
+  if (entry("Cancel loading", "Esc", "Cancels the load; the present scene stays.", false, open.loading()))
+    actions.act("scene.cancel");
   end_menu();
 }
 
-void help_menu(Ui& ui) {
+void help_menu(Actions& actions, LogView& log) {
   if (!begin_menu("Help")) return;
-  if (entry("Keys and mouse", "F1", "Navigation and keys.")) ui.act("window.keys");
-  if (entry("First steps", nullptr, "The introduction of the first start.")) ui.act("window.welcome");
+  if (entry("Keys and mouse", "F1", "Navigation and keys.")) actions.act("window.keys");
+  if (entry("First steps", nullptr, "The introduction of the first start.")) actions.act("window.welcome");
   if (entry("Commands", nullptr, "Lists the commands of the console and of scripts in the log."))
-    ui.log.typed.push_back("help");
+    log.typed.push_back("help");
   end_menu();
 }
 
@@ -503,7 +500,12 @@ void draw_menu_bar(Ui& ui, const Area& area) {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(16), 0});
   float menus_end = area.lo.x;
   if (ImGui::BeginMenuBar()) {
-    file_menu(ui), edit_menu(ui), view_menu(ui), camera_menu(ui), render_menu(ui), help_menu(ui);
+    file_menu(ui.actions, ui.open, ui.work.scene_file, ui.recent, ui.has_picture());
+    edit_menu(ui.actions, ui.history, ui.camera.selection);
+    view_menu(ui);
+    camera_menu(ui);
+    render_menu(ui.actions, ui.open, ui.region.picks);
+    help_menu(ui.actions, ui.log);
     menus_end = ImGui::GetCursorScreenPos().x;
     ImGui::EndMenuBar();
   }

@@ -85,9 +85,8 @@ void trace_block(Controls& controls, const commands::Workspace& work, PathsView&
   if (!all.paths.empty())
     value_row("Pixel", fmt::format("{} {}", all.paths[0].pixel % all.width, all.paths[0].pixel / all.width),
               "Column and row, from the upper left.");
-  value_row("Mean light", fmt::format("{:.4g}", work.traced->mean_light),
-            "Mean luminance that these paths bring.");
-  value_row("Without light", share_text(double(work.traced->dark), n), "Paths that bring none.");
+  value_row("Mean light", fmt::format("{:.4g}", work.traced->mean_light), "Mean luminance of these paths.");
+  value_row("Without light", share_text(double(work.traced->dark), n), "Paths that contribute no light.");
   if (const uint64_t lost = all.lost())
     value_row("Events without room", count_text(double(lost)), "Their light is missing in this list.",
               colour::warning);
@@ -107,8 +106,8 @@ void list_block(Controls& controls, const commands::PathInquiry& traced) {
     const double light = recording::luminance_of(events);
     uint32_t brightest = 0;
     for (uint32_t e = 0; e < events.size(); ++e)
-      if (recording::brings_light(events[e]) &&
-          (!recording::brings_light(events[brightest]) ||
+      if (recording::contributes_light(events[e]) &&
+          (!recording::contributes_light(events[brightest]) ||
            luminance(events[e].contribution) > luminance(events[brightest].contribution)))
         brightest = e;
     const bool on = traced.followed == int(i);
@@ -144,9 +143,9 @@ void event_values(const Recording& all, std::span<const Event> events, uint32_t 
   if (e.throughput != vec3(0))
     value_row("Throughput", triple(e.throughput), "On arrival, divided by all probabilities.");
   if (recording::component_of(e) < paths::k_component_count)
-    value_row(recording::brings_light(e) ? "Light" : "Blocked light", triple(e.contribution),
-              recording::brings_light(e) ? "What it adds to the sample of the pixel."
-                                         : "What it would have added.");
+    value_row(recording::contributes_light(e) ? "Light" : "Blocked light", triple(e.contribution),
+              recording::contributes_light(e) ? "What it adds to the sample of the pixel."
+                                              : "What it would have added.");
 }
 
 /// The events of the followed path.
@@ -173,7 +172,7 @@ void follow_block(Controls& controls, const commands::PathInquiry& traced) {
                 .help = "Click to mark it in the picture.",
                 .mark = ink(overlay::event_ink(e)),
                 .on = traced.vertex == i,
-                .faint = lit && !recording::brings_light(e)}))
+                .faint = lit && !recording::contributes_light(e)}))
       follow(i);
   }
   if (traced.vertex >= 0 && traced.vertex < count) event_values(all, events, uint32_t(traced.vertex));
@@ -211,7 +210,7 @@ void noise_block(Controls& controls, const commands::Workspace& work, const Path
   if (!work.noise->problem.empty()) return paragraph(work.noise->problem, colour::warning);
   if (!work.noise->report) return paragraph("Tracing\xE2\x80\xA6");
   const recording::NoiseReport& report = *work.noise->report;
-  if (report.sentence.empty()) return paragraph("No noise: the paths of each pixel bring the same light.");
+  if (report.sentence.empty()) return paragraph("No noise: the paths of each pixel have the same light.");
   paragraph(report.sentence, colour::text);
   gap(4);
   if (!report.cure.settings.empty()) {

@@ -1,6 +1,6 @@
 #pragma once
-// The panel of recorded paths, on the right in the scene's place: paths of a pixel, sorted by the light they
-// bring; the events of one of them; and what the noise comes from.
+// The panel of recorded paths, on the right in the scene's place: paths of a pixel, brightest first; the
+// events of one of them; and what the noise comes from.
 #include <optional>
 
 #include "controls.h"

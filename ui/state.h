@@ -51,6 +51,9 @@ struct Dialog {
   bool as_shown = true;   ///< a PNG is saved as the window shows it
 };
 
+/// OpenGL name of an image file's picture, created on first use; 0 if it cannot be read.
+using PictureOf = std::function<unsigned(const std::string&)>;
+
 /// The left button held on the picture, for the pixel inspector.
 struct HeldPixel {
   std::optional<double> since;  ///< when it was pressed; none: it is not
@@ -73,7 +76,7 @@ struct Ui {
 
   Flight flight;
   Actions actions{work, flight, [this](int frames) { wake(frames); }};
-  // The same, in short.
+  // Short forms.
   template <class... A>
   void act(const std::string& command, const A&... words) {
     actions.act(command, words...);
@@ -94,18 +97,18 @@ struct Ui {
     float azimuth = 0;               ///< of what is turned by it, degrees
     std::optional<LampHandle> lamp;  ///< as it was then
     std::optional<ObjectDrag> object;
-    bool over = false;  ///< Escape has ended it while the button is held
+    bool over = false;  ///< Esc has ended it while the button is held
   } drag;
   /// Ends a drag of an object; it goes back to where the drag began.
   void cancel_object_drag();
   RebuildTime rebuild;
-  /// True: the next click in the picture sets the exposure.
-  bool dropper = false;
-  /// ... does not select: it sets the exposure or the plane of focus, traces paths, or begins a rectangle.
+  bool dropper = false;  ///< the next click in the picture sets the exposure
+  /// True if the next click in the picture does not select: it sets the exposure or the plane of focus,
+  /// traces paths, or begins a rectangle.
   bool click_taken() const {
     return dropper || scene_view.focusing || paths.pick != PathsView::Pick::none || region.picks;
   }
-  /// Ends what the next click was to do.
+  /// Makes the next click select again.
   void take_click();
   /// Turns the camera about what it looks at, once in that many seconds; 0: stops.
   void start_turntable(float seconds);
@@ -148,9 +151,7 @@ struct Ui {
   std::vector<std::string> recent;  ///< files, newest first, from the root
   unsigned texture = 0;             ///< OpenGL name of the picture
   uint32_t texture_width = 0, texture_height = 0;
-  /// OpenGL name of an image file's picture, created on first use; 0 if it cannot be read. Null without a
-  /// window.
-  std::function<unsigned(const std::string&)> picture_of;
+  PictureOf picture_of;     ///< null without a window
   int picture_divisor = 1;  ///< window pixels per picture pixel
   /// Frames to draw until the picture's area reflects the commands so far.
   int frames_to_settle = 0;
@@ -174,11 +175,11 @@ struct Ui {
   /// True if a view is on that inspects the place under the pointer.
   bool inspects_pointer() const;
   /// The last inspected place of a pointer at rest, as inspect.at takes it.
-  std::optional<vec2> asked;
-  /// Inspections known here, and whether a script has inspected a point since the pointer moved: then the
-  /// pointer inspects nothing.
+  std::optional<vec2> inspected_place;
+  /// Number of inspections seen here, and whether a script has inspected a point since the pointer moved:
+  /// then the pointer inspects nothing.
   uint64_t inspections_known = 0;
-  bool script_asked = false;
+  bool script_inspects = false;
 
   AccuracyView accuracy{open};
 
@@ -247,8 +248,11 @@ void draw_inspection(const session::Snapshot& picture, const Area& area, const A
 void keep_view(Ui& ui);
 void draw_splitters(Ui& ui, const Areas& areas);
 void draw_dialogs(Ui& ui);
-void draw_file_dialog(Ui& ui);     ///< part of draw_dialogs
-void draw_leaving_dialog(Ui& ui);  ///< likewise
+/// Part of draw_dialogs. `escape`: Esc was pressed.
+void draw_file_dialog(Actions& actions, const commands::OpenScene& open,
+                      const std::vector<std::string>& recent, const PictureOf& picture_of, Dialog& dialog,
+                      bool escape);
+void draw_leaving_dialog(Ui& ui);  ///< part of draw_dialogs
 void handle_keys(Ui& ui);
 
 /// GLFW's key and modifiers of a name such as "ctrl+z". Throws Error if there is none.

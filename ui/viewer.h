@@ -23,7 +23,7 @@ struct ViewerOptions {
   std::vector<std::string> script;     ///< steps carried out in order, one command a line: commands/script.h
   std::string script_name = "script";  ///< for messages: "NAME:3: ..."
   commands::Variables variables = {};  ///< of the script
-  commands::ReportFolder* report = nullptr;  ///< takes pictures of failures; null: a folder of its own
+  commands::ReportFolder* report = nullptr;  ///< takes pictures of failures; null: a new folder
   bool stay = false;                         ///< the window stays open when the script has ended
   std::function<bool()> interrupted;         ///< ends the window as closing it does; empty: nothing does
 };

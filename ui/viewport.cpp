@@ -45,11 +45,11 @@ std::string layer_help(const std::string& layer) {
 }
 
 /// Layers as buttons; those that do not fit are in a list.
-void layer_buttons(Ui& ui, float room) {
+void layer_buttons(Actions& actions, const commands::OpenScene& open, float room) {
   const OptionInfo* option = plan::find_option("film.layer");
   if (!option) return;
   const std::vector<std::string>& layers = option->choices;
-  const std::string& current = ui.open.setting("film.layer");
+  const std::string& current = open.setting("film.layer");
   const float between = px(4);
   float list_width = px(96);
   const auto width_of = [&](const std::string& layer) { return text_width(capitalised(layer)) + px(18); };
@@ -75,7 +75,7 @@ void layer_buttons(Ui& ui, float room) {
     const std::string name = capitalised(layers[i]);
     if (button(("##layer" + layers[i]).c_str(), letter ? name.substr(0, 1) : name, layers[i] == current,
                letter ? px(26) : width_of(layers[i]), layer_mark(layers[i])))
-      ui.act("set", "film.layer", layers[i]);
+      actions.act("set", "film.layer", layers[i]);
     tooltip(layer_help(layers[i]));
     ImGui::SameLine(0, between);
   }
@@ -86,7 +86,7 @@ void layer_buttons(Ui& ui, float room) {
     if (chosen == static_cast<int>(rest.size())) chosen = -1;
     const bool none = chosen < 0;
     if (choice("##layers", none ? "More" : "", names, chosen, list_width))
-      ui.act("set", "film.layer", rest[static_cast<size_t>(chosen)]);
+      actions.act("set", "film.layer", rest[static_cast<size_t>(chosen)]);
     tooltip("More layers.");
   }
 }
@@ -100,13 +100,13 @@ bool dragging() {
 }
 
 /// The point of the scene under the pointer, if any.
-std::optional<vec3> under_pointer(Ui& ui, const Area& shown) {
-  const session::Probe* rays = ui.camera.probe();
+std::optional<vec3> under_pointer(commands::Navigation& camera, const Area& shown) {
+  const session::Probe* rays = camera.probe();
   const ImVec2 at = ImGui::GetIO().MousePos;
   const float x = (at.x - shown.lo.x) / std::max(1.0f, shown.width());
   const float y = (at.y - shown.lo.y) / std::max(1.0f, shown.height());
-  if (!rays || !ui.camera.view || x < 0 || x > 1 || y < 0 || y > 1) return std::nullopt;
-  const session::PickRay ray = session::pick_ray(ui.camera.view->camera, x, y, ui.camera.aspect);
+  if (!rays || !camera.view || x < 0 || x > 1 || y < 0 || y > 1) return std::nullopt;
+  const session::PickRay ray = session::pick_ray(camera.view->camera, x, y, camera.aspect);
   if (ray.direction == vec3(0)) return std::nullopt;
   const auto hit = rays->nearest(ray.origin, ray.direction);
   if (!hit) return std::nullopt;
@@ -114,14 +114,14 @@ std::optional<vec3> under_pointer(Ui& ui, const Area& shown) {
 }
 
 /// The sun that a drag rotates if there is no environment image: the first one that is on.
-std::optional<uint32_t> first_sun(const Ui& ui) {
-  for (uint32_t i = 0; i < ui.open.lights().size(); ++i)
-    if (ui.open.light(i).kind == scene::LightKind::directional && ui.open.light(i).enabled) return i;
+std::optional<uint32_t> first_sun(const commands::OpenScene& open) {
+  for (uint32_t i = 0; i < open.lights().size(); ++i)
+    if (open.light(i).kind == scene::LightKind::directional && open.light(i).enabled) return i;
   return std::nullopt;
 }
-bool has_environment_image(const Ui& ui) {
-  return ui.open.scene && (ui.open.scene->environment.image != scene::k_none ||
-                           !ui.open.environment_file().empty() || ui.open.sky());
+bool has_environment_image(const commands::OpenScene& open) {
+  return open.scene &&
+         (open.scene->environment.image != scene::k_none || !open.environment_file().empty() || open.sky());
 }
 
 /// Rotates the sky with the pointer: points at infinity stay under it.
@@ -132,9 +132,9 @@ void turn_sky(Ui& ui, float pixels, float width) {
       camera.orthographic ? k_pi : 2 * (camera.perspective() ? std::atan(half_width) : half_width);
   const float degrees = pixels * across / std::max(1.0f, width) * 180 / k_pi;
   // To the right is clockwise seen from above: along the compass, against the image's rotation.
-  if (has_environment_image(ui))
+  if (has_environment_image(ui.open))
     ui.act("environment.set", named("rotation", std::remainder(ui.drag.azimuth - degrees, 360.0f)));
-  else if (const auto sun = first_sun(ui))
+  else if (const auto sun = first_sun(ui.open))
     ui.act("light.set", *sun + 1, named("azimuth", std::remainder(ui.drag.azimuth + degrees, 360.0f)));
   else
     ui.notice("There is no environment image and no sun to turn.", 3);
@@ -142,7 +142,7 @@ void turn_sky(Ui& ui, float pixels, float width) {
 
 /// Stores the start of a drag.
 void begin_drag(Ui& ui, const Area& shown) {
-  ui.drag.point = under_pointer(ui, shown);
+  ui.drag.point = under_pointer(ui.camera, shown);
   ui.drag.lamp.reset(), ui.drag.object.reset();
   ui.drag.over = false;
   const ImVec2 at = ImGui::GetIO().MousePos;
@@ -155,7 +155,7 @@ void begin_drag(Ui& ui, const Area& shown) {
     ui.drag.lamp = lamp_handle_at(ui.marked(), shown, ImGui::GetIO().MousePos);
   if (ui.drag.lamp && ui.drag.lamp->part == LampHandle::Part::surface) ui.drag.lamp.reset();
   ui.drag.azimuth = ui.open.environment_rotation();
-  if (const auto sun = first_sun(ui); sun && !has_environment_image(ui))
+  if (const auto sun = first_sun(ui.open); sun && !has_environment_image(ui.open))
     ui.drag.azimuth = commands::bearing_of(ui.open.light(*sun).direction).azimuth;
 }
 
@@ -275,7 +275,7 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
       return;
     }
     Viewpoint view = *ui.camera.view;
-    if (const auto point = under_pointer(ui, shown))
+    if (const auto point = under_pointer(ui.camera, shown))
       commands::dolly_towards(view, *point, io.MouseWheel);
     else
       commands::dolly(view, io.MouseWheel);
@@ -380,24 +380,24 @@ void inspect_at_rest(Ui& ui, const Area& shown, bool active) {
   static ImVec2 last;
   static double since = 0;
   const ImVec2 at = ImGui::GetIO().MousePos;
-  if (at.x != last.x || at.y != last.y) last = at, since = ui.work.now, ui.script_asked = false;
+  if (at.x != last.x || at.y != last.y) last = at, since = ui.work.now, ui.script_inspects = false;
   if (std::exchange(ui.inspections_known, ui.work.inspections) != ui.work.inspections) {
-    ui.script_asked = true;
-    ui.asked.reset();
+    ui.script_inspects = true;
+    ui.inspected_place.reset();
   }
-  if (ui.script_asked) return;
+  if (ui.script_inspects) return;
   const vec2 place((at.x - shown.lo.x) / std::max(1.0f, shown.width()),
                    (at.y - shown.lo.y) / std::max(1.0f, shown.height()));
   const bool inside = place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
   // During a load the renderer refuses inspections.
   const bool still = !(active && dragging()) && !ui.flight.moving() && !ui.open.loading();
   if (ui.inspects_pointer() && ui.picture_hovered && inside && still) {
-    if (active || ui.asked == place || ui.work.now - since < k_rest) return;
-    ui.asked = place;
+    if (active || ui.inspected_place == place || ui.work.now - since < k_rest) return;
+    ui.inspected_place = place;
     ++ui.inspections_known;
     ui.act("inspect.at", place.x, place.y);
-  } else if (ui.asked) {
-    ui.asked.reset();
+  } else if (ui.inspected_place) {
+    ui.inspected_place.reset();
     ui.act("inspect.none");
   }
 }
@@ -475,7 +475,7 @@ void draw_toolbar(Ui& ui, const Area& area) {
   }
   right -= px(8);
   ImGui::SetCursorScreenPos({area.lo.x + pad, y});
-  layer_buttons(ui, right - area.lo.x - pad);
+  layer_buttons(ui.actions, ui.open, right - area.lo.x - pad);
   ImGui::End();
 }
 

@@ -286,7 +286,7 @@ Matrix parse_matrix(const std::string& text, const std::string& where, const fs:
   for (const Setting& s : m.settings)
     if (!s.beside.empty() && (s.beside == s.name || !find_setting(m, s.beside)))
       throw_error(top.where() + "settings",
-                  "'{}' is to be held against '{}', and no other setting has that name", s.name, s.beside);
+                  "'{}' is compared with '{}', but no other setting has that name", s.name, s.beside);
   for (const Node& node : top.at("scenes").list())
     m.scenes.push_back(read_scene(node, m, folder, budgets, reference_samples));
   return m;

@@ -91,7 +91,7 @@ std::optional<size_t> find_setting(const Matrix& matrix, const std::string& name
 /// Reads a matrix; `where` locates messages, `folder` is what relative scene files start from. Throws Error,
 /// located at the element ("m.json: settings[1].set"), for JSON that does not parse, unknown keys, wrong
 /// types, values out of range, unknown settings, programs that cannot be run, names used twice, scenes that
-/// do not exist, and settings without a budget. k_matrix_help says what may stand in it.
+/// do not exist, and settings without a budget. k_matrix_help describes the format.
 Matrix parse_matrix(const std::string& text, const std::string& where, const std::filesystem::path& folder);
 /// Likewise, from a file; relative scene files start from its folder.
 Matrix read_matrix(const std::filesystem::path& file);

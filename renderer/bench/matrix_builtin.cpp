@@ -86,24 +86,23 @@ Matrix builtin_matrix(const std::string& name, const std::filesystem::path& scen
 
 const char* const k_matrix_help = R"(
 A matrix file is a JSON object; an unknown key is an error:
-  name       of the matrix [the file's]
-  about      a text, for people
-  repeats    renders of each cell, 1 to 100 [3]; with 1 it stays unknown what of a factor is noise
-  warmup     samples a pixel rendered before the clock runs, in every cell (of what a solver is long in preparing
-             only the beginning) [8]
-  seed       of the first repeat; every further one has the next [1]
-  reference  {"samples": N, "seed": N}: of the long plain path-traced renders taken for the truth [4096, 900001]
-  set        {"KEY": VALUE}: settings for all cells and references (keys: lucerna render --help)
-  as_seen    true: the page is of the error as seen alone [false]
-  budgets    what ends a render; lists of {"samples": [..], "errors": [..], "seconds": [..]}
+  name       name of the matrix [that of the file]
+  about      description
+  repeats    renders of each cell, 1 to 100 [3]; 1 gives no estimate of which differences are noise
+  warmup     samples per pixel before the clock starts, in every cell; long preparation is not completed in it [8]
+  seed       seed of the first repeat; each further one takes the next [1]
+  reference  {"samples": N, "seed": N}: the path-traced reference pictures [4096, 900001]
+  set        {"KEY": VALUE}: settings of all cells and references (keys: lucerna render --help)
+  as_seen    true: the page has only the error as seen [false]
+  budgets    what ends a render: {"samples": [..], "errors": [..], "seconds": [..]}
   scenes     [{"file": F.gltf (relative to the matrix file), "size": "WxH", "name", "camera", "set", "budgets",
               "reference_samples"}]
   settings   [{"name", "about", "set": {..}, "curve", "program", "beside", "budget": "samples" |
-              "errors" | "seconds"}]; the first is what the others are held against, and besides it the setting named
-              as "beside". With "program" (another lucerna) that one renders, by its verb render. Without "budget", adaptive settings take errors, the others
-              samples. Settings of one "curve" (a text) differ in how many records a solver comes to; the page joins
-              them by a line, error against records.
-The smallest one:
+              "errors" | "seconds"}]
+The first setting is the baseline; "beside" names another one to compare with. "program" is another lucerna that
+renders these cells. Without "budget", adaptive settings end at errors, others at samples. Settings with the same
+"curve" (a text) differ in their number of records; the page joins them by a line of error against records.
+Example:
   {"budgets": {"samples": [64], "errors": [0.1]},
    "scenes": [{"file": "cornell.gltf", "size": "128x128"}],
    "settings": [{"name": "plain"}, {"name": "adaptive", "set": {"sampling.mode": "adaptive"}}]}

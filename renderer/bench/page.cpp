@@ -99,21 +99,21 @@ std::string seen_times(const Json& report) {
   for (const Json& scene : report.at("scenes"))
     for (const Json& s : scene.at("settings"))
       if (!s.contains("seen_time_to")) return "";
-  return "<h3>The error as it is seen</h3>\n<p class=\"dim\">" + escape_markup(k_about_seen) + "</p>\n" +
+  return "<h3>The error as seen</h3>\n<p class=\"dim\">" + escape_markup(k_about_seen) + "</p>\n" +
          time_table(report, "seen_time");
 }
 
 std::string times(const Json& report) {
-  return "<h2>Time to an error</h2>\n<p>Seconds of rendering, loading and compiling left out: median of the "
-         "repeats, the range below it. <b>~</b> marks errors that were not reached: the time is what it "
-         "would be if the squared error went on falling as one over the time. <b>&lt;</b>: reached before "
-         "the first measurement. <b>–</b>: not reached, nor to be foretold: most of the time went by "
-         "before the first sample (as in building a cache), or the reference’s noise hides the "
-         "error.</p>\n<h3>The whole picture, true error</h3>\n" +
+  return "<h2>Time to an error</h2>\n<p>Seconds of rendering, without loading and compiling: median of the "
+         "repeats, and their range below it. <b>~</b>: not reached; extrapolated, with the squared error "
+         "proportional to one over the time. <b>&lt;</b>: reached before the first measurement. "
+         "<b>–</b>: not reached and not predictable: most of the time passed before the first sample (as in "
+         "building a cache), or the reference’s noise hides the error.</p>\n<h3>The whole picture, true "
+         "error</h3>\n" +
          time_table(report, "time") +
          "<h3>Nine tiles in ten, estimated error</h3>\n<p class=\"dim\">The renderer’s own estimate for "
-         "tiles of 16×16 pixels, each relative to its own brightness: what the eye meets in the difficult "
-         "corners, and what adaptive sampling works on.</p>\n" +
+         "tiles of 16×16 pixels, each relative to its own brightness: the visible error of difficult parts, "
+         "which adaptive sampling reduces.</p>\n" +
          time_table(report, "tiles_time") + seen_times(report) + relative_times(report);
 }
 
@@ -121,8 +121,8 @@ std::string index_table(const Json& report) {
   std::string html =
       "<h2>Relative performance</h2>\n<p>1 / (mean squared error × seconds): twice the figure is the same "
       "error in half the time. The best setting of each scene has 100; the bars are the mean over the "
-      "scenes. From the largest budget of each setting. It sees the whole picture only: what is gained in "
-      "the difficult tiles stands in the table above.</p>\n<div class=\"wrap\"><table><tr><th "
+      "scenes. From the largest budget of each setting. It measures the whole picture only; the table above "
+      "has the difficult tiles.</p>\n<div class=\"wrap\"><table><tr><th "
       "class=\"l\">setting</th><th class=\"l\">mean over scenes</th>";
   for (const Json& scene : report.at("scenes"))
     html += fmt::format("<th>{}</th><th>factor</th>", escape_markup(text_of(scene, "name")));

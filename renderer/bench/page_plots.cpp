@@ -131,8 +131,7 @@ std::string plots(const Json& report, const Json& scene) {
              "True error of the whole picture. The band is the range over the repeats, circles are the ends "
              "of renders; the dotted lines are 5, 2 and 1 %."},
         View{"tiles_curve", "tiles_decile", "noise of the worst tenth of the tiles",
-             "Estimated noise that a tenth of the tiles are over, each held against its own pixels: the "
-             "difficult "
+             "Estimated noise that a tenth of the tiles exceed, relative to their own pixels: the difficult "
              "parts of the picture."}}) {
     std::vector<PlotLine> lines;
     for (const Json& s : scene.at("settings")) lines.push_back(line_of(report, s, v.curve, v.figure));

@@ -167,9 +167,9 @@ std::string make_seen_page(const Json& report, const fs::path& folder) {
   if (!report.at("scenes").empty()) {
     html += means(report) + errors_table(report);
     html +=
-        "<h2>Time to an error as seen</h2>\n<p>Through the ends of the renders. <b>~</b>: not reached, the "
-        "time is what it would be if the squared error went on falling as one over the time; <b>&lt;</b>: "
-        "reached by the shortest render; <b>–</b>: cannot be foretold.</p>\n" +
+        "<h2>Time to an error as seen</h2>\n<p>From the ends of the renders. <b>~</b>: not reached; "
+        "extrapolated, with the squared error proportional to one over the time; <b>&lt;</b>: reached by the "
+        "shortest render; <b>–</b>: not predictable.</p>\n" +
         time_table(report, "seen_time");
     for (const Json& scene : report.at("scenes")) html += seen_part(report, scene, folder);
   }

@@ -193,16 +193,14 @@ std::string about_series(const Json& s) {
 }
 
 constexpr const char* k_about_slopes =
-    "Noise is by how much renders with other seeds differ; bias is what their mean is off from the truth, by "
-    "products of different renders' differences from truths of their own, so that no noise is left in it; "
-    "the "
-    "error is that of one render. Slopes are powers, by least squares on the logarithms, their intervals by "
-    "leaving out one render after the other. A round's variance goes with 1 / r², its bias with r² where "
-    "light "
-    "bends by no more than a parabola within a disc; rounds are averaged, so that noise falls with the power "
-    "-alpha / 2 and bias with alpha - 1, and where the radius rests, noise with -1/2. At a caustic's sharp "
-    "rim "
-    "the blur is as wide as the disc whatever its size, and bias falls more slowly.";
+    "Noise: standard deviation of renders with different seeds. Bias: difference of their mean from the "
+    "truth, from products of the differences of two renders from two independent references, so that it "
+    "contains no noise. Error: that of one render. Slopes are exponents, by least squares on the logarithms, "
+    "with jackknife intervals. The variance of a pass goes with 1 / r², its bias with r² if light is at most "
+    "parabolic within a disc. Passes are averaged, so noise falls with the power -alpha / 2 and bias with "
+    "alpha - 1; where the radius rests, noise with -1/2. At the sharp rim of a caustic the blur is as wide "
+    "as "
+    "the disc whatever its size, and bias falls more slowly.";
 
 }  // namespace
 

@@ -188,7 +188,7 @@ std::optional<ReferenceInfo> find_reference(const fs::path& folder, const SceneE
     else if (info.key != key)
       why = "made of another scene, with other settings or by another version";
     else if (info.samples < scene.reference_samples)
-      why = fmt::format("has {} samples, {} are wanted", info.samples, scene.reference_samples);
+      why = fmt::format("has {} samples instead of {}", info.samples, scene.reference_samples);
     else if (!reference.noise)
       why = "has no estimate of its own noise";
   } catch (const Error& e) {

@@ -37,7 +37,7 @@ struct Document {
   std::map<std::string, std::string> settings;          ///< by key
   std::vector<scene::Light> lights;                     ///< as commands number them
   std::vector<Material> materials;                      ///< likewise
-  /// None that equals its file's.
+  /// Only objects that are not where their file has them.
   Objects objects;
   float environment_scale = 1;
   float environment_rotation = 0;      ///< degrees

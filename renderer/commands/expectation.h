@@ -34,7 +34,7 @@ class WordReader {
   double number(const std::string& what, double lo, double hi);
   /// Checks that no word is left; `expected`: what could follow.
   void end(const std::string& expected);
-  /// The words from here on, for readers of their own, which then skip() those that they have taken.
+  /// The words from here on, for other readers, which then skip() those that they have taken.
   std::vector<std::string> remaining() const {
     return {words_.begin() + static_cast<long>(at_), words_.end()};
   }

@@ -20,7 +20,7 @@ class Exposure {
   /// True if the latest request is done. Throws Error if it has failed.
   bool done() const;
 
-  /// Another scene is requested: an exposure that is set from now on is meant for it.
+  /// Call when another scene is requested: an exposure that is set from now on belongs to it.
   void begin_load() { given_ = false; }
   void note_given() { given_ = true; }
   /// A scene has been shown.

@@ -29,7 +29,7 @@ extern const std::vector<std::string> k_compare_views;
 
 class HeldResults {
  public:
-  static constexpr size_t k_most = 8;  ///< each takes 12 bytes a pixel
+  static constexpr size_t k_most = 8;  ///< results that can be held; each takes a vec3 per pixel
 
   /// In the order in which they were held.
   const std::vector<HeldResult>& list() const { return list_; }

@@ -1,5 +1,5 @@
 #pragma once
-// Words of commands for the camera's lens.
+// Parameters of commands for the camera's lens.
 #include <string>
 #include <vector>
 
@@ -20,10 +20,10 @@ void set_projection(scene::Camera& camera, const std::string& name);
 std::vector<std::string> projection_names();
 /// If a lens has no plane of focus: puts it at the surface in the middle of the picture, else at the pivot.
 void focus_somewhere(const OpenScene& open, Viewpoint& view, float aspect);
-/// The lens as these words of a line, with a blank before each.
+/// The lens as parameters of a command line, each after a blank.
 std::string lens_words(const scene::Camera& camera);
 
-/// Places the view by the words of camera.place. Throws Error if they contradict each other.
+/// Places the view by the arguments of camera.place. Throws Error if they contradict each other.
 void place_by_words(Viewpoint& view, const Arguments& a, const OpenScene& open, float aspect);
 
 }  // namespace lucerna::commands

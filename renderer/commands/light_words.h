@@ -1,5 +1,5 @@
 #pragma once
-// Words of commands that describe a light: its strength, colour, place and cones.
+// Parameters of commands that describe a light: its strength, colour, place and cones.
 #include <string>
 #include <vector>
 

@@ -22,19 +22,19 @@ std::string LiveDifference::shown_light(const OpenScene& open) {
 }
 
 void LiveDifference::take_light() {
-  if (!is_ready(asked_)) return;
+  if (!is_ready(requested_)) return;
   try {
-    light_ = asked_.get();
-    light_of_ = asked_for_;
+    light_ = requested_.get();
+    light_of_ = requested_for_;
     refused_ = false;
     ++version_;
   } catch (const std::exception& error) {
     light_.reset(), figures_.reset();
-    light_of_ = asked_for_;
+    light_of_ = requested_for_;
     refused_ = true;
     problem_ = error.what();
   }
-  asked_ = {};
+  requested_ = {};
 }
 
 void LiveDifference::take_figures() {
@@ -51,7 +51,7 @@ void LiveDifference::take_figures() {
 }
 
 void LiveDifference::restart() {
-  asked_ = {}, light_.reset(), figures_.reset(), light_of_.clear();
+  requested_ = {}, light_.reset(), figures_.reset(), light_of_.clear();
   oldest_ = version_ + 1;
 }
 
@@ -78,9 +78,9 @@ void LiveDifference::follow(const OpenScene& open, const HeldResult* held) {
 
   const bool old = now != light_of_ || (light_ && s.mean_samples > light_->samples &&
                                         (rests(s) || s.mean_samples >= k_more_light * light_->samples));
-  if (old && !asked_.valid()) {
-    asked_for_ = now;
-    asked_ = open.session.held_picture(open.id());
+  if (old && !requested_.valid()) {
+    requested_for_ = now;
+    requested_ = open.session.held_picture(open.id());
   }
   const bool fits = light_ && !refused_ && light_->light.size() == held->picture->light.size();
   const bool due =

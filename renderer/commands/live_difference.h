@@ -39,8 +39,8 @@ class LiveDifference {
     film::LightDifference figures;
     uint64_t held = 0, version = 0;
   };
-  std::shared_future<std::shared_ptr<const session::HeldPicture>> asked_;
-  std::string asked_for_;  ///< shown_light() of the request
+  std::shared_future<std::shared_ptr<const session::HeldPicture>> requested_;
+  std::string requested_for_;  ///< shown_light() of the request
   std::shared_ptr<const session::HeldPicture> light_;
   std::string light_of_;
   uint64_t version_ = 0, oldest_ = 0;  ///< of light_; figures of older light do not count

@@ -69,7 +69,7 @@ std::string group_named(OpenScene& open, const std::string& which) {
   std::vector<std::string> names;
   for (const scene::LightGroup& group : open.light_groups().groups) names.push_back(group.name);
   if (std::find(names.begin(), names.end(), which) != names.end()) return which;
-  throw Error("", fmt::format("the scene has no group of lights '{}'{}; there are: {}", which,
+  throw Error("", fmt::format("the scene has no light group '{}'{}; there are: {}", which,
                               suggestion(which, names), fmt::join(names, ", ")));
 }
 
@@ -87,7 +87,7 @@ const scene::LightMix& preset_named(const scene::MixPresets& presets, const std:
 void warn_of_groups(OpenScene& open, const std::string& name, const scene::LightMix& mix) {
   const std::vector<std::string> gone = scene::unknown_groups(mix, open.light_groups());
   if (!gone.empty())
-    log::warning("preset '{}': the scene has no group of lights {}; the others are set", name,
+    log::warning("preset '{}': the scene has no light group {}; the others are set", name,
                  fmt::join(gone, ", "));
 }
 

@@ -56,7 +56,7 @@ void add_trace(Workspace& work) {
       {.name = "inspect.follow",
        .help =
            "Follows one of the traced paths: the others are drawn faintly, and its events are listed in the "
-           "log. 1 is the path that brings the most light; 0 follows none.",
+           "log. 1 is the path with the most light; 0 follows none.",
        .parameters = {{.name = "path", .type = Type::integer, .lo = 0, .hi = double(k_most_paths)},
                       {.name = "event",
                        .type = Type::integer,
@@ -100,11 +100,10 @@ void add_noise(Workspace& work) {
   };
   work.registry.add(
       {.name = "inspect.noise",
-       .help =
-           "Explains the noise of a rectangle of the picture, by default of all of it: which component, way "
-           "of "
-           "light, light and material it comes from, and which setting would reduce it. A short trial of the "
-           "picture's paths; the picture does not change. A script continues when it is reported.",
+       .help = "Explains the noise of a rectangle of the picture, by default of all of it: which component, "
+               "kind of path, light and material it comes from, and which setting would reduce it. A short "
+               "trial of the "
+               "picture's paths; the picture does not change. A script continues when it is reported.",
        .parameters = {part("right", "picture widths"), part("down", "picture heights"),
                       part("width", "picture widths"), part("height", "picture heights")},
        .run =

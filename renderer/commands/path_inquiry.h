@@ -17,8 +17,8 @@ struct PathInquiry {
   std::shared_future<std::shared_ptr<const recording::Recording>> traced;
   std::shared_ptr<const recording::Recording> paths;  ///< null until they are traced
   std::vector<uint32_t> order;                        ///< indices of the paths, the brightest first
-  double mean_light = 0;                              ///< mean luminance that the paths bring
-  size_t dark = 0;                                    ///< paths that bring none
+  double mean_light = 0;                              ///< mean luminance of the paths
+  size_t dark = 0;                                    ///< paths without light
   std::string problem;                                ///< why there are none
   int followed = -1;                                  ///< place in `order`; -1: none
   int vertex = -1;                                    ///< its marked event; -1: none

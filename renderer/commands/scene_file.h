@@ -34,7 +34,7 @@ class SceneFile {
   session::Saved save(const std::string& file, bool replace, std::vector<scene::Camera> cameras);
   /// Call regularly: notes what has been written.
   void follow();
-  /// Another scene: nothing is to be saved.
+  /// Call for another scene: it has no unsaved edits.
   void begin_scene();
   /// The present state needs no saving: the program has made the last change by itself.
   void note_clean() { saved_at_ = history_.position(); }

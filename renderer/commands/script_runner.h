@@ -27,7 +27,7 @@ extern const char* const k_wait_help;
 
 /// What the owner of a runner does; each may be empty.
 struct ScriptHost {
-  /// The runner is to be called again soon; with a window: draws that number of frames before.
+  /// Requests another advance() soon; with a window, after that number of drawn frames.
   std::function<void(int frames)> wake = {};
   /// The program ends with this status.
   std::function<void(int status)> quit = {};

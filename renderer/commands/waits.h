@@ -11,7 +11,7 @@ namespace lucerna::commands {
 
 class Workspace;
 
-/// A wait that has been read: done() is polled, and throws Error if it never will be.
+/// A parsed wait. done() is polled; it throws Error if the condition can never hold.
 struct Wait {
   std::string condition;        ///< for messages
   std::optional<double> limit;  ///< seconds; none: the usual one

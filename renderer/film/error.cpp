@@ -28,8 +28,8 @@ double student_90(double degrees) {
   return z + (g1 + (g2 + g3 / n) / n) / n;
 }
 
-shared::BlockRecords mixed_records(const shared::BlockRecords& records, const shared::BlockError& block) {
-  shared::BlockRecords r = records;
+shared::BlockLookups mixed_lookups(const shared::BlockLookups& lookups, const shared::BlockError& block) {
+  shared::BlockLookups r = lookups;
   if (!(block.unmixed > 0)) return r;
   const float mixed = block.luminance[0] / block.unmixed;
   for (float& value : r.interpolation) value *= mixed;
@@ -38,12 +38,12 @@ shared::BlockRecords mixed_records(const shared::BlockRecords& records, const sh
   return r;
 }
 
-RecordsError records_error(std::span<const shared::BlockRecords> blocks) {
-  using shared::k_record_lanes;
+LookupsError lookups_error(std::span<const shared::BlockLookups> blocks) {
+  using shared::k_lookup_lanes;
   double pixels = 0;
   std::array<double, 2> interpolation{};
-  std::array<double, 2 * k_record_lanes> noise{}, left{};
-  for (const shared::BlockRecords& b : blocks) {
+  std::array<double, 2 * k_lookup_lanes> noise{}, left{};
+  for (const shared::BlockLookups& b : blocks) {
     pixels += b.pixels;
     for (size_t k = 0; k < 2; ++k) interpolation[k] += b.interpolation[k];
     for (size_t k = 0; k < noise.size(); ++k) noise[k] += b.noise[k], left[k] += b.interpolation_noise[k];
@@ -51,12 +51,12 @@ RecordsError records_error(std::span<const shared::BlockRecords> blocks) {
   if (pixels == 0) return {};
   // Products of the two paths' sums: their mean is the square, without the paths' noise.
   double variance = 0, square = interpolation[0] * interpolation[1];
-  for (size_t k = 0; k < k_record_lanes; ++k) {
-    variance += noise[k] * noise[k_record_lanes + k] / k_record_lanes;
-    square -= left[k] * left[k_record_lanes + k] / k_record_lanes;
+  for (size_t k = 0; k < k_lookup_lanes; ++k) {
+    variance += noise[k] * noise[k_lookup_lanes + k] / k_lookup_lanes;
+    square -= left[k] * left[k_lookup_lanes + k] / k_lookup_lanes;
   }
   return {std::sqrt(std::max(variance, 0.0)) / pixels, std::sqrt(std::max(square, 0.0)) / pixels,
-          k_record_lanes};
+          k_lookup_lanes};
 }
 
 double blur_error(std::span<const shared::BlockError> blocks) {
@@ -66,13 +66,13 @@ double blur_error(std::span<const shared::BlockError> blocks) {
 }
 
 double TileError::half_width_90() const {
-  if (!(records.noise > 0)) return student_90(degrees) * standard_error + records.interpolation;
-  const double by_paths = standard_error * standard_error, by_records = records.noise * records.noise;
-  const double both = by_paths + by_records;
+  if (!(lookups.noise > 0)) return student_90(degrees) * standard_error + lookups.interpolation;
+  const double by_paths = standard_error * standard_error, by_lookups = lookups.noise * lookups.noise;
+  const double both = by_paths + by_lookups;
   const double free =
       both * both /
-      ((by_paths > 0 ? by_paths * by_paths / degrees : 0) + by_records * by_records / records.degrees);
-  return student_90(free) * std::sqrt(both) + records.interpolation;
+      ((by_paths > 0 ? by_paths * by_paths / degrees : 0) + by_lookups * by_lookups / lookups.degrees);
+  return student_90(free) * std::sqrt(both) + lookups.interpolation;
 }
 
 namespace {
@@ -103,21 +103,21 @@ bool without_evidence(const shared::BlockError& block) {
 
 RelativeError relative_error(const Film& film, std::span<const uint32_t> blocks) {
   Quadrants quadrants;
-  double pixels = 0, records = 0, interpolation = 0;
+  double pixels = 0, lookups = 0, interpolation = 0;
   bool unknown = false;
   for (const uint32_t b : blocks) {
     const shared::BlockError& e = film.errors()[b];
     quadrants.add(e);
     unknown = unknown || without_evidence(e);
     for (const float n : e.quadrant_pixels) pixels += n;
-    records += e.records_relative, interpolation += e.interpolation_relative;
+    lookups += e.lookup_noise_relative, interpolation += e.interpolation_relative;
   }
   return {unknown ? std::max(quadrants.relative(), 1.0) : quadrants.relative(),
-          quadratic_mean(records, pixels), quadratic_mean(interpolation, pixels)};
+          quadratic_mean(lookups, pixels), quadratic_mean(interpolation, pixels)};
 }
 
 TileError tile_error(std::span<const shared::BlockError> blocks,
-                     std::span<const shared::BlockRecords> records) {
+                     std::span<const shared::BlockLookups> lookups) {
   TileError tile;
   double &variance = tile.variance, &fourth = tile.fourth;
   for (const shared::BlockError& b : blocks) {
@@ -133,16 +133,16 @@ TileError tile_error(std::span<const shared::BlockError> blocks,
   tile.standard_error = std::sqrt(variance) / tile.pixels;
   tile.degrees = fourth > 0 ? 3 * variance * variance / fourth : tile.pixels;
   Quadrants quadrants;
-  double by_records = 0, by_interpolation = 0;
+  double by_lookups = 0, by_interpolation = 0;
   for (const shared::BlockError& b : blocks) {
     quadrants.add(b);
     tile.unknown = tile.unknown || without_evidence(b);
-    by_records += b.records_relative, by_interpolation += b.interpolation_relative;
+    by_lookups += b.lookup_noise_relative, by_interpolation += b.interpolation_relative;
   }
   tile.relative = tile.unknown ? std::max(quadrants.relative(), 1.0) : quadrants.relative();
-  tile.records = records_error(records);
-  tile.records.interpolation = std::hypot(tile.records.interpolation, blur_error(blocks));
-  tile.relative_records = quadratic_mean(by_records, tile.pixels);
+  tile.lookups = lookups_error(lookups);
+  tile.lookups.interpolation = std::hypot(tile.lookups.interpolation, blur_error(blocks));
+  tile.relative_lookup_noise = quadratic_mean(by_lookups, tile.pixels);
   tile.relative_interpolation = quadratic_mean(by_interpolation, tile.pixels);
   return tile;
 }
@@ -153,15 +153,15 @@ std::vector<TileError> tile_errors(const Film& film, uint32_t side) {
   for (uint32_t y = 0; y < film.blocks_down(); y += step)
     for (uint32_t x = 0; x < film.blocks_across(); x += step) {
       std::vector<shared::BlockError> blocks;
-      std::vector<shared::BlockRecords> records;
+      std::vector<shared::BlockLookups> lookups;
       for (uint32_t v = y; v < std::min(y + step, film.blocks_down()); ++v)
         for (uint32_t u = x; u < std::min(x + step, film.blocks_across()); ++u) {
           const uint32_t b = v * film.blocks_across() + u;
           blocks.push_back(film.errors()[b]);
-          if (film.record_errors_complete())
-            records.push_back(mixed_records(film.records()[b], film.errors()[b]));
+          if (film.lookup_errors_complete())
+            lookups.push_back(mixed_lookups(film.lookup_errors()[b], film.errors()[b]));
         }
-      tiles.push_back(tile_error(blocks, records));
+      tiles.push_back(tile_error(blocks, lookups));
     }
   if (film.lookup_bias_known()) count_shared_noise(tiles, (film.blocks_across() + step - 1) / step);
   return tiles;
@@ -216,7 +216,7 @@ void mark_heavy_tails(std::span<TileError> tiles, uint32_t across, double lumina
           pixels > 0 ? std::sqrt(variance * tile.pixels / pixels) / std::max(tile.pixels, 1.0) : 0;
       const double by_paths =
           std::max(tile.standard_error, around * std::max(tile.luminance, luminance_floor));
-      const bool matters = by_paths >= k_small * (tile.records.noise + tile.records.interpolation);
+      const bool matters = by_paths >= k_small * (tile.lookups.noise + tile.lookups.interpolation);
       tile.heavy_tailed =
           matters && (few(variance, fourth, pixels) || few(tile.variance, tile.fourth, tile.pixels));
     }
@@ -238,12 +238,12 @@ TileSpread tile_spread(std::span<const TileError> tiles, const std::function<dou
 ImageError image_error(std::span<const shared::BlockError> blocks) {
   ImageError image;
   std::array<double, 5> variance{}, seen{};
-  double fourth = 0, records = 0, interpolation = 0;
-  double seen_fourth = 0, seen_records = 0, seen_interpolation = 0;
+  double fourth = 0, lookups = 0, interpolation = 0;
+  double seen_fourth = 0, seen_lookup_noise = 0, seen_interpolation = 0;
   for (const shared::BlockError& b : blocks) {
     image.pixels += b.pixels, fourth += b.fourth;
-    records += b.records, interpolation += b.interpolation;
-    seen_records += b.records_relative, seen_interpolation += b.interpolation_relative;
+    lookups += b.lookup_noise, interpolation += b.interpolation;
+    seen_lookup_noise += b.lookup_noise_relative, seen_interpolation += b.interpolation_relative;
     image.white += b.white, image.dark += b.dark, seen_fourth += b.seen_fourth;
     if (without_evidence(b)) image.unknown += b.pixels;
     for (int k = 0; k < 5; ++k)
@@ -256,10 +256,10 @@ ImageError image_error(std::span<const shared::BlockError> blocks) {
     image.seen_rms[k] = std::sqrt(seen[k] / image.pixels);
   }
   image.unknown /= image.pixels, image.white /= image.pixels, image.dark /= image.pixels;
-  image.seen_records = quadratic_mean(seen_records, image.pixels);
+  image.seen_lookup_noise = quadratic_mean(seen_lookup_noise, image.pixels);
   image.seen_interpolation = quadratic_mean(seen_interpolation, image.pixels);
   image.seen_degrees = seen_fourth > 0 ? 3 * seen[0] * seen[0] / seen_fourth : image.pixels;
-  image.records_rms = quadratic_mean(records, image.pixels);
+  image.lookup_noise_rms = quadratic_mean(lookups, image.pixels);
   image.interpolation_rms = quadratic_mean(interpolation, image.pixels);
   image.degrees = fourth > 0 ? 3 * variance[0] * variance[0] / fourth : image.pixels;
   return image;

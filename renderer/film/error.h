@@ -11,10 +11,10 @@
 // Parts of the error of a picture and of its tiles:
 // - paths: noise of the samples, from the two independently scrambled halves of the film. Falls with
 //   more samples.
-// - records: noise of records, common to all samples that read them.
-// - interpolation: mean error of lookups, as an absolute value: constant between records; for photons,
-//   the blur of their discs. Reported to the user as the bias of lookups.
-// The last two are known if the film has them (Film::record_errors_complete(), lookup_bias_known()), and
+// - lookup noise: noise of stored light, common to all samples that read the same of it.
+// - interpolation: mean error of lookups, as an absolute value: of interpolation between stored values, and
+//   of blur. Reported to the user as the bias of lookups.
+// The last two are known if the film has them (Film::lookup_errors_complete(), lookup_bias_known()), and
 // 0 without lookups. Their sum: base/error_sum.h. Other errors of biased solvers are not included.
 //
 // If lookups find nothing in any sample of a block (too few photons), the halves agree and show no
@@ -42,13 +42,13 @@ struct SeenRange {
 SeenRange seen_range(double ev, uint32_t curve);
 
 /// Errors of lookups in a mean over some blocks, in luminance; `degrees`: degrees of freedom of noise^2.
-struct RecordsError {
+struct LookupsError {
   double noise = 0, interpolation = 0, degrees = 0;
 };
-RecordsError records_error(std::span<const shared::BlockRecords> blocks);
+LookupsError lookups_error(std::span<const shared::BlockLookups> blocks);
 /// Errors of a block with the present mix of lights: proportional to its luminance, assuming equal relative
 /// errors in all light groups.
-shared::BlockRecords mixed_records(const shared::BlockRecords& records, const shared::BlockError& block);
+shared::BlockLookups mixed_lookups(const shared::BlockLookups& lookups, const shared::BlockError& block);
 /// Blur error of a mean over blocks, in luminance, as an absolute value. The halves of the film estimate it
 /// independently, so the square of the root of their product (0 if their signs differ) is free of their noise
 /// on average.
@@ -75,11 +75,12 @@ struct TileError {
   double relative = 0;
   double variance = 0, fourth = 0;  ///< sums of v and v^2, from which the two above come
   double difference = 0;            ///< half of the difference of `luminance` in the film's two halves
-  RecordsError records;  ///< errors of the mean; pixels that read the same records have correlated errors
+  LookupsError
+      lookups;  ///< errors of the mean; pixels that read the same stored light have correlated errors
   /// Root mean squares over the pixels of the lookup errors, relative as in `relative`.
-  double relative_records = 0, relative_interpolation = 0;
+  double relative_lookup_noise = 0, relative_interpolation = 0;
   /// Sum of the three relative ones: the estimated error of the tile.
-  double relative_sum() const { return error_sum(relative, relative_records, relative_interpolation); }
+  double relative_sum() const { return error_sum(relative, relative_lookup_noise, relative_interpolation); }
   bool unknown = false;  ///< a block is without_evidence(); `relative` is then at least 1
   /// Set by mark_heavy_tails(): the interval below is not valid for this noise.
   bool heavy_tailed = false;
@@ -88,14 +89,15 @@ struct TileError {
   /// by Student's t, with their degrees of freedom by Satterthwaite, and interpolation's part.
   double half_width_90() const;
 };
-/// `records`: of the same blocks, or empty. RecordsError::interpolation combines the interpolation error of
-/// records and the blur in quadrature, as their signs are independent.
+/// `lookups`: of the same blocks, or empty. LookupsError::interpolation combines the errors of interpolation
+/// and of blur in quadrature, as their signs are independent.
 TileError tile_error(std::span<const shared::BlockError> blocks,
-                     std::span<const shared::BlockRecords> records = {});
+                     std::span<const shared::BlockLookups> lookups = {});
 
-/// Only TileError::relative, relative_records and relative_interpolation, from these blocks of film.errors().
+/// Only TileError::relative, relative_lookup_noise and relative_interpolation, from these blocks of
+/// film.errors().
 struct RelativeError {
-  double paths = 0, records = 0, interpolation = 0;
+  double paths = 0, lookup_noise = 0, interpolation = 0;
 };
 RelativeError relative_error(const Film& film, std::span<const uint32_t> blocks);
 
@@ -139,14 +141,15 @@ struct ImageError {
   /// if the samples represent its noise.
   double degrees = 0;
   /// Likewise, from the errors of lookups in each pixel; of the sum.
-  double records_rms = 0, interpolation_rms = 0;
+  double lookup_noise_rms = 0, interpolation_rms = 0;
   double unknown = 0;  ///< share of the pixels in blocks without_evidence()
 
   /// Root mean squares over the pixels of the errors as seen, of the sum and of the components.
   std::array<double, 5> seen_rms{};
-  double seen_degrees = 0;                          ///< degrees of freedom of seen_rms[0]^2
-  double seen_records = 0, seen_interpolation = 0;  ///< like records_rms and interpolation_rms, as seen
-  double white = 0, dark = 0;                       ///< shares of pixels not below white, and below the floor
+  double seen_degrees = 0;  ///< degrees of freedom of seen_rms[0]^2
+  double seen_lookup_noise = 0,
+         seen_interpolation = 0;  ///< like lookup_noise_rms and interpolation_rms, as seen
+  double white = 0, dark = 0;     ///< shares of pixels not below white, and below the floor
 
   /// The error as seen of a component or the sum; in the sum, pixels of unknown error count with all of their
   /// light.
@@ -155,7 +158,7 @@ struct ImageError {
     return layer == 0 ? std::sqrt(known * known + unknown) : known;
   }
   /// Including lookups: the reported error of the picture.
-  double seen_sum() const { return error_sum(seen(0), seen_records, seen_interpolation); }
+  double seen_sum() const { return error_sum(seen(0), seen_lookup_noise, seen_interpolation); }
   /// A component's share of the noise, 0..1 for component 0..3: its squared error as seen over the sum of
   /// all components'. They add up to 1, or are all 0 where there is no noise.
   double share(int component) const;
@@ -166,10 +169,12 @@ struct ImageError {
     const double known = luminance[0] > 0 ? rms[size_t(layer)] / luminance[0] : 0;
     return layer == 0 ? std::sqrt(known * known + unknown) : known;
   }
-  double relative_records() const { return luminance[0] > 0 ? records_rms / luminance[0] : 0; }
+  double relative_lookup_noise() const { return luminance[0] > 0 ? lookup_noise_rms / luminance[0] : 0; }
   double relative_interpolation() const { return luminance[0] > 0 ? interpolation_rms / luminance[0] : 0; }
   /// Combined relative error of all three parts.
-  double relative_sum() const { return error_sum(relative(0), relative_records(), relative_interpolation()); }
+  double relative_sum() const {
+    return error_sum(relative(0), relative_lookup_noise(), relative_interpolation());
+  }
 };
 ImageError image_error(std::span<const shared::BlockError> blocks);
 

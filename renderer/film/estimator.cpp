@@ -34,7 +34,7 @@ void ErrorEstimator::record(gpu::Stream& stream, const gpu::Kernel& kernel, std:
                        count,
                        seen.floor,
                        seen.white,
-                       film.record_errors_complete(),
+                       film.lookup_errors_complete(),
                        film.lookup_bias_known()};
   stream.dispatch(kernel, resources_, push, gpu::groups_for(count, 8), stage);
 }

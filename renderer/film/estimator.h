@@ -8,7 +8,7 @@ namespace lucerna::film {
 /// "ledger" and "stopping".
 class ErrorEstimator {
  public:
-  /// `lookup_errors`: the film may have errors of lookups (Film::complete_record_errors, lookup_bias_known).
+  /// `lookup_errors`: the film may have errors of lookups (Film::complete_lookup_errors, lookup_bias_known).
   /// Compiles its kernels; throws Error, located.
   ErrorEstimator(gpu::Device& device, gpu::ShaderCompiler& compiler, bool lookup_errors);
 

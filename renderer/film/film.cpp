@@ -21,6 +21,8 @@ constexpr uint64_t k_coarse_pixels = shared::k_coarse_step * shared::k_coarse_st
 
 uint64_t sum_bytes(uint32_t groups, GroupStorage kept) {
   constexpr uint64_t k_all = k_components * k_sum_bytes;
+  // As in the help of relight.enabled and in README.md.
+  static_assert(k_all == 192 && k_all + sizeof(shared::GroupLight) == 200 && sizeof(shared::GroupSums) == 16);
   if (groups <= 1) return k_all;
   return k_all + groups * (kept == GroupStorage::compact ? sizeof(shared::GroupSums)
                                                          : k_all + sizeof(shared::GroupLight));
@@ -44,7 +46,7 @@ void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, 
     throw_error(
         "size", "{}x{} is {} pixels; this device can hold at most {} (for example {}x{}){}", width, height,
         pixels, largest, uint32_t(std::sqrt(largest * 16.0 / 9)), uint32_t(std::sqrt(largest * 9.0 / 16)),
-        groups > 1 ? fmt::format(" with {} groups of lights apart; more with relight.enabled=off", groups)
+        groups > 1 ? fmt::format(" with {} separate light groups; more with relight.enabled=off", groups)
                    : std::string());
 }
 
@@ -88,17 +90,17 @@ Film::Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups
   tile_marks_ = gpu::Buffer(
       device,
       {.name = "tile marks", .bytes = blocks() * sizeof(shared::TileMark), .memory = gpu::Memory::host});
-  records_ = gpu::Buffer(device, {.name = "no records", .bytes = 0});
-  block_records_ = gpu::Buffer(device, {.name = "no records", .bytes = 0});
+  lookups_ = gpu::Buffer(device, {.name = "no lookups", .bytes = 0});
+  block_lookups_ = gpu::Buffer(device, {.name = "no lookups", .bytes = 0});
   for (gpu::Buffer& b : lookup_bias_) b = gpu::Buffer(device, {.name = "no bias of lookups", .bytes = 0});
 }
 
-void Film::make_room_for_record_errors() {
-  gpu::make_room(device_, records_,
-                 {.name = "records' errors", .bytes = uint64_t{width_} * height_ * sizeof(vec2)});
-  gpu::make_room(device_, block_records_,
-                 {.name = "records' errors of blocks",
-                  .bytes = blocks() * sizeof(shared::BlockRecords),
+void Film::make_room_for_lookup_errors() {
+  gpu::make_room(device_, lookups_,
+                 {.name = "lookup errors", .bytes = uint64_t{width_} * height_ * sizeof(vec2)});
+  gpu::make_room(device_, block_lookups_,
+                 {.name = "lookup errors of blocks",
+                  .bytes = blocks() * sizeof(shared::BlockLookups),
                   .memory = gpu::Memory::host});
 }
 
@@ -124,9 +126,9 @@ std::array<std::vector<float>, 2> Film::read_lookup_bias() const {
   return means;
 }
 
-std::span<const shared::BlockRecords> Film::records() const {
-  if (!record_errors_complete_) return {};
-  return {static_cast<const shared::BlockRecords*>(block_records_.mapped()), blocks()};
+std::span<const shared::BlockLookups> Film::lookup_errors() const {
+  if (!lookup_errors_complete_) return {};
+  return {static_cast<const shared::BlockLookups*>(block_lookups_.mapped()), blocks()};
 }
 
 std::span<const shared::BlockError> Film::errors() const {
@@ -144,7 +146,7 @@ void Film::clear(gpu::Stream& stream) {
   stream.fill(vertices_, 0);
   stream.fill(errors_, 0);
   stream.run();
-  record_errors_complete_ = lookup_bias_known_ = false;
+  lookup_errors_complete_ = lookup_bias_known_ = false;
 }
 
 void Film::bind(gpu::Resources& r) const {
@@ -165,8 +167,8 @@ void Film::bind(gpu::Resources& r) const {
   r.set("Picture", picture_);
   r.set("TileMarks", tile_marks_);
   r.set("BlockErrors", errors_);
-  r.set("FilmRecords", records_);
-  r.set("BlockRecordSums", block_records_);
+  r.set("FilmLookups", lookups_);
+  r.set("BlockLookupSums", block_lookups_);
   r.set("FilmBiasEven", lookup_bias_[0]);
   r.set("FilmBiasOdd", lookup_bias_[1]);
   r.set("light_mix", light_mix_);

@@ -69,8 +69,7 @@ inline constexpr uint32_t k_max_side = 32768;
 /// memory. `groups`: separate light groups.
 void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, uint32_t groups = 1,
                 GroupStorage kept = GroupStorage::by_component);
-/// Bytes of the sums per pixel: 192 for the picture, and with several light groups 200 (by component) or 16
-/// (compact) for each.
+/// Bytes of the sums per pixel: of the picture and, if there are several, of the light groups.
 uint64_t sum_bytes(uint32_t groups, GroupStorage kept = GroupStorage::by_component);
 
 class Film {
@@ -111,17 +110,17 @@ class Film {
   void bind_coarse(gpu::Resources& resources) const;
   /// The latest estimate of each block, in raster order; all 0 without one.
   std::span<const shared::BlockError> errors() const;
-  /// Allocates the errors from records (BlockRecords, one per block in raster order), written by kernels as
-  /// FilmRecords and BlockRecordSums; and marks them as complete. Unknown until then, and after a clear().
-  void make_room_for_record_errors();
-  void complete_record_errors() { record_errors_complete_ = true; }
-  /// Invalidates the errors from records, after a change of records.
-  void forget_record_errors() { record_errors_complete_ = false; }
-  bool record_errors_complete() const { return record_errors_complete_; }
+  /// Allocates the errors of lookups (BlockLookups, one per block in raster order), written by kernels as
+  /// FilmLookups and BlockLookupSums; and marks them as complete. Unknown until then, and after a clear().
+  void make_room_for_lookup_errors();
+  void complete_lookup_errors() { lookup_errors_complete_ = true; }
+  /// Invalidates these errors, after a change of the stored light.
+  void forget_lookup_errors() { lookup_errors_complete_ = false; }
+  bool lookup_errors_complete() const { return lookup_errors_complete_; }
   /// Empty while unknown.
-  std::span<const shared::BlockRecords> records() const;
+  std::span<const shared::BlockLookups> lookup_errors() const;
   /// Allocates the sums of lookup bias, which arrives with the light of paths (LUCERNA_LOOKUP_BIAS):
-  /// FilmBiasEven and FilmBiasOdd, 8 bytes a pixel, empty after a clear(). From then on lookup_bias_known().
+  /// FilmBiasEven and FilmBiasOdd, empty after a clear(). From then on lookup_bias_known().
   void make_room_for_lookup_bias(gpu::Stream& stream);
   bool lookup_bias_known() const { return lookup_bias_known_; }
   /// Means over the even and over the odd samples: estimated excess of the luminance. Empty while unknown.
@@ -156,8 +155,8 @@ class Film {
   bool quick_ = false;
   gpu::Buffer albedo_, normal_, count_, vertices_, picture_, errors_, tile_marks_;
   gpu::Device& device_;
-  gpu::Buffer records_, block_records_;  // small where there are none
-  bool record_errors_complete_ = false;
+  gpu::Buffer lookups_, block_lookups_;  // small where there are none
+  bool lookup_errors_complete_ = false;
   std::array<gpu::Buffer, 2> lookup_bias_;  // likewise
   bool lookup_bias_known_ = false;
 };

@@ -21,7 +21,7 @@ struct PathStrokes {
   std::vector<shared::OverlaySegment> segments;
 };
 
-/// At most the brightest `k_most_drawn` paths. Blocked light samples are dark.
+/// Draws at most the brightest k_most_drawn_paths paths. Blocked light samples are dark.
 inline constexpr size_t k_most_drawn_paths = 4096;
 PathStrokes path_strokes(const recording::Recording& recording, const PathLinesStyle& style);
 
@@ -29,7 +29,7 @@ PathStrokes path_strokes(const recording::Recording& recording, const PathLinesS
 vec3 event_ink(const recording::Event& event);
 vec3 lobe_ink(uint32_t lobe);  ///< k_event_* or shared::k_path_by_none
 vec3 component_ink(uint32_t component);
-/// Of a path that brings that share of the brightest one's light; the ramp ends at k_least_path_share.
+/// `share`: the light of the path over that of the brightest one; the ramp ends at k_least_path_share.
 inline constexpr float k_least_path_share = 1e-3f;
 vec3 contribution_ink(double share);
 inline constexpr vec3 k_arrived_ink{1.0f, 0.86f, 0.35f}, k_blocked_ink{0.13f, 0.11f, 0.13f},

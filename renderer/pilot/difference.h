@@ -9,12 +9,12 @@ struct Image;
 namespace lucerna::pilot {
 
 struct Difference {
-  double light = 0;  ///< part of the picture's mean luminance that the effect brings; below 0: it takes light
+  double light = 0;  ///< the effect's part of the picture's mean luminance; below 0: it absorbs light
   /// Root mean square of the change of luminance, in blocks of 8x8 pixels, relative to the luminance there
   /// (LocalLight::scale): how much of the effect is seen. Estimated without the noise of both pictures.
   double seen = 0;
   /// Part of the variance of one sample, over the squared luminance there (of the picture with the effect),
-  /// that goes with the effect; below 0: it comes without it.
+  /// that the effect adds; below 0: the picture without it has more.
   double noise = 0;
 };
 

@@ -20,7 +20,7 @@ namespace lucerna::plan {
 /// What the picture is rendered for.
 struct Goal {
   double samples = 256;           ///< cost that may be spent, in path-traced samples
-  std::optional<double> error{};  ///< error as seen that is to be reached with as little cost as possible
+  std::optional<double> error{};  ///< error as seen to be reached at the least cost
   /// Preparation ends when half of the cost is spent, as with a limit of time.
   bool cuts_preparation = false;
 };

@@ -62,8 +62,7 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
       "Adaptive: samples per pixel at which a tile stops without reaching the target, and is reported.",
       "Maximum samples")));
   list.push_back(choice_option("sampling.tile", "16", {"8", "16"}, "pixels",
-                               "Side of the tiles of adaptive and of coherent sampling.",
-                               "Tile of sampling"));
+                               "Side of the tiles of adaptive and of coherent sampling.", "Sampling tile"));
   list.push_back(without_restart(text_option(
       "sampling.region",
       "LEFT,TOP,WIDTH,HEIGHT, in fractions of the picture: only this rectangle gets samples, in whole blocks "
@@ -167,7 +166,7 @@ void add_display_options(std::vector<OptionInfo>& list) {
       "overlay.tiles", "false", "Draws active tiles and the ratio of their error to the target.")));
   list.push_back(without_restart(
       boolean_option("overlay.former", "false",
-                     "Tints light from before the last edit, as far as the new light has not replaced it.")));
+                     "Tints light from before the last edit, where the new light has not replaced it.")));
   list.push_back(without_restart(boolean_option(
       "overlay.lights", "false",
       "Draws light selection at the point under the pointer: arrows to the lights, or parts of the sky, that "
@@ -183,9 +182,9 @@ void add_display_options(std::vector<OptionInfo>& list) {
                      "Depth of field")));
   list.push_back(without_restart(choice_option(
       "overlay.path_color", "event", {"event", "component", "contribution"}, "",
-      "Colour of recorded paths (inspect.trace). event: by the lobe that scattered each ray and by what it "
-      "met. "
-      "component: by the light that a ray leads to. contribution: by the light that the path brings.",
+      "Colour of recorded paths (inspect.trace). event: the lobe that scattered each ray, and what it met. "
+      "component: that of the light at the end of a ray. contribution: the light that the path adds to its "
+      "pixel.",
       "Paths by")));
   list.push_back(without_restart(choice_option(
       "preview.filter", "auto", {"auto", "off"}, "",
@@ -201,12 +200,12 @@ void add_display_options(std::vector<OptionInfo>& list) {
 }
 
 void add_scene_options(std::vector<OptionInfo>& list) {
-  list.push_back(
-      text_option("scene.variant",
-                  "The variant of the materials, of those that the scene's file names; empty: the file's "
-                  "default. lucerna info lists them."));
+  list.push_back(text_option(
+      "scene.variant",
+      "Variant of the materials (KHR_materials_variants); empty: the file's default. lucerna info "
+      "lists them."));
   list.push_back(boolean_option("scene.clay", "false",
-                                "All surfaces are matt grey, but those that transmit or emit light."));
+                                "All surfaces are matt grey, except those that transmit or emit light."));
 }
 
 void add_effect_options(std::vector<OptionInfo>& list) {

@@ -84,7 +84,7 @@ NoiseReport analyse_noise(const Recording& recording, const std::vector<double>&
       double sum = 0;
       by_component.emplace_back();
       for (uint32_t i = 0; i < events.size(); ++i) {
-        if (!brings_light(events[i])) continue;
+        if (!contributes_light(events[i])) continue;
         const double y = double(luminance(events[i].contribution));
         sum += y;
         by_component.back()[component_of(events[i])] += y;
@@ -154,7 +154,7 @@ std::string noise_sentence(const NoiseReport& report, bool whole_picture) {
 
 std::vector<std::string> noise_lines(const NoiseReport& report) {
   std::vector<std::string> lines;
-  if (report.sentence.empty()) return {"no noise: the recorded paths of each pixel bring the same light"};
+  if (report.sentence.empty()) return {"no noise: the recorded paths of each pixel have the same light"};
   lines.push_back(report.sentence);
   lines.push_back(fmt::format("error as seen of one sample: {:.0f} %, from {} paths of {} pixels",
                               100 * report.of_sample, report.paths, report.pixels));

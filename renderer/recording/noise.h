@@ -13,8 +13,8 @@ namespace lucerna::recording {
 /// kind; one can be below 0 if its light is opposed to the rest, as two ways of sampling the same light are.
 struct NoiseShare {
   std::string name;
-  double noise = 0;  ///< of the variance of a sample as seen
-  double light = 0;  ///< of the light as seen
+  double noise = 0;  ///< share of the variance of a sample, as seen
+  double light = 0;  ///< share of the light, as seen
 };
 
 /// What would reduce the noise: settings, with a reason.

@@ -6,7 +6,8 @@
 //   factor     = "not" factor | "(" query ")" | FIELD OPERATOR VALUE
 //   operator   = == != < <= > >= ~        (~: the word belongs to a path expression, paths/automaton.h)
 //
-// A value is a number, a word, or a text in quotes. Each event that brings light, or was blocked, is one row.
+// A value is a number, a word, or a text in quotes. Each event that contributes light, or was blocked, is one
+// row.
 #include <functional>
 #include <memory>
 #include <string>
@@ -16,7 +17,7 @@
 
 namespace lucerna::recording {
 
-/// One event that brings light, or would have.
+/// One event that contributes light, or a blocked light sample.
 struct Row {
   const Recording& of;
   const Path& path;
@@ -47,7 +48,7 @@ class Query {
   std::function<bool(const Row&)> test_;
 };
 
-/// The rows of a recording: events that bring light, and blocked light samples. Calls f with each.
+/// Calls f with each row of a recording: events that contribute light, and blocked light samples.
 void visit_rows(const Recording& recording, const std::function<void(const Row&)>& f);
 
 }  // namespace lucerna::recording

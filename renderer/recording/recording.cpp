@@ -43,7 +43,7 @@ uint64_t Recording::lost() const {
   return sum;
 }
 
-bool brings_light(const Event& e) {
+bool contributes_light(const Event& e) {
   return component_of(e) < paths::k_component_count && kind_of(e) != k_path_blocked;
 }
 
@@ -69,7 +69,7 @@ uint32_t depth_of(std::span<const Event> path, uint32_t event) {
 Light light_of(std::span<const Event> path) {
   Light light{};
   for (const Event& e : path)
-    if (brings_light(e))
+    if (contributes_light(e))
       for (int k = 0; k < 3; ++k) light[component_of(e)][k] += double(e.contribution[k]);
   return light;
 }
@@ -77,14 +77,14 @@ Light light_of(std::span<const Event> path) {
 double luminance_of(std::span<const Event> path) {
   double sum = 0;
   for (const Event& e : path)
-    if (brings_light(e)) sum += double(luminance(e.contribution));
+    if (contributes_light(e)) sum += double(luminance(e.contribution));
   return sum;
 }
 
 uint8_t main_component(std::span<const Event> path) {
   std::array<double, paths::k_component_count> light{};
   for (const Event& e : path)
-    if (brings_light(e)) light[component_of(e)] += double(luminance(e.contribution));
+    if (contributes_light(e)) light[component_of(e)] += double(luminance(e.contribution));
   const auto most = std::max_element(light.begin(), light.end());
   return *most > 0 ? uint8_t(most - light.begin()) : paths::k_no_component;
 }
@@ -163,7 +163,7 @@ std::string path_text(const Recording& recording, uint32_t path) {
   uint32_t brightest = k_path_no_event;
   float most = 0;
   for (uint32_t i = 0; i < events.size(); ++i)
-    if (brings_light(events[i]) && luminance(events[i].contribution) > most)
+    if (contributes_light(events[i]) && luminance(events[i].contribution) > most)
       most = luminance(events[i].contribution), brightest = i;
   if (brightest == k_path_no_event) return fmt::format("no light, {} events", events.size());
   return fmt::format("{} {} {:.3g}, {} events", word_of(events, brightest),
@@ -181,7 +181,7 @@ std::vector<std::string> event_lines(const Recording& recording, uint32_t path) 
     if (e.pdf > 0) line += fmt::format(", pdf {:.3g}", e.pdf);
     if (e.throughput != vec3(0)) line += fmt::format(", throughput {}", triple(e.throughput));
     if (component_of(e) < paths::k_component_count)
-      line += fmt::format(", {} {} {}", brings_light(e) ? "brings" : "would bring",
+      line += fmt::format(", {} {} {}", contributes_light(e) ? "contributes" : "would contribute",
                           paths::k_component_names[component_of(e)], triple(e.contribution));
     lines.push_back(line);
   }

@@ -1,6 +1,6 @@
 #pragma once
-// Recorded paths of the picture, as plain data: what each met, with what density and throughput, and what
-// light it brought to its pixel (shaders/shared/path_events.h). Made by the renderer or read from a file
+// Recorded paths of the picture, as plain data: what each met, with what density and throughput, and the
+// light that it added to its pixel (shaders/shared/path_events.h). Made by the renderer or read from a file
 // (file.h).
 #include <array>
 #include <cstdint>
@@ -48,7 +48,7 @@ inline uint32_t component_of(const Event& e) { return e.bits >> shared::k_path_c
 inline uint32_t group_of(const Event& e) { return e.bits >> shared::k_path_group_shift & 255u; }
 inline uint32_t reason_of(const Event& e) { return e.bits >> shared::k_path_reason_shift & 15u; }
 /// True if its contribution is in the picture; a blocked light sample's is not.
-bool brings_light(const Event& e);
+bool contributes_light(const Event& e);
 
 /// "surface", "light", "blocked": names of shared::k_path_*, as files and queries write them.
 extern const std::array<const char*, shared::k_path_kinds> k_kind_names;
@@ -66,10 +66,10 @@ uint32_t depth_of(std::span<const Event> path, uint32_t event);
 using Light = std::array<std::array<double, 3>, paths::k_component_count>;
 Light light_of(std::span<const Event> path);
 double luminance_of(std::span<const Event> path);
-/// Component that most of its light belongs to; k_no_component: it brings none.
+/// Component that most of its light belongs to; k_no_component: it has none.
 uint8_t main_component(std::span<const Event> path);
 
-/// Removes the paths that bring no more than this luminance.
+/// Removes the paths whose luminance is at most this.
 void keep_over(Recording& recording, double least);
 
 /// Indices of the paths, the brightest first; equal ones in their order.

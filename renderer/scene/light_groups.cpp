@@ -36,7 +36,7 @@ class Grouping {
     if (out_.groups.empty()) out_.groups.push_back({.name = "light"});
     if (!joined_.empty())
       out_.messages.push_back(
-          fmt::format("{} groups of lights, of which at most {} are kept apart: {} joined in '{}'",
+          fmt::format("{} light groups, but at most {} can be separate: {} joined in '{}'",
                       k_most_light_groups - 1 + joined_.size(), k_most_light_groups, fmt::join(joined_, ", "),
                       k_other_lights));
     return std::move(out_);

@@ -200,7 +200,8 @@ Scene mixed_scene(const Scene& scene, const LightGroups& groups, const LightMix&
                  weights[size_t(taken[material])] != weights[size_t(group)]) {
         warned[material] = true;
         messages->push_back(fmt::format(
-            "material '{}' shines in the groups '{}' and '{}', which are mixed apart: it takes the first's "
+            "material '{}' shines in the groups '{}' and '{}', which are mixed separately: it takes the "
+            "first's "
             "mix",
             m.name, groups.groups[size_t(taken[material])].name, groups.groups[size_t(group)].name));
       }

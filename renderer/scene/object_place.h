@@ -12,7 +12,7 @@ struct ObjectPlace {
   bool hidden = false;
   bool operator==(const ObjectPlace&) const = default;
 };
-/// Sizes of factors, and the largest way [m].
+/// Smallest and largest absolute factor, and the largest distance along an axis [m].
 inline constexpr float k_least_factor = 1e-4f, k_most_factor = 1e4f, k_most_way = 1e7f;
 
 /// The mesh's box in its own space; empty without vertices.

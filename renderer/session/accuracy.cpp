@@ -121,7 +121,7 @@ std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {
       t.samples = r.samples();
       if (errors[i].pixels > 0) {
         t.error = static_cast<float>(errors[i].relative);
-        t.records = static_cast<float>(errors[i].relative_records);
+        t.records = static_cast<float>(errors[i].relative_lookup_noise);
         t.interpolation = static_cast<float>(errors[i].relative_interpolation);
         t.state = t.sum() <= target ? shared::k_tile_done
                   : r.done()        ? shared::k_tile_capped

@@ -41,8 +41,8 @@ void claim(std::array<const solvers::SolverInfo*, paths::k_component_count>& by,
     if ((bits >> c & 1u) == 0) continue;
     if (by[c])
       throw_error(std::string("components.") + paths::k_component_names[c],
-                  "light of the words {} would be counted twice: by '{}', with what it looks up for another "
-                  "component, and by '{}'; give both components to one of them",
+                  "light of the words {} would be counted twice: by '{}', whose lookups for another component "
+                  "include it, and by '{}'; choose one of them for both components",
                   paths::k_component_expressions[c], by[c]->name, info.name);
     by[c] = &info;
   }
@@ -351,9 +351,9 @@ void Engine::route(const plan::Settings& settings, const upload::Effects& effect
   routes_ = routes_of(here, settings, effects);
 }
 
-Engine::Routes Engine::routes_of(const plan::Plan& here, const plan::Settings& settings,
-                                 const upload::Effects& effects) const {
-  Routes routes{.here = routing(here, settings, effects), .delegated = {}};
+PathRoutes Engine::routes_of(const plan::Plan& here, const plan::Settings& settings,
+                             const upload::Effects& effects) const {
+  PathRoutes routes{.here = routing(here, settings, effects), .delegated = {}};
   plan::Plan delegated = here;
   for (const solvers::SolverInfo* info : here.at_work())
     if (const auto delegable_components = solvers::type_of(*info).delegable_components)
@@ -401,23 +401,6 @@ shared::Frame Engine::draft_frame(const PictureView& picture, uint32_t width, ui
   }
   if (all_missing == 0) return frame(picture, width, height);
   return frame_of(routes_of(here, picture.settings, picture.world.flat.effects), picture, width, height);
-}
-
-shared::Frame Engine::frame_of(const Routes& routes, const PictureView& picture, uint32_t width,
-                               uint32_t height) const {
-  const solvers::Task task = {
-      .automaton = automaton_, .settings = picture.settings, .enabled = plan_.enabled()};
-  const solvers::Picture own{.task = task,
-                             .flat = picture.world.flat,
-                             .camera = picture.camera,
-                             .width = width,
-                             .height = height,
-                             .frame = {}};
-  shared::Frame frame = own.frame_for(routes.here, routes.here.lookups.traced);
-  if (routes.delegated)
-    transport::set_delegated_tables(frame,
-                                    own.frame_for(*routes.delegated, routes.delegated->lookups.traced));
-  return frame;
 }
 
 bool Engine::looks_up_direct_light() const { return (routes_.here.lookups.parts & 1u) != 0; }

@@ -11,20 +11,11 @@
 #include "film/developer.h"
 #include "film/estimator.h"
 #include "plan/plan.h"
+#include "session/frame.h"
 #include "session/world.h"
 #include "solvers/capabilities.h"
 
 namespace lucerna::session {
-
-/// A picture of a world, for solvers; everything it refers to must outlive it.
-struct PictureView {
-  const paths::Automaton& automaton;
-  const plan::Settings& settings;
-  const World& world;
-  const scene::Camera& camera;
-  uint32_t width = 0, height = 0;
-  std::vector<vec3> mix = {};  ///< of light groups, if they are separate (film::Film::set_mix)
-};
 
 /// Task of one solver of the plan. Everything it refers to must outlive it.
 solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
@@ -141,15 +132,8 @@ class Engine {
   /// Merged routing of all solvers. Throws Error, located at the component, if two compute the same light.
   solvers::Routing routing(const plan::Plan& plan, const plan::Settings& settings,
                            const upload::Effects& effects) const;
-  struct Routes {
-    solvers::Routing here;
-    std::optional<solvers::Routing>
-        delegated;  ///< ... with delegable components traced (SolverType::delegable_components)
-  };
-  Routes routes_of(const plan::Plan& here, const plan::Settings& settings,
-                   const upload::Effects& effects) const;
-  shared::Frame frame_of(const Routes& routes, const PictureView& picture, uint32_t width,
-                         uint32_t height) const;
+  PathRoutes routes_of(const plan::Plan& here, const plan::Settings& settings,
+                       const upload::Effects& effects) const;
   /// Frame of paths in another picture with other samples, for all components alike, however the plan
   /// computes them.
   shared::Frame pilot_frame(const PictureView& picture, uint32_t width, uint32_t height) const;
@@ -161,7 +145,7 @@ class Engine {
   gpu::Defines learned_defines_, path_defines_;
   bool begun_ = false;
   bool learned_elsewhere_ = false;  ///< from another view
-  Routes routes_;                   ///< of the current picture
+  PathRoutes routes_;               ///< of the current picture
   std::vector<std::shared_ptr<solvers::Solver>> solvers_;
   MadeFor made_for_;
   std::map<std::string, std::string> begun_settings_;

@@ -19,9 +19,9 @@ struct HeldPicture {
   /// preview while there are few samples, then the result of its filter (WindowFilter), else the means of the
   /// samples.
   std::vector<vec3> light;
-  bool filtered = false;  ///< it is a preview or filtered
-  double former = 0;  ///< share of it that is light from before an edit, or before data was complete, 0..1
-  std::string shows;  ///< "", or which components if not all: "secondary + tertiary"
+  bool filtered = false;     ///< it is a preview or filtered
+  double former = 0;         ///< share of light from before an edit, or from before data was complete, 0..1
+  std::string shows;         ///< "", or which components if not all: "secondary + tertiary"
   ComponentMethods methods;  ///< solver of each component, or "off"; all empty: not known
   double samples = 0;        ///< a pixel, on average; 0: not known
   double seconds = 0;        ///< of rendering (Snapshot::seconds); 0: not known

@@ -93,9 +93,9 @@ void ImageProgress::note(bool at_once) {
     const film::ImageError error = estimate_error();
     for (int k = 0; k < stats::k_layers; ++k)
       entry.error[k] = error.seen(k), entry.of_mean.error[k] = error.relative(k);
-    entry.records = error.seen_records, entry.interpolation = error.seen_interpolation;
+    entry.records = error.seen_lookup_noise, entry.interpolation = error.seen_interpolation;
     entry.degrees = error.seen_degrees;
-    entry.of_mean.records = error.relative_records();
+    entry.of_mean.records = error.relative_lookup_noise();
     entry.of_mean.interpolation = error.relative_interpolation();
     std::vector<film::TileError> of_tiles = film::tile_errors(*setup_.film, setup_.tile_side());
     const uint32_t side = setup_.tile_side() / shared::k_block;

@@ -27,7 +27,7 @@ solvers::Legend legend_of(const recording::Recording& recording, overlay::PathCo
     case overlay::PathColor::contribution:
       legend.ramp = shared::k_ramp_viridis;
       legend.ticks = {{0, "0.1 %"}, {1.f / 3, "1 %"}, {2.f / 3, "10 %"}, {1, "brightest"}};
-      legend.note = "Colour: light that the path brings, over that of the brightest.";
+      legend.note = "Colour: light of the path, over that of the brightest.";
       break;
   }
   if (const uint64_t lost = recording.lost())

@@ -25,10 +25,9 @@ std::string obstacle(const plan::Settings& settings, bool interactive) {
 std::string obstacle(const plan::Plan& plan, const plan::Settings& settings) {
   for (const solvers::SolverInfo* info : plan.at_work()) {
     if (!solvers::type_of(*info).make) continue;
-    if (!info->by_groups)
-      return fmt::format("{} computes light that is not kept apart by groups", info->title);
+    if (!info->by_groups) return fmt::format("{} cannot separate its light by groups", info->title);
     if (settings.text("relight.enabled") == "on")
-      return fmt::format("{} keeps groups apart in short alone; relight.enabled=compact does so",
+      return fmt::format("{} separates groups only without components; use relight.enabled=compact",
                          info->title);
   }
   return "";
@@ -48,7 +47,7 @@ std::string obstacle(const plan::Settings& settings, const scene::LightGroups& g
 std::string unknown_group(const std::string& name, const scene::LightGroups& groups) {
   std::vector<std::string> names;
   for (const scene::LightGroup& group : groups.groups) names.push_back(group.name);
-  return fmt::format("relight.mix: the scene has no group of lights '{}'; there are: {}", name,
+  return fmt::format("relight.mix: the scene has no light group '{}'; there are: {}", name,
                      fmt::join(names, ", "));
 }
 

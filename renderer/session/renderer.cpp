@@ -265,7 +265,7 @@ void Renderer::change_schedule() {
     std::vector<schedule::TileErrors> errors;
     image_error();
     for (const film::TileError& t : film::tile_errors(*setup_.film, tile_side()))
-      errors.push_back({float(t.relative), float(t.relative_records), float(t.relative_interpolation)});
+      errors.push_back({float(t.relative), float(t.relative_lookup_noise), float(t.relative_interpolation)});
     sampling_.start(schedule::AdaptiveSchedule(setup_.film->blocks_across(), setup_.film->blocks_down(),
                                                adaptive_options(blocks), have, errors));
   } else {

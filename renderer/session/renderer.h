@@ -147,7 +147,7 @@ class Renderer {
   /// image_error().
   std::vector<film::TileError> tile_errors() const;
   uint32_t tile_side() const { return setup_.tile_side(); }  ///< sampling.tile [pixels]
-  /// True once the lookup-error estimate is complete (film::RecordsError).
+  /// True once the lookup-error estimate is complete (film::LookupsError).
   bool lookup_errors_known() const;
   /// False if some solver's lookups have a bias that none of these errors contains.
   bool lookup_bias_estimated() const;
@@ -231,10 +231,7 @@ class Renderer {
   HeldPicture held_picture();
   /// The image with its layers and metadata (including its noise), as in EXR files.
   film::FilmImage film_image();
-  /// film_image() with what its noise is known by, for film::compare_stochastic(): the mean of the odd
-  /// samples
-  /// ("odd.R", "odd.primary.R", ...), and per tile of 16x16 pixels the noise and bias of lookups in the mean
-  /// luminance ("lookup.noise", "lookup.bias").
+  /// film_image() with add_noise_layers().
   film::FilmImage film_image_with_halves();
   /// Filters the present picture (film/filter/): until its next sample, film_image() contains the filtered
   /// layers too, and save() writes the filtered picture as PNG. Throws Error if there is no picture, or not

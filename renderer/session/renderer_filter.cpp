@@ -10,7 +10,7 @@ namespace {
 /// Errors of what tiles look up. All samples share them, so samples cannot measure them.
 film::ShownError lookup_errors(const std::vector<film::TileError>& tiles) {
   const film::TileSpread spread = film::tile_spread(tiles, [](const film::TileError& t) {
-    return std::hypot(t.relative_records, t.relative_interpolation);
+    return std::hypot(t.relative_lookup_noise, t.relative_interpolation);
   });
   return {spread.median, spread.worst_tenth};
 }

@@ -2,15 +2,14 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <set>
 #include <utility>
 
 #include "base/log.h"
 #include "film/io/ocio.h"
-#include "film/io/planes.h"
 #include "film/overlay.h"
 #include "film/tile_scale.h"
 #include "session/accuracy.h"
+#include "session/picture_layers.h"
 #include "session/renderer.h"
 #include "shaders/shared/film.h"
 
@@ -234,113 +233,28 @@ HeldPicture Renderer::held_picture() {
   }
   if (samples() >= 2) {
     const film::ImageError e = image_error();
-    held.error = error_sum(e.seen(0), e.seen_records, e.seen_interpolation);
+    held.error = error_sum(e.seen(0), e.seen_lookup_noise, e.seen_interpolation);
   }
   return held;
 }
 
-namespace {
-
-/// A layer of the light of one group with its mix: 16-bit floats unless values exceed them. Empty layers are
-/// left out.
-void add_light_layer(film::FilmImage& out, const std::string& name, const std::vector<vec3>& mean,
-                     const vec3& weight) {
-  constexpr float k_largest_half = 65504;
-  if (std::all_of(mean.begin(), mean.end(), [](const vec3& v) { return v == vec3(0); })) return;
-  for (int k = 0; k < 3; ++k) {
-    std::vector<float> channel(mean.size());
-    for (size_t i = 0; i < channel.size(); ++i) channel[i] = weight[k] * mean[i][k];
-    const std::string full = fmt::format("{}.{}", name, "RGB"[k]);
-    const float largest = *std::max_element(channel.begin(), channel.end());
-    if (largest <= k_largest_half) out.halves.insert(full);
-    out.channels.emplace_back(full, std::move(channel));
-  }
-}
-
-/// Layers of light groups: light.GROUP.COMPONENT, or light.GROUP if components are stored together. With one
-/// group the picture is the layer.
-void add_group_layers(film::FilmImage& out, const film::Film& film, const Relight& relight) {
-  if (film.groups() == 1) return;
-  std::set<std::string> used;
-  for (uint32_t g = 0; g < film.groups(); ++g) {
-    // A dot would split the layer's name.
-    std::string name = "light." + relight.groups->groups[g].name;
-    std::replace(name.begin() + 6, name.end(), '.', '_');
-    // The replacement may equal another group's name.
-    while (!used.insert(name).second) name += '_';
-    if (film.is_compact()) {
-      add_light_layer(out, name, film.read_group_sum(g), relight.weights[g]);
-      continue;
-    }
-    const auto means = film.read_group(g);
-    for (size_t c = 0; c < means.size(); ++c)
-      add_light_layer(out, name + "." + paths::k_component_names[c], means[c], relight.weights[g]);
-  }
-}
-
-}  // namespace
-
 film::FilmImage Renderer::film_image() {
   settle_mix();
-  const film::Image image = setup_.film->read();
-  film::FilmImage out;
-  out.width = image.width;
-  out.height = image.height;
+  film::FilmImage out = picture_layers(setup_);
   // In the window the rest has samples too.
   if (const auto part = options_.interactive ? std::nullopt : region())
     out.window = {part->left, part->top, part->right, part->bottom};
-  const size_t n = image.samples.size();
-  std::vector<vec3> sum(n, vec3(0));
-  for (const auto& component : image.components)
-    for (size_t i = 0; i < n; ++i) sum[i] += component[i];
-  film::add_plane(out, "", "RGB", sum);
-  for (int c = 0; c < film::k_components; ++c)
-    film::add_plane(out, std::string(paths::k_component_names[c]) + ".", "RGB", image.components[c]);
-  if (setup_.settings.boolean("relight.layers")) {
-    if (setup_.relight.separate)
-      add_group_layers(out, *setup_.film, setup_.relight);
-    else
-      log::warning("relight.layers: the EXR has no layers of groups of lights: {}", setup_.relight.why_not);
-  }
-  film::add_plane(out, "albedo.", "RGB", image.albedo);
-  film::add_plane(out, "N.", "XYZ", image.normal);
-  out.channels.emplace_back("Z", image.depth);
-  out.channels.emplace_back("samples", std::vector<float>(image.samples.begin(), image.samples.end()));
-  out.metadata["version"] = LUCERNA_VERSION;
-  out.metadata["settings"] = setup_.settings.changed_json();
-  out.metadata["seed"] = setup_.settings.text("seed");
   out.metadata["device"] = device_->info().name;
   out.metadata["tracer"] = tracer_name();
-  out.metadata["scene"] = setup_.world.scene->name;
-  out.metadata["view"] = setup_.view_text();
-  if (const glm::dvec3& o = setup_.world.scene->origin; o != glm::dvec3(0))
-    out.metadata["origin"] = fmt::format("{} {} {}", o.x, o.y, o.z);
   out.metadata["noise"] = film::noise_text(image_error().rms);
   if (const Filtered* f = filtered()) add_filtered_layers(out, *f);
   return out;
 }
 
 film::FilmImage Renderer::film_image_with_halves() {
-  constexpr uint32_t k_tile = 16;
   if (!setup_.engine || samples() == 0) throw Error("", "the picture has no sample yet");
   film::FilmImage out = film_image();
-  const film::Image image = setup_.film->read();
-  std::vector<vec3> sum(image.samples.size(), vec3(0));
-  for (const auto& component : image.odd_half)
-    for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
-  film::add_plane(out, "odd.", "RGB", sum);
-  for (int c = 0; c < film::k_components; ++c)
-    film::add_plane(out, std::string("odd.") + paths::k_component_names[c] + ".", "RGB", image.odd_half[c]);
-  if (!looks_up()) return out;
-  const std::vector<film::TileError> tiles = film::tile_errors(*setup_.film, k_tile);
-  const uint32_t across = (image.width + k_tile - 1) / k_tile;
-  std::vector<float> noise(sum.size()), bias(sum.size());
-  for (size_t i = 0; i < sum.size(); ++i) {
-    const film::TileError& t = tiles[i / image.width / k_tile * across + i % image.width / k_tile];
-    noise[i] = float(t.records.noise), bias[i] = float(t.records.interpolation);
-  }
-  out.channels.emplace_back("lookup.noise", std::move(noise));
-  out.channels.emplace_back("lookup.bias", std::move(bias));
+  add_noise_layers(out, *setup_.film, looks_up());
   return out;
 }
 

@@ -25,7 +25,7 @@ std::optional<bool> Renderer::refine(const std::function<bool()>& cancel) {
     return refinement.refine(setup_.engine->wavefront(), picture, cancel);
   });
   if (!refinement.refines()) {
-    setup_.film->forget_record_errors();
+    setup_.film->forget_lookup_errors();
     errors_of_ = nullptr;
   }
   return went;
@@ -36,7 +36,7 @@ bool Renderer::refining_pays(uint64_t paths) {
   // its paths in each step, so the two are balanced in the middle of a step.
   const film::ImageError error = image_error();
   const double sampled = error.seen_rms[0] * error.seen_rms[0],
-               read = error.seen_records * error.seen_records;
+               read = error.seen_lookup_noise * error.seen_lookup_noise;
   return 2 * read / double(paths) > sampled / double(std::max<uint64_t>(stats().paths, 1));
 }
 

@@ -78,7 +78,7 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
       wavefront.account_stages();
       for (size_t i = 0; i < tiles.size(); ++i) {
         const film::RelativeError e = film::relative_error(*setup_.film, adaptive->blocks_of(tiles[i]));
-        errors[i] = {float(e.paths), float(e.records), float(e.interpolation)};
+        errors[i] = {float(e.paths), float(e.lookup_noise), float(e.interpolation)};
       }
     }
     adaptive->report(errors);
@@ -106,7 +106,7 @@ bool Renderer::run_pilot(const std::function<bool()>& cancel) {
   try {
     apply_plan(Transaction::Target(setup_), changes);
   } catch (const Error& e) {
-    log::warning("components: paths compute what is chosen automatically: {}", e.what());
+    log::warning("components: the automatic choice failed, path tracing is used: {}", e.what());
     plan::Plan paths = setup_.engine->plan();
     paths.undecided = false;
     setup_.engine->set_plan(paths);

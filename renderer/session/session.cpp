@@ -35,7 +35,7 @@ void Session::load(const std::filesystem::path& file) {
       });
     } catch (const Error&) {
       if (goes_on()) throw;
-      log::info("{}: loading was given up", file.string());
+      log::info("{}: loading was cancelled", file.string());
       throw Abandoned();
     }
     ++s->scene_id;
@@ -165,7 +165,7 @@ void Session::set_instances(const std::vector<ObjectEdit>& edits, SceneId scene)
       });
     } catch (const Error&) {
       if (number > s->given_up) throw;
-      log::info("the objects stay where they were: given up");
+      log::info("the edit of objects was cancelled: they stay where they were");
       throw Abandoned();
     }
     if (r.restarts() != before) s->restarted();

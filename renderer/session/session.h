@@ -41,18 +41,19 @@ inline bool usable(const film::ShownError& e) {
 struct EffectCosts;
 
 struct ComponentStatus {
-  std::string solver = "path";  ///< who computes it: "path", "cache+photons", "off", ...
+  std::string solver = "path";  ///< its solver, or two joined by '+'; or "off"
   std::string reason;           ///< why, if the setting is auto
   double mean_luminance = 0;    ///< of its layer
   double share = 0;             ///< of the mean luminance of the sum, 0..1
   double ms_per_sample = 0;     ///< device time of its rays per sample a pixel, without preparation
 };
 
+/// Time of a stage since the image started.
 struct StageStatus {
   std::string name;
   double ms = 0;
-  bool host = false;
-};  ///< since the image started
+  bool host = false;  ///< wall time of the host; else device time
+};
 
 /// The scale of a layer that does not show light.
 struct Legend {

@@ -31,8 +31,7 @@ class Kernels {
   /// sums it.
   virtual gpu::Defines defines() const { return {}; }
   /// GLSL hook called at every vertex (shaders/transport/vertex_hook.glsl); relative to shaders/, or
-  /// absolute;
-  /// "": none.
+  /// absolute; "": none.
   virtual std::string hook() const { return ""; }
   /// Binds what the hook reads; called again after Wavefront::rebind_lookup().
   virtual void bind(gpu::Resources& resources) const = 0;

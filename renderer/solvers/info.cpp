@@ -31,7 +31,7 @@ std::span<const ChangeRow> default_changes() {
       {"overlay.", k_invalidates_nothing, "how it is shown"},
       {"about", k_invalidates_nothing, "words"},
       {"relight.", k_invalidates_light,
-       "groups of the lights, and their light where groups are not kept apart"},
+       "groups of the lights, and their light where groups are not separate"},
       {"relight.presets", k_invalidates_nothing, "names of mixes"},
       {"relight.layers", k_invalidates_nothing, "what is written into files"},
       {"tracer", k_invalidates_nothing, "all tracers find the same surfaces"},

@@ -1,7 +1,7 @@
 #pragma once
-// What a solver promises for a scene, given a short pilot of path tracing: data for the choice of solvers
-// (components.X=auto, plan/choose.h). Costs are in samples: the cost of one path-traced sample of every
-// pixel.
+// Expected cost and error of a solver in a scene, from a short pilot of path tracing: data for the choice of
+// solvers (components.X=auto, plan/choose.h). Costs are in samples: the cost of one path-traced sample of
+// every pixel.
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -2,13 +2,14 @@
 
 namespace lucerna::solvers {
 
-shared::Frame Picture::frame_for(const Routing& routing, uint32_t enabled) const {
-  return transport::make_frame(flat, camera, task.automaton,
-                               {.width = width,
-                                .height = height,
-                                .seed = uint32_t(task.settings.integer("seed")),
-                                .max_depth = uint32_t(task.settings.integer("path.max_depth")),
-                                .roulette_depth = uint32_t(task.settings.integer("path.roulette_depth")),
+shared::Frame path_frame(const FrameSource& source, const Routing& routing, uint32_t enabled) {
+  const OptionValues& settings = source.settings;
+  return transport::make_frame(source.flat, source.camera, source.automaton,
+                               {.width = source.width,
+                                .height = source.height,
+                                .seed = uint32_t(settings.integer("seed")),
+                                .max_depth = uint32_t(settings.integer("path.max_depth")),
+                                .roulette_depth = uint32_t(settings.integer("path.roulette_depth")),
                                 .enabled = enabled,
                                 .routes = routing.lookups,
                                 .fallback = routing.fallback,

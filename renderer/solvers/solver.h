@@ -46,6 +46,18 @@ struct Routing {
   uint32_t through = 0;
 };
 
+/// What a frame of paths depends on besides their lookups.
+struct FrameSource {
+  const paths::Automaton& automaton;
+  const OptionValues& settings;
+  const upload::FlatScene& flat;
+  const scene::Camera& camera;
+  uint32_t width = 0, height = 0;
+};
+
+/// The frame of paths that look light up by these routes and compute the `enabled` components.
+shared::Frame path_frame(const FrameSource& source, const Routing& routing, uint32_t enabled);
+
 /// The current picture. Valid during a call.
 struct Picture {
   const Task& task;
@@ -56,8 +68,10 @@ struct Picture {
   /// For begin(), display only: factor on the light of each group, or on all light, since the last begin(),
   /// if known.
   std::optional<std::vector<vec3>> light_factors;
-  /// A frame for the solver's own paths from the same camera, with these routes and `enabled` components.
-  shared::Frame frame_for(const Routing& routing, uint32_t enabled) const;
+  /// path_frame() of the solver's own paths from the same camera.
+  shared::Frame frame_for(const Routing& routing, uint32_t enabled) const {
+    return path_frame({task.automaton, task.settings, flat, camera, width, height}, routing, enabled);
+  }
 };
 
 using Cancel = std::function<bool()>;

@@ -69,30 +69,38 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   if (flat.groups) f.sky_group = flat.groups->sky, f.sun_group = flat.groups->sun;
   const bool met = flat.effects.emissive || flat.effects.shapes || flat.environment_radiance != vec3(0);
   const std::vector<uint32_t> table = paths::pack(automaton, options.enabled, options.routes, met);
-  assert(table.size() <= shared::k_gather_state);
+  assert(table.size() <= shared::k_phase_states);
   std::copy(table.begin(), table.end(), f.automaton);
   if (options.fallback != 0) {
-    const auto put = [&](uint32_t at, uint32_t enabled, const paths::LookupRoutes& routes) {
+    const auto put = [&](uint32_t phase, uint32_t enabled, const paths::LookupRoutes& routes) {
+      const uint32_t at = shared::in_phase(0, phase);
       const std::vector<uint32_t> all = paths::pack(automaton, enabled, routes, met);
       for (size_t i = 0; i < all.size(); ++i) f.automaton[at + i] = all[i] + (at | at << 8 | at << 16);
     };
     // A path that passes a lookup must compute the light of the next vertex itself, for any component.
     paths::LookupRoutes gather = options.gather, nothing;
     gather.replaced = nothing.replaced = options.routes.replaced;
-    put(shared::k_gather_state, options.fallback, gather);
-    put(shared::k_fallback_state, options.fallback, nothing);
-    put(shared::k_known_state, options.fallback, nothing);
+    put(shared::k_phase_gather, options.fallback, gather);
+    put(shared::k_phase_fallback, options.fallback, nothing);
+    put(shared::k_phase_known, options.fallback, nothing);
     // Everything behind ED has been looked up: such a path may only meet the light that was sampled.
     constexpr uint32_t k_next = 0xffffff, k_live = 1u << 27, k_none = paths::k_component_count << 24;
     constexpr uint32_t k_dead = shared::k_dead_state | shared::k_dead_state << 8 | shared::k_dead_state << 16;
-    for (size_t i = 0; i < table.size(); ++i) {
-      uint32_t& known = f.automaton[shared::k_known_state + i];
+    for (uint32_t i = 0; i < table.size(); ++i) {
+      uint32_t& known = f.automaton[shared::in_phase(i, shared::k_phase_known)];
       const bool meets = met && (known >> 24 & 7u) < paths::k_component_count;
       known = (known & ~(k_next | k_live)) | k_dead | (meets ? k_live : 0);
     }
     f.automaton[shared::k_dead_state] = k_dead | k_none;
   }
   return f;
+}
+
+void compute_everything(shared::Frame& frame) {
+  for (const uint32_t phase : {shared::k_phase_start, shared::k_phase_gather})
+    for (uint32_t s = 0; s < shared::k_phase_states; ++s)
+      frame.automaton[shared::in_phase(s, phase)] =
+          frame.automaton[shared::in_phase(s, shared::k_phase_fallback)];
 }
 
 void set_delegated_tables(shared::Frame& frame, const shared::Frame& other) {

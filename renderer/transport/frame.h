@@ -18,11 +18,14 @@ struct FrameOptions {
   uint32_t roulette_depth = 3;  ///< events before roulette may end one
   uint32_t enabled = 15;        ///< components on (bit i)
   paths::LookupRoutes routes;   ///< additional lookups
-  /// Components of paths in shared::k_fallback_state; 0: there are no such paths.
+  /// Components of paths in shared::k_phase_fallback; 0: there are no such paths.
   uint32_t fallback = 0;
-  /// Components among these that gathering paths look up later (shared::k_gather_state).
+  /// Lookups of these components by gathering paths (shared::k_phase_gather).
   paths::LookupRoutes gather;
 };
+
+/// All paths compute everything, as in shared::k_phase_fallback, which the frame must have.
+void compute_everything(shared::Frame& frame);
 
 /// Paths that start in shared::k_delegated_states use the automaton of `other`.
 void set_delegated_tables(shared::Frame& frame, const shared::Frame& other);

@@ -9,7 +9,8 @@ using namespace shared;
 
 namespace {
 
-constexpr uint32_t k_batch = 2048;  // paths at once: 20 MiB of events
+constexpr uint32_t k_batch = 2048;                                                          // paths at once
+static_assert(uint64_t{k_batch} * PathRecorder::k_events * sizeof(PathEvent) <= 20 << 20);  // bytes of events
 
 }  // namespace
 

@@ -2,8 +2,8 @@
 // Traces chosen samples of pixels again and records their events (shaders/shared/path_events.h).
 //
 // A recorded path is the path of that sample: same random numbers, same kernels with the sink compiled in.
-// The picture's kernels and film are not touched. Light that a solver makes anew for each sample (photons in
-// rounds, light tracing) and learned light selection are those of the moment of recording.
+// The picture's kernels and film are not touched. Light that a solver computes again for each sample (photons
+// in rounds, light tracing) and learned light selection are those of the moment of recording.
 #include <functional>
 #include <span>
 #include <vector>

@@ -34,7 +34,8 @@ struct LightClusters {
 
 /// True if there is more than one cluster. Not if the sky is separate from its sun.
 bool has_light_clusters(const FlatScene& flat);
-/// Clusters for the distribution of `flat`: about 256 of the sky, 128 of emissive triangles, 64 of lamps.
+/// Clusters for the distribution of `flat`: of the sky, of emissive triangles and of lamps, each up to about
+/// a number that light_clusters.cpp sets.
 LightClusters make_light_clusters(const FlatScene& flat);
 /// #defines of kernels with learned light selection, for scenes with has_light_clusters().
 gpu::Defines learned_defines(const FlatScene& flat);

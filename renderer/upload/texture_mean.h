@@ -8,8 +8,8 @@
 
 namespace lucerna::upload {
 
-/// Exact mean luminances of textures over triangles. Keeps the sums of each requested texture, 8 bytes a
-/// texel; valid as long as the scene.
+/// Exact mean luminances of textures over triangles. Keeps the sums of each requested texture, a
+/// double per texel; valid as long as the scene.
 class TextureMeans {
  public:
   explicit TextureMeans(const scene::Scene& scene) : scene_(scene) {}

@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { ErrorPush push; };
 layout(scalar) writeonly buffer BlockErrors { BlockError block_errors[]; };
 #if LUCERNA_LOOKUP_ERRORS
-layout(scalar) readonly buffer FilmRecords { vec2 film_records[]; };  // squares: noise of records, of interpolation
+layout(scalar) readonly buffer FilmLookups { vec2 film_lookups[]; };  // squares: noise of stored light, of interpolation
 // Blur error of lookups, signed: sums over the even and over the odd samples.
 layout(scalar) readonly buffer FilmBiasEven { float film_bias_even[]; };
 layout(scalar) readonly buffer FilmBiasOdd { float film_bias_odd[]; };
@@ -41,8 +41,8 @@ struct Row {
   float half_n[2];                      // number of pixels of its halves
   uint there;                           // bit x: pixel x has two samples
 #if LUCERNA_LOOKUP_ERRORS
-  vec2 squares[k_block];  // per pixel: FilmRecords, weighted by visibility
-  vec2 records;           // sum of FilmRecords
+  vec2 squares[k_block];  // per pixel: FilmLookups, weighted by visibility
+  vec2 lookups;           // sum of FilmLookups
   vec2 bias;              // sums over the row, of the means of the even and of the odd samples
   float unmixed;          // sum over the row: luminance before the mix
 #endif
@@ -76,7 +76,7 @@ Row read_row(bool working, uvec2 first) {
   r.half_n[0] = r.half_n[1] = 0.0;
   r.there = 0u;
 #if LUCERNA_LOOKUP_ERRORS
-  r.records = r.bias = vec2(0.0);
+  r.lookups = r.bias = vec2(0.0);
   r.unmixed = 0.0;
 #endif
 #if !LUCERNA_STOPPING_ONLY
@@ -97,7 +97,7 @@ Row read_row(bool working, uvec2 first) {
 #if LUCERNA_LOOKUP_ERRORS
     // The relative errors of lookups are taken as equal for all light groups.
     float mixed = unmixed > 0.0 ? (a[0] + b[0]) / unmixed : 1.0;
-    r.squares[x] = there && push.records != 0u ? square(mixed) * film_records[pixel] : vec2(0.0);
+    r.squares[x] = there && push.lookup_errors != 0u ? square(mixed) * film_lookups[pixel] : vec2(0.0);
     r.unmixed += there ? 0.5 * unmixed : 0.0;
     // The halves are independent: the expected product of their errors is the square, without their noise.
     vec2 bias = vec2(0.0);
@@ -105,7 +105,7 @@ Row read_row(bool working, uvec2 first) {
     bias *= mixed;
     r.squares[x].y += bias.x * bias.y;
     r.bias += bias;
-    r.records += r.squares[x];
+    r.lookups += r.squares[x];
     r.squares[x] *= part * part;
 #endif
     r.half_n[x / 4u] += there ? 1.0 : 0.0;
@@ -197,7 +197,7 @@ float local_shown(uint lane, uint x, uint row) {
 // Sums over a row of errors relative to the shown luminance around: r by half, squared lookup errors, e^2 and e^4.
 struct Relative {
   float of_half[2];
-  vec2 records;
+  vec2 lookups;
 #if !LUCERNA_STOPPING_ONLY
   float seen[5], fourth;
 #endif
@@ -206,7 +206,7 @@ struct Relative {
 Relative relative_errors(Row r, uint lane, uint row) {
   Relative sum;
   sum.of_half[0] = sum.of_half[1] = 0.0;
-  sum.records = vec2(0.0);
+  sum.lookups = vec2(0.0);
 #if !LUCERNA_STOPPING_ONLY
   sum.fourth = 0.0;
   for (uint c = 0u; c < 5u; ++c) sum.seen[c] = 0.0;
@@ -215,7 +215,7 @@ Relative relative_errors(Row r, uint lane, uint row) {
     float scale = seen_scale(r.shown[x], local_shown(lane, x, row), push.luminance_floor), e = r.seen[x] / scale;
     sum.of_half[x / 4u] += 1.2533141 * min(e, 1.0);  // sqrt(pi/2)
 #if LUCERNA_LOOKUP_ERRORS
-    sum.records += r.squares[x] / (scale * scale);
+    sum.lookups += r.squares[x] / (scale * scale);
 #endif
 #if !LUCERNA_STOPPING_ONLY
     sum.seen[0] += e * e;
@@ -247,8 +247,8 @@ void main() {
   barrier();
   for (uint h = 0u; h < 2u; ++h) values[h * 64u + lane] = relative.of_half[h];
 #if LUCERNA_LOOKUP_ERRORS
-  values[2u * 64u + lane] = relative.records.x;
-  values[3u * 64u + lane] = relative.records.y;
+  values[2u * 64u + lane] = relative.lookups.x;
+  values[3u * 64u + lane] = relative.lookups.y;
 #endif
 #if !LUCERNA_STOPPING_ONLY
   for (uint c = 0u; c < 5u; ++c) values[(4u + c) * 64u + lane] = relative.seen[c];
@@ -256,8 +256,8 @@ void main() {
   values[10u * 64u + lane] = r.white;
   values[11u * 64u + lane] = r.dark;
 #if LUCERNA_LOOKUP_ERRORS
-  values[12u * 64u + lane] = r.records.x;
-  values[13u * 64u + lane] = r.records.y;
+  values[12u * 64u + lane] = r.lookups.x;
+  values[13u * 64u + lane] = r.lookups.y;
   values[14u * 64u + lane] = r.bias.x;
   values[15u * 64u + lane] = r.bias.y;
   values[16u * 64u + lane] = r.unmixed;
@@ -265,7 +265,7 @@ void main() {
 #endif
   barrier();
 #if LUCERNA_LOOKUP_ERRORS
-  if (working && row == 2u) block_errors[block.index].records_relative = sum_of_rows(2u, first_row, k_block);
+  if (working && row == 2u) block_errors[block.index].lookup_noise_relative = sum_of_rows(2u, first_row, k_block);
   if (working && row == 3u) block_errors[block.index].interpolation_relative = sum_of_rows(3u, first_row, k_block);
 #endif
 #if !LUCERNA_STOPPING_ONLY
@@ -276,7 +276,7 @@ void main() {
 #if LUCERNA_LOOKUP_ERRORS
   if (working && row < 2u) block_errors[block.index].bias[row] = sum_of_rows(14u + row, first_row, k_block);
   if (working && row == 5u) block_errors[block.index].unmixed = sum_of_rows(16u, first_row, k_block);
-  if (working && row == 6u) block_errors[block.index].records = sum_of_rows(12u, first_row, k_block);
+  if (working && row == 6u) block_errors[block.index].lookup_noise = sum_of_rows(12u, first_row, k_block);
   if (working && row == 7u) block_errors[block.index].interpolation = sum_of_rows(13u, first_row, k_block);
 #endif
 #endif

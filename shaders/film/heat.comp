@@ -10,7 +10,7 @@ layout(scalar) writeonly buffer Picture { uint picture[]; };
 layout(scalar) readonly buffer FilmVertices { uint film_vertices[]; };
 layout(scalar) readonly buffer BlockErrors { BlockError block_errors[]; };
 
-// The quadratic mean of its quadrants' relative errors, and what records make of it, as film/error.h defines a tile's;
+// The quadratic mean of its quadrants' relative errors, with the errors of lookups, as film/error.h defines a tile's;
 // negative: not known.
 float block_relative(uint block) {
   float squares = 0.0, quadrants = 0.0, all = 0.0;
@@ -24,8 +24,8 @@ float block_relative(uint block) {
     }
   }
   if (quadrants <= 0.0) return -1.0;
-  float records = max(block_errors[block].records_relative, 0.0) / all;
-  return sqrt(squares / quadrants + records) + sqrt(max(block_errors[block].interpolation_relative, 0.0) / all);
+  float lookups = max(block_errors[block].lookup_noise_relative, 0.0) / all;
+  return sqrt(squares / quadrants + lookups) + sqrt(max(block_errors[block].interpolation_relative, 0.0) / all);
 }
 
 void main() {

@@ -10,11 +10,11 @@ layout(push_constant, scalar) uniform Push { PropagatePush push; };
 uniform samplerBuffer candidate_texels;  // first lookups of the paths: k_probe_errors
 uniform samplerBuffer beyond_texels;     // lookups beyond: k_probe_errors_beyond
 uniform samplerBuffer residual_texels;       // leave_one_out.comp
-layout(scalar) writeonly buffer FilmRecords { vec2 film_records[]; };
-layout(scalar) writeonly buffer BlockRecordSums { BlockRecords block_records[]; };
+layout(scalar) writeonly buffer FilmLookups { vec2 film_lookups[]; };
+layout(scalar) writeonly buffer BlockLookupSums { BlockLookups block_records[]; };
 
-const uint k_groups = k_record_lanes / 4u;
-const uint k_values = 2u * k_record_lanes + 1u;  // per path: noise, noise of the interpolation error, interpolation error
+const uint k_groups = k_lookup_lanes / 4u;
+const uint k_values = 2u * k_lookup_lanes + 1u;  // per path: noise, noise of the interpolation error, interpolation error
 shared float sums[k_values * 64u];
 
 struct ErrorSums {
@@ -74,7 +74,7 @@ ErrorSums path_errors(uint slot, bool inside) {
 void keep_pixel(uvec2 xy, vec2 squares) {
   for (uint y = xy.y * push.step; y < min((xy.y + 1u) * push.step, push.height); ++y)
     for (uint x = xy.x * push.step; x < min((xy.x + 1u) * push.step, push.width); ++x)
-      film_records[y * push.width + x] = squares;
+      film_lookups[y * push.width + x] = squares;
 }
 
 // Sums over the pixels of each film block of this workgroup.
@@ -94,9 +94,9 @@ void keep_sums(uint block, uint path, uint width) {
       pixels += counts ? 1.0 : 0.0;
     }
     uint film_block = to.y * film_across + to.x;
-    if (value < k_record_lanes) block_records[film_block].noise[path * k_record_lanes + value] = sum;
-    else if (value < 2u * k_record_lanes)
-      block_records[film_block].interpolation_noise[path * k_record_lanes + value - k_record_lanes] = sum;
+    if (value < k_lookup_lanes) block_records[film_block].noise[path * k_lookup_lanes + value] = sum;
+    else if (value < 2u * k_lookup_lanes)
+      block_records[film_block].interpolation_noise[path * k_lookup_lanes + value - k_lookup_lanes] = sum;
     else block_records[film_block].interpolation[path] = sum;
     if (value == 0u) block_records[film_block].pixels = pixels;
   }
@@ -108,9 +108,9 @@ void keep(ErrorSums c, uint block, uint path, uint width) {
   for (uint g = 0u; g < k_groups; ++g)
     for (uint k = 0u; k < 4u; ++k) {
       sums[(4u * g + k) * 64u + lane] = c.noise[g][k];
-      sums[(k_record_lanes + 4u * g + k) * 64u + lane] = c.interpolation_noise[g][k];
+      sums[(k_lookup_lanes + 4u * g + k) * 64u + lane] = c.interpolation_noise[g][k];
     }
-  sums[2u * k_record_lanes * 64u + lane] = c.interpolation;
+  sums[2u * k_lookup_lanes * 64u + lane] = c.interpolation;
   barrier();
   keep_sums(block, path, width);
 }
@@ -124,8 +124,8 @@ void main() {
   ErrorSums one = path_errors(min(index, push.pixels - 1u), inside), other = path_errors(push.pixels + min(index, push.pixels - 1u), inside);
   vec2 squares = vec2(0.0, one.interpolation * other.interpolation);
   for (uint g = 0u; g < k_groups; ++g) {
-    squares.x += dot(one.noise[g], other.noise[g]) / float(k_record_lanes);
-    squares.y -= dot(one.interpolation_noise[g], other.interpolation_noise[g]) / float(k_record_lanes);
+    squares.x += dot(one.noise[g], other.noise[g]) / float(k_lookup_lanes);
+    squares.y -= dot(one.interpolation_noise[g], other.interpolation_noise[g]) / float(k_lookup_lanes);
   }
   if (inside) keep_pixel(xy, squares);
   keep(one, block, 0u, size.x);

@@ -25,8 +25,8 @@ struct cache_Vertex {
 uint cache_probing() { return LUCERNA_PATH_EVENTS != 0 ? k_probe_none : cache.probing; }
 bool cache_propagates() { return cache_probing() == k_probe_errors || cache_probing() == k_probe_errors_beyond; }
 // State of the eye path. The delegated states repeat the same table: record light never depends on delegation.
-uint cache_state_of(VertexIn v) { return v.state % k_delegated_states; }
-bool cache_next_read(uint state) { return cache_probing() == k_probe_next && state >= k_fallback_state; }
+uint cache_state_of(VertexIn v) { return without_delegation(v.state); }
+bool cache_next_read(uint state) { return cache_probing() == k_probe_next && is_behind_lookup(state); }
 // Random number that selects one of the records.
 float record_lot(VertexIn v) { return sample_2d(v.random, k_pad_record + v.depth).x; }
 bool cache_coin(VertexIn v) { return (sample_vertex_bits(v.random, v.depth, k_pad_light_choice).x & 1u) != 0u; }
@@ -36,7 +36,7 @@ bool cache_coin(VertexIn v) { return (sample_vertex_bits(v.random, v.depth, k_pa
 cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
   cache_Vertex x;
   uint own_state = cache_state_of(v), routes = cache.routes[own_state];
-  bool beyond = cache_probing() == k_probe_beyond && own_state >= k_fallback_state;
+  bool beyond = cache_probing() == k_probe_beyond && is_behind_lookup(v.state);
   bool screen = cache_probing() == k_probe_screen && v.depth == 0u;
   bool next_read = cache_next_read(own_state);
   // Learned light sampling must not depend on which solver computes a component.
@@ -113,10 +113,11 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
 #endif
   o.sky_known = o.sky_known || (x.looks && !x.alone && (routes & 15u) < k_component_count);  // part 0: k_part_direct
   o.samples_lights = o.samples_lights && cache_probing() == k_probe_none;
-  if (x.alone && x.gathers && own_state < k_gather_state) o.branches = max(o.branches, cache.branches);
+  if (x.alone && x.gathers && phase_of(v.state) == k_phase_start) o.branches = max(o.branches, cache.branches);
   return x;
 }
 
+#define cache_HAS_COSINE
 vec3 cache_cosine(VertexIn v, inout cache_Vertex x, vec2 u, vec3 cosine) {
 #if LUCERNA_CACHE_GATHERS
   // No guiding while places are chosen: places must not depend on the light.
@@ -129,6 +130,7 @@ vec3 cache_cosine(VertexIn v, inout cache_Vertex x, vec2 u, vec3 cosine) {
 }
 
 // MIS weight of a hit against light samples, from the unguided density. Any weights that sum to 1 are unbiased.
+#define cache_HAS_WEIGH
 void cache_weigh(VertexIn v, cache_Vertex x, vec3 direction, inout BsdfSample b) {
 #if LUCERNA_CACHE_GATHERS
   if (x.guide.total > 0.0 && !b.transmitted && b.pdf > 0.0)
@@ -137,20 +139,22 @@ void cache_weigh(VertexIn v, cache_Vertex x, vec3 direction, inout BsdfSample b)
 }
 
 // State behind the vertex: this lookup passed, all lookups passed, or all lookups done.
+#define cache_HAS_STATE
 uint cache_state(VertexIn v, cache_Vertex x, BsdfSample b, uint state) {
   bool passes_all = (x.alone && !x.gathers) || cache_probing() == k_probe_beyond || cache_probing() == k_probe_next ||
                     (cache_probing() == k_probe_errors_beyond && !x.alone);
-  uint from = passes_all ? k_fallback_state : x.alone ? k_gather_state : k_known_state, own_state = cache_state_of(v);
-  bool another = x.looks && b.event == k_event_diffuse && own_state < k_fallback_state && (x.alone || passes_all || own_state >= k_gather_state);
-  return another ? state % k_gather_state + from + (v.state - own_state) : state;
+  uint next = passes_all ? k_phase_fallback : x.alone ? k_phase_gather : k_phase_known, phase = phase_of(v.state);
+  bool another = x.looks && b.event == k_event_diffuse && !is_behind_lookup(v.state) && (x.alone || passes_all || phase == k_phase_gather);
+  return another ? in_phase(state, next) : state;
 }
 
+#define cache_HAS_LEAVE
 void cache_leave(VertexIn v, inout cache_Vertex x, Leaving l, inout vec3 throughput, inout bool go_on) {
   bool diffuse = l.b.event == k_event_diffuse, propagates = cache_propagates();
   bool ends_here = cache_probing() == k_probe_lookups || cache_probing() == k_probe_reads || cache_next_read(cache_state_of(v));
   go_on = go_on && cache_probing() != k_probe_screen && !(ends_here && x.looks && diffuse);
   // Of the lookups beyond the first, a coin selects one; its light also counts for the lookups that it skips.
-  bool reads = propagates && x.looks && !x.alone && diffuse, later = reads && cache_state_of(v) >= k_fallback_state;
+  bool reads = propagates && x.looks && !x.alone && diffuse, later = reads && is_behind_lookup(v.state);
   if (later) throughput *= 2.0;
   if (reads && l.finite && (later ? cache_coin(v) : cache_probing() == k_probe_errors)) {
     uint media = 0u;
@@ -166,6 +170,7 @@ void cache_leave(VertexIn v, inout cache_Vertex x, Leaving l, inout vec3 through
   go_on = go_on && !(propagates && x.looks && diffuse && x.alone && !x.gathers);
 }
 
+#define cache_HAS_END
 void cache_end(VertexIn v, cache_Vertex x) {
   if (!x.noted) return;
   candidates[v.slot * k_candidate_texels] = x.note;

@@ -23,7 +23,7 @@ layout(scalar) buffer PhotonImportance { uint photon_importance[]; };
 layout(scalar) writeonly buffer PhotonLookups { PhotonLookup photon_lookups[]; };
 
 struct photons_Vertex {
-  uint from;  // first of the states in which the path continues behind the diffuse lobe; 0: unchanged
+  uint phase;  // in which the path continues behind the diffuse lobe; k_phase_start: unchanged
 };
 
 // Not 0: pilot paths. Recorded paths are the picture's, whatever is being prepared.
@@ -36,7 +36,7 @@ vec3 turn_along(vec3 w, vec3 a, vec3 b) {
 }
 
 photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
-  photons_Vertex vertex = photons_Vertex(0u);
+  photons_Vertex vertex = photons_Vertex(k_phase_start);
   // Learned light sampling must not depend on which solver computes a component.
   uint word = v.again || frame.learning != 0u ? k_photon_no_components : photons.component[v.state];
   uint components = word & k_photon_no_components, only = word >> k_photon_unreachable_only_shift;  // bits, by part
@@ -48,11 +48,11 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
 #if LUCERNA_PHOTON_IRRADIANCE
   some = some || irradiance.triangles > 0u;
 #endif
-  if (reads && some && v.state % k_delegated_states >= k_gather_state) vertex.from = k_known_state;
+  if (reads && some && phase_of(v.state) != k_phase_start) vertex.phase = k_phase_known;
 #if LUCERNA_PHOTON_IRRADIANCE
   if (reads && reads_irradiance(v.state)) {
     bool known = irradiance_read(v, o);
-    if (!known) vertex.from = k_fallback_state;
+    if (!known) vertex.phase = k_phase_fallback;
     // In a cell without data the path computes all light except the light that no eye path finds.
     if (known || irradiance.gathers == 0u) components = k_photon_no_components;
     only = 0xfu;  // all parts
@@ -158,12 +158,8 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
 #endif
   return vertex;
 }
-vec3 photons_cosine(VertexIn v, inout photons_Vertex x, vec2 u, vec3 cosine) { return cosine; }
-void photons_weigh(VertexIn v, photons_Vertex x, vec3 direction, inout BsdfSample b) {}
+#define photons_HAS_STATE
 uint photons_state(VertexIn v, photons_Vertex x, BsdfSample b, uint state) {
-  uint block = v.state - v.state % k_delegated_states;
-  return x.from != 0u && b.event == k_event_diffuse ? block + x.from + state % k_gather_state : state;
+  return x.phase != k_phase_start && b.event == k_event_diffuse ? in_phase(state, x.phase) : state;
 }
-void photons_leave(VertexIn v, inout photons_Vertex x, Leaving l, inout vec3 throughput, inout bool go_on) {}
-void photons_end(VertexIn v, photons_Vertex x) {}
 #endif

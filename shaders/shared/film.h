@@ -45,13 +45,13 @@ struct BlockError {
   // neighbours.
   float relative[4];      ///< sum of r
   float quadrant_pixels[4];
-  // Errors of lookups, where known, else 0: sums of the squares of record noise and of the mean lookup error, by
-  // interpolation (BlockRecords; FilmRecords) and by blur (FilmBiasEven, FilmBiasOdd), which may be negative by chance; and
+  // Errors of lookups, where known, else 0: sums of the squares of lookup noise and of the mean lookup error, by
+  // interpolation (BlockLookups; FilmLookups) and by blur (FilmBiasEven, FilmBiasOdd), which may be negative by chance; and
   // of these, where visible, relative as e.
-  float records, interpolation;
-  float records_relative, interpolation_relative;
+  float lookup_noise, interpolation;
+  float lookup_noise_relative, interpolation_relative;
   float bias[2];          ///< blur alone, signed: sum of the means of the even and of the odd samples
-  /// Where lookup errors are known: luminance of the unmixed light (as in BlockRecords), [0]; `luminance` is that of the
+  /// Where lookup errors are known: luminance of the unmixed light (as in BlockLookups), [0]; `luminance` is that of the
   /// mix.
   float unmixed;
   // The error as seen: sums of e^2, and of e^4 of [0]; number of pixels at least as bright as white, and darker than the
@@ -62,16 +62,16 @@ struct BlockError {
 };
 
 /// Errors of lookups that are common to all samples, in luminance, summed over pixels of a block. They are not sample noise,
-/// and more samples do not reduce them. Pixels that read the same record have correlated errors, so larger regions add these
-/// sums before squaring. In each of k_record_lanes lanes (a multiple of 4, at most 32: a bit each of a word) every record's
-/// error has a random sign; two independent paths a pixel, [0] and [1], propagate it, and the mean product of their lanes is
+/// and more samples do not reduce them. Pixels that read the same stored light have correlated errors, so larger regions add these
+/// sums before squaring. In each of k_lookup_lanes lanes (a multiple of 4, at most 32: a bit each of a word) the error of
+/// each stored value has a random sign; two independent paths a pixel, [0] and [1], propagate it, and the mean product of their lanes is
 /// the square.
-LUCERNA_CONST uint k_record_lanes = 16u;
-struct BlockRecords {
+LUCERNA_CONST uint k_lookup_lanes = 16u;
+struct BlockLookups {
   float pixels;                            ///< summed pixels, of any size
   float interpolation[2];                  ///< estimated interpolation error
-  float noise[2 * k_record_lanes];         ///< by path, by lane
-  float interpolation_noise[2 * k_record_lanes];  ///< noise of `interpolation` from the records' noise
+  float noise[2 * k_lookup_lanes];         ///< by path, by lane
+  float interpolation_noise[2 * k_lookup_lanes];  ///< noise of `interpolation` from that noise
 };
 
 /// Bias that a lookup of secondary or tertiary light adds to its path if it finds nothing (no photons near): far below any
@@ -84,7 +84,7 @@ struct ErrorPush {
   uint width, height;
   uint block_count;
   float luminance_floor, luminance_white;  ///< floor and white of seen_error.h
-  uint records;           ///< not 0: FilmRecords is valid
+  uint lookup_errors;     ///< not 0: FilmLookups is valid
   uint bias;              ///< not 0: FilmBiasEven and FilmBiasOdd are valid
 };
 

@@ -11,7 +11,7 @@ struct FilterPush {
   uint first;      ///< pixel of the first invocation, where a kernel runs in pieces
   uint looked_up;  ///< bit i: component i looks up records, whose errors are known
   uint seen;       ///< not 0: the surfaces seen in mirrors and through glass are known
-  float scale;     ///< factor on radiance that brings it into the range of 16-bit floats
+  float scale;     ///< factor that scales radiance to the range of 16-bit floats
 };
 
 /// Minimum surface colour by which light is divided before filtering.

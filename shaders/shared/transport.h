@@ -4,19 +4,33 @@
 #include "shaders/shared/lanes.h"
 LUCERNA_SHARED_BEGIN
 
-/// Gathering: states of paths that have intentionally passed a lookup whose light is too fine to interpolate. They look up
-/// tertiary light at the next diffuse vertex that is not passed too, if it is looked up at all.
-LUCERNA_CONST uint k_gather_state = 8u;
-/// Fallback: states of paths behind a lookup without data; they compute everything.
-LUCERNA_CONST uint k_fallback_state = 16u;
-/// Known: states of paths behind a lookup; they may only meet the light that the vertex behind them has sampled.
-LUCERNA_CONST uint k_known_state = 24u;
-/// Dead state. Reuses a slot that eye paths never reach after a lookup.
-LUCERNA_CONST uint k_dead_state = 24u;
-/// The states repeat from here on for paths in pixels where a solver delegates light to eye paths
-/// (solvers::SolverType::delegable_components).
-LUCERNA_CONST uint k_delegated_states = 32u;
-LUCERNA_CONST uint k_automaton_states = 64u;
+// States of eye paths: those of the automaton, once for each phase of lookups, and all of that again for paths in pixels
+// where a solver delegates light to eye paths (solvers::SolverType::delegable_components).
+LUCERNA_CONST uint k_phase_states = 8u;  ///< room for the automaton's states in a phase
+LUCERNA_CONST uint k_phase_start = 0u;   ///< no lookup has been passed
+/// The path has intentionally passed a lookup whose light is too fine to interpolate. It looks up tertiary light at the next
+/// diffuse vertex that is not passed too, if it is looked up at all.
+LUCERNA_CONST uint k_phase_gather = 1u;
+LUCERNA_CONST uint k_phase_fallback = 2u;  ///< behind a lookup without data: the path computes everything
+/// Behind a lookup with data: the path may only meet the light that the vertex behind it has sampled.
+LUCERNA_CONST uint k_phase_known = 3u;
+LUCERNA_CONST uint k_phases = 4u;
+LUCERNA_CONST uint k_delegated_states = k_phases * k_phase_states;  ///< first of the states in such pixels
+LUCERNA_CONST uint k_automaton_states = 2u * k_delegated_states;
+/// No light can follow. Uses a state that eye paths never reach in phase known.
+LUCERNA_CONST uint k_dead_state = k_phase_known * k_phase_states;
+
+LUCERNA_INLINE uint phase_of(uint state) { return state / k_phase_states % k_phases; }
+/// The same state of the automaton in a phase.
+LUCERNA_INLINE uint in_phase(uint state, uint phase) {
+  return state - state % k_delegated_states + phase * k_phase_states + state % k_phase_states;
+}
+/// The state of the automaton, 0 to k_phase_states - 1.
+LUCERNA_INLINE uint without_phase(uint state) { return state % k_phase_states; }
+/// The state with its phase in pixels where nothing is delegated, 0 to k_delegated_states - 1.
+LUCERNA_INLINE uint without_delegation(uint state) { return state % k_delegated_states; }
+/// True behind a lookup that was not passed to gather.
+LUCERNA_INLINE bool is_behind_lookup(uint state) { return phase_of(state) >= k_phase_fallback; }
 
 // State of a path since its last scattering event, for records with sky light (LUCERNA_SEPARATE_SKY):
 LUCERNA_CONST uint k_path_sky_only = 1u << 6;     ///< a record's first ray: the sky is the only light it may hit

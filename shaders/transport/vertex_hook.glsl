@@ -1,17 +1,20 @@
 // Interface of solver hooks, which shade.comp calls at every scattering vertex. A hook is a file with a structure X_Vertex,
-// the solver's state at one vertex, and these functions, where X is the solver's name:
+// the solver's state at one vertex, and functions, where X is the solver's name. One is required:
 //
 //   X_Vertex X_read(VertexIn v, inout VertexOut o)
 //       looks up light and adds it to o
-//   vec3 X_cosine(VertexIn v, inout X_Vertex x, vec2 u, vec3 cosine)
+//
+// The others are optional. A file that has one defines the macro beside it:
+//
+//   X_HAS_COSINE  vec3 X_cosine(VertexIn v, inout X_Vertex x, vec2 u, vec3 cosine)
 //       direction of the diffuse lobe, replaces the cosine-distributed `cosine`; local to v.to_world
-//   void X_weigh(VertexIn v, X_Vertex x, vec3 direction, inout BsdfSample b)
+//   X_HAS_WEIGH   void X_weigh(VertexIn v, X_Vertex x, vec3 direction, inout BsdfSample b)
 //       updates the weight of the sampled direction where X_cosine has changed its density
-//   uint X_state(VertexIn v, X_Vertex x, BsdfSample b, uint state)
+//   X_HAS_STATE   uint X_state(VertexIn v, X_Vertex x, BsdfSample b, uint state)
 //       automaton state behind the vertex, replaces `state`
-//   void X_leave(VertexIn v, inout X_Vertex x, Leaving l, inout vec3 throughput, inout bool go_on)
+//   X_HAS_LEAVE   void X_leave(VertexIn v, inout X_Vertex x, Leaving l, inout vec3 throughput, inout bool go_on)
 //       may end the path or change its throughput; runs after everything except Russian roulette
-//   void X_end(VertexIn v, X_Vertex x)
+//   X_HAS_END     void X_end(VertexIn v, X_Vertex x)
 //       writes notes about the vertex
 //
 // transport/vertex_hooks.glsl calls the hooks of all solvers in turn; renderer/transport/vertex_hooks.h generates it.

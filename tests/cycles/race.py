@@ -5,7 +5,7 @@
   tests/cycles/race.py scenes/window/window.gltf --error 0.01 --size 256x256 --reference-samples 16384 --set components.primary=cache
 
 Error: relative_mse() of figures.py, with epsilon 0.01 and without the worst 0.1 % of the pixels, against two independent
-long pictures. Each renderer is held against its own ones (Lucerna's by path tracing, without --set). By how much they
+long pictures. Each renderer is compared with its own ones (Lucerna's by path tracing, without --set). By how much they
 miss each other's, and the ratio of their means, is printed.
 
 The samples that reach the error are found first, by pilots; then both render with those, --repeats times in turns. Time

@@ -57,7 +57,7 @@ Figures measure(const Case& c) {
       squares += std::pow(double{shot.luminance[i]} - reference.luminance[i], 2);
     f.truth += std::sqrt(squares / double(shot.luminance.size()) - own) / mean;
     f.estimated += shot.error.relative_sum();
-    f.estimated_paths += shot.error.relative(0), f.estimated_records += shot.error.relative_records();
+    f.estimated_paths += shot.error.relative(0), f.estimated_records += shot.error.relative_lookup_noise();
     f.estimated_interpolation += shot.error.relative_interpolation();
     for (size_t t = 0; t < shot.tiles.size(); ++t) {
       film::TileError a = shot.tiles[t];
@@ -68,7 +68,7 @@ Figures measure(const Case& c) {
       ++f.tested;
       f.by_paths += off <= film::student_90(a.degrees) * a.standard_error;
       f.by_sum += off <= a.half_width_90();
-      a.records.interpolation = 0;
+      a.lookups.interpolation = 0;
       f.by_noise += off <= a.half_width_90();
     }
   }
@@ -134,13 +134,13 @@ TEST_CASE(
     if (!other.step([&] { return ++calls % 149 == 0; })) REQUIRE(++refused < 10000);
   CHECK(refused > 0);
   CHECK(test::identical(image, other.image()));
-  REQUIRE(one.film().record_errors_complete());
-  REQUIRE(other.film().record_errors_complete());
-  const auto a = one.film().records(), b = other.film().records();
+  REQUIRE(one.film().lookup_errors_complete());
+  REQUIRE(other.film().lookup_errors_complete());
+  const auto a = one.film().lookup_errors(), b = other.film().lookup_errors();
   REQUIRE(a.size() == b.size());
   CHECK(std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
   const film::ImageError ea = one.image_error(), eb = other.image_error();
-  CHECK(ea.records_rms > 0);
+  CHECK(ea.lookup_noise_rms > 0);
   CHECK(ea.interpolation_rms > 0);
   CHECK(ea.relative_sum() == eb.relative_sum());
   CHECK(ea.relative_sum() > ea.relative(0));
@@ -148,14 +148,14 @@ TEST_CASE(
   CHECK(other.device().validation_messages() == 0);
   // The estimate starts again for another view.
   other.set_size(32, 32);
-  CHECK_FALSE(other.film().record_errors_complete());
+  CHECK_FALSE(other.film().lookup_errors_complete());
   test::finish(other);
-  CHECK(other.film().record_errors_complete());
+  CHECK(other.film().lookup_errors_complete());
   // Without cached components no record error is reported.
   test::set(one, {{"components.secondary", "path"}, {"components.tertiary", "path"}});
   test::finish(one);
   const film::ImageError plain = one.image_error();
-  CHECK_FALSE(one.film().record_errors_complete());
+  CHECK_FALSE(one.film().lookup_errors_complete());
   CHECK(plain.relative_sum() == plain.relative(0));
 }
 
@@ -182,10 +182,10 @@ TEST_CASE("a target that record errors prevent is not reported as reached and co
   CHECK(limited > 0);
   CHECK(r.ledger().entries().back().floor() > 0);
   // The records' error falls with their noise as the number of rays grows.
-  const double before = r.image_error().records_rms;
+  const double before = r.image_error().lookup_noise_rms;
   test::set(r, {{"cache.rays", "1024"}, {"cache.noise", "0.01"}});
   test::finish(r);
-  CHECK(r.image_error().records_rms < 0.8 * before);
+  CHECK(r.image_error().lookup_noise_rms < 0.8 * before);
 }
 
 }  // namespace cache_calibration_tests

@@ -35,16 +35,16 @@ TEST_CASE("records are refined once more rays reduce the error more than further
   shown.finish();
   const irradiance_cache::RawRecords before = shown.records();
   const uint64_t rays = shown.status().rays;
-  const double noise = shown.r.image_error().relative_records();
+  const double noise = shown.r.image_error().relative_lookup_noise();
   REQUIRE(noise > 0);
   shown.set({{"samples", "256"}});
   const film::Image picture = shown.finish();
-  CHECK(shown.r.film().record_errors_complete());
+  CHECK(shown.r.film().lookup_errors_complete());
   const irradiance_cache::RawRecords after = shown.records();
   INFO(rays << " rays, then " << shown.status().rays << "; noise of records " << noise << ", then "
-            << shown.r.image_error().relative_records());
+            << shown.r.image_error().relative_lookup_noise());
   CHECK(shown.status().rays > rays + rays / 4);
-  CHECK(shown.r.image_error().relative_records() < 0.8 * noise);
+  CHECK(shown.r.image_error().relative_lookup_noise() < 0.8 * noise);
   // Radii and positions are unchanged.
   REQUIRE(after.size() == before.size());
   CHECK(after.spheres == before.spheres);

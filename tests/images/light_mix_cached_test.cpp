@@ -139,20 +139,20 @@ TEST_CASE("reported record errors are those of the mixed light") {
   Bench b(s, cached(), 16);
   b.image();
   const film::ImageError as_it_is = b.r.image_error();
-  REQUIRE(as_it_is.records_rms > 0);
+  REQUIRE(as_it_is.lookup_noise_rms > 0);
   // The same factor for all light scales all errors and the blocks' sums of them.
   const std::vector<film::TileError> before = b.r.tile_errors();
   b.mix("sky: ev=2; sun: ev=2; lamp: ev=2; spot: ev=2; block: ev=2");
   const film::ImageError brighter = b.r.image_error();
   CHECK(brighter.luminance[0] == Approx(4 * as_it_is.luminance[0]).epsilon(1e-3));
-  CHECK(brighter.records_rms == Approx(4 * as_it_is.records_rms).epsilon(1e-3));
-  CHECK(brighter.relative_records() == Approx(as_it_is.relative_records()).epsilon(1e-3));
+  CHECK(brighter.lookup_noise_rms == Approx(4 * as_it_is.lookup_noise_rms).epsilon(1e-3));
+  CHECK(brighter.relative_lookup_noise() == Approx(as_it_is.relative_lookup_noise()).epsilon(1e-3));
   const std::vector<film::TileError> after = b.r.tile_errors();
   for (size_t t = 0; t < before.size(); ++t)
     CHECK(after[t].records.noise == Approx(4 * before[t].records.noise).epsilon(1e-3));
   // Without light there is no error.
   b.mix("sky: mute; sun: mute; lamp: mute; spot: mute; block: mute");
-  CHECK(b.r.image_error().records_rms == 0);
+  CHECK(b.r.image_error().lookup_noise_rms == 0);
 }
 
 }  // namespace light_mix_cached_tests

@@ -71,7 +71,7 @@ TEST_CASE("a request for layers of untracked groups is reported") {
   };
   CHECK(warnings({{"relight.layers", "true"}}).empty());
   CHECK_THAT(warnings({{"relight.layers", "true"}, {"relight.enabled", "on"}}),
-             Catch::Contains("relight.layers: the EXR has no layers of groups of lights: ") &&
+             Catch::Contains("relight.layers: the EXR has no layers of light groups: ") &&
                  Catch::Contains("relight.enabled=compact"));
   CHECK_THAT(warnings({{"relight.layers", "true"}, {"relight.enabled", "off"}}),
              Catch::Contains("relight.enabled is off"));

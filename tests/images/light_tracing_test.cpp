@@ -330,4 +330,24 @@ TEST_CASE("drawing light paths and aim targets does not change the picture") {
   CHECK(r.device().validation_messages() == 0);
 }
 
+TEST_CASE("light paths are drawn of all lights, or of one lamp") {
+  scene::Scene s = glass_room();
+  s.lights = {{.name = "left", .intensity = vec3(5), .position = {-1, 2, 1}},
+              {.name = "right", .intensity = vec3(5), .position = {1, 2, 1}}};
+  session::Renderer r(test::renderer_options());
+  r.set_size(48, 40);
+  r.set_scene(std::make_shared<scene::Scene>(s));
+  test::set(r,
+            with(k_light, {{"samples", "1"}, {"light.per_round", "2000"}, {"overlay.light_paths", "true"}}));
+  test::finish(r);
+  std::vector<std::vector<uint8_t>> shown;
+  for (const char* lamp : {"0", "1", "2"}) {
+    test::set(r, {{"overlay.light_paths_of", lamp}});
+    shown.push_back(r.picture(false));
+  }
+  CHECK(shown[0] != shown[1]);
+  CHECK(shown[0] != shown[2]);
+  CHECK(shown[1] != shown[2]);
+}
+
 }  // namespace light_tracing_tests

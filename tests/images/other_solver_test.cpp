@@ -15,7 +15,7 @@ using namespace lucerna;
 
 namespace {
 
-const bool k_added = (solvers::add(test::ambient_type()), true);
+const bool k_added = (solvers::add(lucerna::ambient::type()), true);
 
 /// The inside of an emissive box of a single albedo without gloss.
 scene::Scene closed_room() {
@@ -39,9 +39,9 @@ TEST_CASE("a solver of the tests is a choice of its component only, and its opti
   CHECK_NOTHROW(plan::Settings().set("components.tertiary", "ambient"));
   CHECK_THROWS(plan::Settings().set("components.secondary", "ambient"));
   CHECK(plan::Settings().real("ambient.radiance") == 0.5);
-  CHECK(solvers::owner_of("ambient.radiance") == &test::ambient_info());
+  CHECK(solvers::owner_of("ambient.radiance") == &lucerna::ambient::info());
   // The list is in use: registration is closed.
-  CHECK_THROWS_AS(solvers::add(test::ambient_type()), std::logic_error);
+  CHECK_THROWS_AS(solvers::add(lucerna::ambient::type()), std::logic_error);
 }
 
 TEST_CASE("its light is looked up at the second diffuse vertex, and no other component changes") {
@@ -62,7 +62,7 @@ TEST_CASE("a component computed by two solvers is refused, and the previous sett
   r.set_size(16, 16);
   r.set_scene(std::make_shared<scene::Scene>(closed_room()));
   test::set(r, {{"components.tertiary", "ambient"}});
-  const int made = test::ambient_made();
+  const int made = lucerna::ambient::AmbientSolver::made;
   // The records of a cached secondary component include tertiary light.
   CHECK_THROWS_WITH(test::set(r, {{"components.secondary", "cache"}, {"cache.rays", "64"}}),
                     Catch::Contains("components.tertiary: light of the words") &&
@@ -71,7 +71,7 @@ TEST_CASE("a component computed by two solvers is refused, and the previous sett
   CHECK(r.settings().text("components.secondary") == "path");
   CHECK(r.solver("ambient"));
   CHECK_FALSE(r.solver("cache"));
-  CHECK(test::ambient_made() == made);  // before any solver allocates memory
+  CHECK(lucerna::ambient::AmbientSolver::made == made);  // before any solver allocates memory
   CHECK(r.step());
 }
 
@@ -85,9 +85,9 @@ TEST_CASE("changes invalidate what its table says; other solvers' settings inval
   CHECK(r.figure("begun") == first);
   r.restart();
   CHECK(r.figure("begun") == first + 1);
-  CHECK_FALSE(solvers::invalidated_by_setting(test::ambient_info(), "cache.rays").any());
+  CHECK_FALSE(solvers::invalidated_by_setting(lucerna::ambient::info(), "cache.rays").any());
   CHECK_FALSE(solvers::invalidated_by_setting(*solvers::find("cache"), "ambient.radiance").any());
-  CHECK(solvers::invalidated_by_setting(test::ambient_info(), "ambient.radiance") ==
+  CHECK(solvers::invalidated_by_setting(lucerna::ambient::info(), "ambient.radiance") ==
         solvers::k_invalidates_all);
   // Another solver's setting restarts the picture but keeps this solver's work; its own setting restarts its
   // work.

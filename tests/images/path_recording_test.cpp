@@ -1,6 +1,7 @@
 // links: session
 // Recorded paths are the picture's: their contributions sum to its film, component by component; recording
 // changes no picture; two recordings are equal; what does not fit is counted.
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -103,7 +104,7 @@ TEST_CASE("the light of all recorded paths is the film's, by component") {
       const auto events = all.events_of(path);
       for (uint32_t i = 0; i < events.size(); ++i) {
         const std::string word = recording::word_of(events, i);
-        if (!recording::brings_light(events[i]) || word.find('.') != std::string::npos) continue;
+        if (!recording::contributes_light(events[i]) || word.find('.') != std::string::npos) continue;
         if (automaton.classify(word) != recording::component_of(events[i])) FAIL_CHECK(word);
         ++words;
       }
@@ -145,6 +146,31 @@ TEST_CASE("recording while records are built changes none of them") {
   const film::Image expected = test::finish(*plain);
   while (recorded->step()) record(*recorded, {.right = k_side, .bottom = 1});
   CHECK(test::identical(expected, recorded->image()));
+}
+
+TEST_CASE("recorded paths are drawn with each colour, and a legend for it") {
+  const auto r = renderer_of("ring", {});
+  test::finish(*r);
+  const std::vector<uint8_t> plain = r->picture(false);
+  r->show_paths({.of = std::make_shared<recording::Recording>(
+                     record(*r, {.left = 8, .top = 8, .right = 12, .bottom = 12, .samples = 2}))});
+  std::vector<std::vector<uint8_t>> shown;
+  std::vector<std::string> notes;
+  for (const char* color : {"event", "component", "contribution"}) {
+    INFO(color);
+    test::set(*r, {{"overlay.path_color", color}});
+    shown.push_back(r->picture(false));
+    CHECK(shown.back() != plain);
+    const auto reports = r->reports();
+    const auto of_paths = std::find_if(reports.begin(), reports.end(),
+                                       [](const auto& report) { return report->solver == "paths"; });
+    REQUIRE(of_paths != reports.end());
+    notes.push_back((*of_paths)->legends.at(0).note);
+  }
+  CHECK(shown[0] != shown[1]);
+  CHECK(shown[1] != shown[2]);
+  CHECK(notes[0] != notes[1]);
+  CHECK(notes[1] != notes[2]);
 }
 
 TEST_CASE("the sink is not compiled into the picture's kernels") {

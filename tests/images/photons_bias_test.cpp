@@ -253,15 +253,15 @@ TEST_CASE("errors of records and photons in one picture are both reported") {
                 {"samples", "8"}});
   test::finish(r);
   const film::ImageError both = r.image_error();
-  CHECK(r.film().record_errors_complete());
+  CHECK(r.film().lookup_errors_complete());
   CHECK(r.film().lookup_bias_known());
   CHECK(r.lookup_errors_known());
-  CHECK(both.records_rms > 0);
+  CHECK(both.lookup_noise_rms > 0);
   test::set(r, {{"components.caustic", "off"}});
   test::finish(r);
   const film::ImageError records = r.image_error();
   CHECK_FALSE(r.film().lookup_bias_known());
-  CHECK(r.film().record_errors_complete());
+  CHECK(r.film().lookup_errors_complete());
   CHECK(records.interpolation_rms < 0.9 * both.interpolation_rms);
   // Photons only: no error of records, and the estimate is complete.
   test::set(r, {{"components.secondary", "off"},
@@ -270,13 +270,13 @@ TEST_CASE("errors of records and photons in one picture are both reported") {
                 {"photons.efficiency", "false"}});
   test::finish(r);
   const film::ImageError photons = r.image_error();
-  CHECK_FALSE(r.film().record_errors_complete());
+  CHECK_FALSE(r.film().lookup_errors_complete());
   CHECK(r.lookup_errors_known());
-  CHECK(photons.records_rms == 0);
+  CHECK(photons.lookup_noise_rms == 0);
   CHECK(photons.interpolation_rms > 0);
   CHECK(std::hypot(records.interpolation_rms, photons.interpolation_rms) ==
         Approx(both.interpolation_rms).epsilon(0.15));
-  for (const film::TileError& t : r.tile_errors()) CHECK(t.records.noise == 0);
+  for (const film::TileError& t : r.tile_errors()) CHECK(t.lookups.noise == 0);
 }
 
 TEST_CASE("a target that blur prevents is not reported as reached, and costs few samples") {

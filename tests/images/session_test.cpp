@@ -31,7 +31,7 @@ struct Heard {
   std::atomic<int> errors{0}, given_up{0}, loaded{0};
   int token = log::add_listener([this](log::Level level, const std::string& text) {
     errors += level == log::Level::error;
-    given_up += text.find("loading was given up") != std::string::npos;
+    given_up += text.find("loading was cancelled") != std::string::npos;
     loaded += text.find(" loaded: ") != std::string::npos;
   });
   ~Heard() { log::remove_listener(token); }

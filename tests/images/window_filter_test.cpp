@@ -109,6 +109,12 @@ TEST_CASE("light from before an edit is not replaced by a filtered picture with 
   CHECK(r.preview_shares().filtered < 1);
   CHECK(r.preview_shares().stale > 0.3);
   CHECK(mean_square(r.shown_picture(false), converged) < 2 * before);
+  // It can be tinted.
+  const std::vector<uint8_t> untinted = r.shown_picture(false);
+  test::set(r, {{"overlay.former", "true"}});
+  CHECK(mean_square(r.shown_picture(false), untinted) > 10);
+  test::set(r, {{"overlay.former", "false"}});
+  CHECK(mean_square(r.shown_picture(false), untinted) < 1);
   // At the end it is the filtered picture in any case.
   test::finish(r);
   CHECK(r.preview_shares().filtered == 1);

@@ -9,8 +9,8 @@
 namespace cache_error_propagation_tests {
 
 using namespace lucerna;
-using shared::BlockRecords;
-using shared::k_record_lanes;
+using shared::BlockLookups;
+using shared::k_lookup_lanes;
 
 namespace {
 
@@ -44,7 +44,7 @@ struct Note {
 /// The kernels' result for paths that read records; `notes` by path and pixel of a picture of 16 x 8.
 struct ErrorSums {
   std::vector<vec2> pixels;
-  std::vector<BlockRecords> blocks;
+  std::vector<BlockLookups> blocks;
   std::vector<vec4> residuals;  ///< by record, k_residual_texels each
 };
 ErrorSums propagate(test::RecordBed& bed, const std::vector<test::RecordDisc>& discs,
@@ -75,7 +75,7 @@ ErrorSums propagate(test::RecordBed& bed, const std::vector<test::RecordDisc>& d
       {.name = "residuals", .bytes = discs.size() * shared::k_residual_texels * sizeof(vec4), .texel = true});
   film::Film film(bed.device, k_width, k_height);
   film.clear(bed.stream);
-  film.make_room_for_record_errors();
+  film.make_room_for_lookup_errors();
   gpu::Buffer work(bed.device, {.name = "blocks", .bytes = blocks * sizeof(shared::WorkBlock)});
   std::vector<shared::WorkBlock> list;
   for (uint32_t b = 0; b < blocks; ++b) list.push_back({b, 0});
@@ -99,9 +99,9 @@ ErrorSums propagate(test::RecordBed& bed, const std::vector<test::RecordDisc>& d
     bed.stream.dispatch(propagating, r,
                         shared::PropagatePush{k_width, k_height, step, pixels, !beyond[0].empty()}, blocks);
     bed.stream.run();
-    film.complete_record_errors();
-    out.blocks.assign(film.records().begin(), film.records().end());
-    const gpu::Resources::Entry* kept = r.find("FilmRecords");
+    film.complete_lookup_errors();
+    out.blocks.assign(film.lookup_errors().begin(), film.lookup_errors().end());
+    const gpu::Resources::Entry* kept = r.find("FilmLookups");
     out.pixels = std::get<const gpu::Buffer*>(*kept)->read_all<vec2>();
     out.residuals = residuals.read_all<vec4>();
   });
@@ -122,8 +122,8 @@ TEST_CASE("a record's error reaches the pixels that read it, with its weight the
   const ErrorSums got = propagate(bed, discs, {notes, notes}, {});
   const double right = share_of_right(0.25), a = 0.5 * (1 - right) * 0.5, b = 0.5 * right * 0.25;
   double variance = 0;
-  for (uint32_t k = 0; k < k_record_lanes; ++k)
-    variance += std::pow(a * sign_of(0, k) + b * sign_of(1, k), 2) / k_record_lanes;
+  for (uint32_t k = 0; k < k_lookup_lanes; ++k)
+    variance += std::pow(a * sign_of(0, k) + b * sign_of(1, k), 2) / k_lookup_lanes;
   CHECK(variance == Approx(a * a + b * b).margin(2 * a * b));
   // The pixels of a block are in Morton order: the lower half of the second block reads nothing.
   for (uint32_t y = 0; y < 8; ++y)
@@ -131,22 +131,22 @@ TEST_CASE("a record's error reaches the pixels that read it, with its weight the
       INFO(x << ' ' << y);
       CHECK(got.pixels[y * 16 + x].x == Approx(x >= 8 && y >= 4 ? 0 : variance).epsilon(1e-4));
     }
-  for (uint32_t lane = 0; lane < k_record_lanes; ++lane)
+  for (uint32_t lane = 0; lane < k_lookup_lanes; ++lane)
     for (uint32_t path = 0; path < 2; ++path) {
       const double each = a * sign_of(0, lane) + b * sign_of(1, lane);
-      CHECK(got.blocks[0].noise[path * k_record_lanes + lane] == Approx(64 * each).epsilon(1e-4));
-      CHECK(got.blocks[1].noise[path * k_record_lanes + lane] == Approx(32 * each).epsilon(1e-4));
+      CHECK(got.blocks[0].noise[path * k_lookup_lanes + lane] == Approx(64 * each).epsilon(1e-4));
+      CHECK(got.blocks[1].noise[path * k_lookup_lanes + lane] == Approx(32 * each).epsilon(1e-4));
     }
   CHECK(got.blocks[0].pixels == 64);
   // Pixels that read the same records have the same error: a tile of 64 has the error of one of them.
-  const film::RecordsError one = film::records_error({got.blocks.data(), 1});
+  const film::LookupsError one = film::lookups_error({got.blocks.data(), 1});
   CHECK(one.noise == Approx(std::sqrt(variance)).epsilon(1e-4));
-  const film::RecordsError both = film::records_error(got.blocks);
+  const film::LookupsError both = film::lookups_error(got.blocks);
   CHECK(both.noise == Approx(0.75 * std::sqrt(variance)).epsilon(1e-4));
-  CHECK(both.degrees == k_record_lanes);
+  CHECK(both.degrees == k_lookup_lanes);
   // A second run is identical bit for bit.
   const ErrorSums again = propagate(bed, discs, {notes, notes}, {});
-  CHECK(std::memcmp(again.blocks.data(), got.blocks.data(), got.blocks.size() * sizeof(BlockRecords)) == 0);
+  CHECK(std::memcmp(again.blocks.data(), got.blocks.data(), got.blocks.size() * sizeof(BlockLookups)) == 0);
   CHECK(again.pixels == got.pixels);
 }
 
@@ -160,7 +160,7 @@ TEST_CASE("pixels that read different records have independent errors") {
   const ErrorSums got = propagate(bed, discs, {notes, notes}, {});
   CHECK(got.pixels[0].x == Approx(0.25));
   // 16 lanes estimate a variance to a third.
-  const film::RecordsError tile = film::records_error({got.blocks.data(), 1});
+  const film::LookupsError tile = film::lookups_error({got.blocks.data(), 1});
   CHECK(tile.noise > 0.5 / 8 * 0.5);
   CHECK(tile.noise < 0.5 / 8 * 1.5);
 }
@@ -173,8 +173,8 @@ TEST_CASE("the paths' own noise is not counted as the records' error") {
   const std::vector<Note> one(128, Note{0, 1}), other(128, Note{8, 1});
   const ErrorSums got = propagate(bed, discs, {one, other}, {});
   double product = 0;
-  for (uint32_t k = 0; k < k_record_lanes; ++k)
-    product += 0.25 * sign_of(0, k) * sign_of(1, k) / k_record_lanes;
+  for (uint32_t k = 0; k < k_lookup_lanes; ++k)
+    product += 0.25 * sign_of(0, k) * sign_of(1, k) / k_lookup_lanes;
   CHECK(got.pixels[0].x == Approx(product).margin(1e-6));
   CHECK(std::abs(product) < 0.25);
 }
@@ -185,8 +185,8 @@ TEST_CASE("light that records read from records counts like light that the pictu
   const std::vector<Note> first(128, Note{0, 1}), beyond(128, Note{8, 0.25});
   const ErrorSums got = propagate(bed, discs, {first, first}, {beyond, beyond});
   double variance = 0;
-  for (uint32_t k = 0; k < k_record_lanes; ++k)
-    variance += std::pow(0.5 * sign_of(0, k) + 0.25 * sign_of(1, k), 2) / k_record_lanes;
+  for (uint32_t k = 0; k < k_lookup_lanes; ++k)
+    variance += std::pow(0.5 * sign_of(0, k) + 0.25 * sign_of(1, k), 2) / k_lookup_lanes;
   CHECK(got.pixels[0].x == Approx(variance).epsilon(1e-4));
 }
 
@@ -196,8 +196,8 @@ TEST_CASE("one pixel can stand for several of the film") {
   const std::vector<Note> notes(64, Note{0, 1});
   const ErrorSums got = propagate(bed, discs, {notes, notes}, {}, 2);
   for (const vec2& p : got.pixels) CHECK(p.x == Approx(0.25));
-  for (const BlockRecords& b : got.blocks) CHECK(b.pixels == 16);
-  CHECK(film::records_error(got.blocks).noise == Approx(0.5));
+  for (const BlockLookups& b : got.blocks) CHECK(b.pixels == 16);
+  CHECK(film::lookups_error(got.blocks).noise == Approx(0.5));
 }
 
 TEST_CASE("interpolation error: the residual of neighbouring records without their noise") {
@@ -215,12 +215,12 @@ TEST_CASE("interpolation error: the residual of neighbouring records without the
   // Read at 0, where the light is 4: one record with weight 1, two with 1 - 0.75.
   const double read = (4 + 2 * 0.25 * (4 + k_apart * k_apart)) / 1.5;
   CHECK(calm.pixels[0].y == Approx(std::pow(read - 4, 2)).epsilon(1e-3));
-  CHECK(film::records_error(calm.blocks).interpolation == Approx(read - 4).epsilon(1e-3));
+  CHECK(film::lookups_error(calm.blocks).interpolation == Approx(read - 4).epsilon(1e-3));
   // Constant light from noisy records has no interpolation error: only the records' noise is reported.
   for (size_t i = 0; i < discs.size(); ++i)
     discs[i].light = vec3(float(4 + 0.5 * sign_of(uint32_t(i), 3))), discs[i].error = 0.5f;
   const ErrorSums noisy = propagate(bed, discs, {notes, notes}, {});
-  const film::RecordsError error = film::records_error(noisy.blocks);
+  const film::LookupsError error = film::lookups_error(noisy.blocks);
   CHECK(error.noise > 0.3);
   CHECK(error.interpolation < 2 * error.noise);
 }

@@ -311,7 +311,7 @@ TEST_CASE("the error kernel: records' errors are summed beside the pixels' noise
   radiance.write(std::span<const vec4>(values));
   work.write(std::span<const shared::WorkBlock>(list));
   stream.fill(features, 0);
-  film.make_room_for_record_errors();
+  film.make_room_for_lookup_errors();
   gpu::Resources resources;
   film.bind(resources);
   resources.set("WorkBlocks", work);
@@ -322,7 +322,7 @@ TEST_CASE("the error kernel: records' errors are summed beside the pixels' noise
     records[i] = vec2(1e-4f * float(i), 2e-4f * float(i % 7) - 3e-4f);
   gpu::Buffer estimated(device, {.name = "estimated", .bytes = records.size() * sizeof(vec2)});
   estimated.write(std::span<const vec2>(records));
-  resources.set("FilmRecords", estimated);
+  resources.set("FilmLookups", estimated);
   const auto run = [&](const gpu::Kernel& kernel, uint32_t known) {
     stream.dispatch(kernel, resources, shared::ErrorPush{k_width, k_height, k_blocks, k_floor, 1e9f, known},
                     1);
@@ -358,9 +358,9 @@ TEST_CASE("the error kernel: records' errors are summed beside the pixels' noise
         sums[0] += r.x, sums[1] += r.y, sums[2] += r.x / (scale * scale), sums[3] += r.y / (scale * scale);
       }
     }
-    CHECK(full[b].records == Approx(sums[0]).epsilon(1e-5));
+    CHECK(full[b].lookup_noise == Approx(sums[0]).epsilon(1e-5));
     CHECK(full[b].interpolation == Approx(sums[1]).epsilon(1e-4).margin(1e-7));
-    CHECK(full[b].records_relative == Approx(sums[2]).epsilon(1e-4));
+    CHECK(full[b].lookup_noise_relative == Approx(sums[2]).epsilon(1e-4));
     CHECK(full[b].interpolation_relative == Approx(sums[3]).epsilon(1e-3).margin(1e-5));
   }
   // The stopping criterion has the same records' error.
@@ -369,9 +369,9 @@ TEST_CASE("the error kernel: records' errors are summed beside the pixels' noise
                   k_blocks);
   const std::vector<BlockError> alone = run(stopping, 1);
   for (uint32_t b = 0; b < k_blocks; ++b) {
-    CHECK(alone[b].records_relative == full[b].records_relative);
+    CHECK(alone[b].lookup_noise_relative == full[b].lookup_noise_relative);
     CHECK(alone[b].interpolation_relative == full[b].interpolation_relative);
-    CHECK(alone[b].records == 0);
+    CHECK(alone[b].lookup_noise == 0);
   }
 }
 
@@ -452,11 +452,11 @@ TEST_CASE(
     CHECK(full[b].interpolation_relative == Approx(square / (scale * scale)).epsilon(1e-4));
     CHECK(full[b].bias[0] == Approx(even).epsilon(1e-5));
     CHECK(full[b].bias[1] == Approx(odd).epsilon(1e-5));
-    CHECK(full[b].records == 0);
+    CHECK(full[b].lookup_noise == 0);
     const film::TileError tile = film::tile_error({&full[b], 1});
-    CHECK(tile.records.interpolation == Approx(std::sqrt(std::max(0.0, even * odd)) / full[b].pixels));
+    CHECK(tile.lookups.interpolation == Approx(std::sqrt(std::max(0.0, even * odd)) / full[b].pixels));
     CHECK(tile.half_width_90() ==
-          Approx(film::student_90(tile.degrees) * tile.standard_error + tile.records.interpolation));
+          Approx(film::student_90(tile.degrees) * tile.standard_error + tile.lookups.interpolation));
   }
   const std::vector<BlockError> alone = run(stopping, 1);
   for (uint32_t b = 0; b < k_blocks; ++b)
@@ -524,30 +524,30 @@ TEST_CASE("a tile's error combines paths and records in quadrature and adds inte
   const film::TileError plain = film::tile_error({&e, 1});
   CHECK(plain.relative_sum() == plain.relative);
   CHECK(plain.half_width_90() == film::student_90(plain.degrees) * plain.standard_error);
-  e.records = 64 * 0.09f, e.interpolation = 64 * 0.01f;
-  e.records_relative = 64 * 0.09f, e.interpolation_relative = 64 * 0.01f;
-  shared::BlockRecords r{};
+  e.lookup_noise = 64 * 0.09f, e.interpolation = 64 * 0.01f;
+  e.lookup_noise_relative = 64 * 0.09f, e.interpolation_relative = 64 * 0.01f;
+  shared::BlockLookups r{};
   r.pixels = 64;
-  for (uint32_t k = 0; k < 2 * shared::k_record_lanes; ++k) r.noise[k] = 64 * (k % 3 ? 0.3f : -0.3f);
+  for (uint32_t k = 0; k < 2 * shared::k_lookup_lanes; ++k) r.noise[k] = 64 * (k % 3 ? 0.3f : -0.3f);
   // A lane's signs agree between the paths if their sums are of the same records.
-  for (uint32_t k = 0; k < shared::k_record_lanes; ++k) r.noise[shared::k_record_lanes + k] = r.noise[k];
+  for (uint32_t k = 0; k < shared::k_lookup_lanes; ++k) r.noise[shared::k_lookup_lanes + k] = r.noise[k];
   r.interpolation[0] = r.interpolation[1] = 64 * -0.2f;
   const film::TileError tile = film::tile_error({&e, 1}, {&r, 1});
   CHECK(tile.standard_error == plain.standard_error);
-  CHECK(tile.records.noise == Approx(0.3));
-  CHECK(tile.records.interpolation == Approx(0.2));
+  CHECK(tile.lookups.noise == Approx(0.3));
+  CHECK(tile.lookups.interpolation == Approx(0.2));
   CHECK(tile.relative_sum() == Approx(std::hypot(plain.relative, 0.3) + 0.1));
   // The records dominate the noise: the sum has their degrees of freedom, plus a little for the paths'.
   const double noise = std::hypot(plain.standard_error, 0.3);
-  CHECK(tile.half_width_90() < film::student_90(shared::k_record_lanes) * noise + 0.2);
+  CHECK(tile.half_width_90() < film::student_90(shared::k_lookup_lanes) * noise + 0.2);
   CHECK(tile.half_width_90() > 1.6448 * noise + 0.2);
   const film::ImageError image = film::image_error({&e, 1});
-  CHECK(image.records_rms == Approx(0.3));
+  CHECK(image.lookup_noise_rms == Approx(0.3));
   CHECK(image.interpolation_rms == Approx(0.1));
   CHECK(image.relative_sum() == Approx((std::hypot(image.rms[0], 0.3) + 0.1) / 0.5));
   // Estimates below zero, which occur by chance, count as zero.
-  e.records = e.records_relative = -1e-3f;
-  CHECK(film::tile_error({&e, 1}).relative_records == 0);
+  e.lookup_noise = e.lookup_noise_relative = -1e-3f;
+  CHECK(film::tile_error({&e, 1}).relative_lookup_noise == 0);
 }
 
 TEST_CASE("where lookups found no light the error is unknown, not zero", "[film_error]") {

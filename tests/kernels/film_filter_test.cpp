@@ -296,13 +296,13 @@ TEST_CASE("the filter does not count noise shared by both halves through records
   const Truth light = [](uint32_t, uint32_t) { return 1.0; };
   const double before = rms(stage.film.read(), light), unknown = rms(filter(stage, 2).filtered, light);
   CHECK(unknown > 0.6 * before);
-  stage.film.make_room_for_record_errors();
+  stage.film.make_room_for_lookup_errors();
   gpu::Resources resources;
   stage.film.bind(resources);
-  const gpu::Buffer& squares = *std::get<const gpu::Buffer*>(*resources.find("FilmRecords"));
+  const gpu::Buffer& squares = *std::get<const gpu::Buffer*>(*resources.find("FilmLookups"));
   stage.stream.fill(squares, std::bit_cast<uint32_t>(0.15f * 0.15f));
   stage.stream.run();
-  stage.film.complete_record_errors();
+  stage.film.complete_lookup_errors();
   const double known = rms(filter(stage, 2).filtered, light);
   INFO(before << ", unknown " << unknown << ", known " << known);
   CHECK(known < 0.8 * unknown);

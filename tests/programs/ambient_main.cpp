@@ -4,6 +4,6 @@
 #include "support/ambient/ambient.h"
 
 int main(int argc, char** argv) {
-  lucerna::solvers::add(lucerna::test::ambient_type());
+  lucerna::solvers::add(lucerna::ambient::type());
   return lucerna::app::run(argc, argv);
 }

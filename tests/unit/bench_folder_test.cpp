@@ -198,7 +198,7 @@ TEST_CASE("A reference is used if it is complete and from the same inputs; other
   write("of something else", 128, 2);
   set_aside("another scene");
   write(key, 64, 2);
-  set_aside("has 64 samples, 100 are wanted");
+  set_aside("has 64 samples instead of 100");
   write(key, 128, NAN);
   set_aside("not finite");
   write(key, 128, 2, 24);

@@ -35,7 +35,7 @@ film::Image picture(const Light& light, float deviation, uint32_t seed) {
 
 }  // namespace
 
-TEST_CASE("an effect that brings a quarter of the light and half of the variance") {
+TEST_CASE("an effect with a quarter of the light and half of the variance") {
   const auto with = picture([](size_t) { return 4.0f; }, 1.0f, 1);
   const auto without = picture([](size_t) { return 3.0f; }, std::sqrt(0.5f), 2);
   const pilot::Difference d = pilot::difference(with, without, k_samples);
@@ -55,7 +55,7 @@ TEST_CASE("noise is not seen as a change") {
   CHECK(std::abs(d.noise) < 0.1);
 }
 
-TEST_CASE("light that only moves is seen, and brings nothing") {
+TEST_CASE("light that only moves is seen, and adds nothing") {
   const auto left = [](size_t x) { return x < k_side / 2 ? 1.5f : 0.5f; };
   const auto right = [](size_t x) { return x < k_side / 2 ? 0.5f : 1.5f; };
   const pilot::Difference d = pilot::difference(picture(left, 0, 1), picture(right, 0, 1), k_samples);

@@ -120,9 +120,9 @@ TEST_CASE("words, light and texts of a path") {
   CHECK(path_text(all, 0) == "EDSL caustic 5, 7 events");
   const auto lines = event_lines(all, 0);
   REQUIRE(lines.size() == 7);
-  CHECK_THAT(lines[2], Contains("light 'Lamp' arrives") && Contains("brings primary 1 1 1"));
+  CHECK_THAT(lines[2], Contains("light 'Lamp' arrives") && Contains("contributes primary 1 1 1"));
   CHECK_THAT(lines[5], Contains("emission of 'bulb'"));
-  // A blocked light sample brings nothing; stored light has an open word.
+  // A blocked light sample contributes nothing; stored light has an open word.
   add(all, 5, 3, usual(9, 0, false));
   all.events.push_back(event(shared::k_path_records, 1, 0, 1, 2));
   ++all.paths[1].count;

@@ -166,7 +166,7 @@ TEST_CASE("a seventeenth group is merged with the sixteenth, with a message") {
   CHECK(g.groups.back().lamps == 4);
   for (size_t i = 15; i < names.size(); ++i) CHECK(g.lamps[i] == 15);
   REQUIRE(g.messages.size() == 1);
-  CHECK_THAT(g.messages[0], Contains("18 groups") && Contains("'p', 'q', 'r'"));
+  CHECK_THAT(g.messages[0], Contains("18 light groups") && Contains("'p', 'q', 'r'"));
   CHECK(g.find("a") == 0);
   CHECK(g.find("q") == 16);
 }
@@ -192,7 +192,7 @@ TEST_CASE("extras of a file's nodes, lamps and materials are read and described"
   CHECK_THAT(scene::describe_text(scene), Contains("light groups 3\n  evening: 1 lamp\n"));
 
   asset.doc["nodes"][1]["extras"]["light_group"] = json::array();
-  CHECK_THROWS_WITH(asset.load(), Contains("nodes[1].extras.light_group") && Contains("name of a group"));
+  CHECK_THROWS_WITH(asset.load(), Contains("nodes[1].extras.light_group") && Contains("name of a light group"));
 }
 
 }  // namespace scene_light_groups_tests

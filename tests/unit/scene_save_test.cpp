@@ -502,7 +502,7 @@ TEST_CASE("nothing is replaced that the user may not know of") {
   b.edited->lights[0].intensity = vec3(4);
   CHECK(b.failure(b.source).empty());
   CHECK(load(b.source).lights[0].intensity == vec3(4));
-  // Meanwhile somebody else writes it.
+  // Meanwhile another program writes it.
   json doc = json::parse(read_file(b.source));
   doc["asset"]["generator"] = "another";
   write(b.source, doc.dump());

@@ -1,13 +1,16 @@
 // links: base
-// Rules for the sources that no type can state: JSON is written in one place, and std::filesystem never
-// throws.
+// Rules for the sources that no type can state: JSON is written in one place, std::filesystem never throws,
+// pages have short paragraphs, and no private words.
 #include <algorithm>
 #include <catch2/catch.hpp>
+#include <cctype>
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <map>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include "support/paths.h"
@@ -119,6 +122,52 @@ std::string violations(const std::function<std::vector<std::string>(const std::s
   return all;
 }
 
+/// Files of the repository with one of these endings.
+std::vector<fs::path> files_ending_in(const std::vector<std::string>& endings) {
+  const fs::path root = LUCERNA_SOURCE_DIR;
+  std::vector<fs::path> files{root / "README.md"};
+  for (const char* folder : {"app", "assets", "renderer", "scenes", "shaders", "tests", "ui"})
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(root / folder))
+      if (entry.is_regular_file() && std::count(endings.begin(), endings.end(), entry.path().extension()))
+        files.push_back(entry.path());
+  return files;
+}
+
+size_t words_of(const std::string& text) {
+  std::istringstream in(text);
+  return size_t(std::distance(std::istream_iterator<std::string>(in), {}));
+}
+
+/// Lines with paragraphs or items of lists of a page that have more words, without code, tables and headings.
+std::vector<std::string> long_paragraphs(const std::string& page, size_t most) {
+  std::vector<std::string> found;
+  std::istringstream in(page);
+  std::string paragraph;
+  int line = 0, first = 1;
+  bool code = false;
+  const auto end = [&] {
+    if (const size_t words = words_of(paragraph); words > most)
+      found.push_back(std::to_string(first) + ": " + std::to_string(words) + " words");
+    paragraph.clear();
+  };
+  for (std::string text; std::getline(in, text);) {
+    ++line;
+    const size_t begin = std::min(text.find_first_not_of(' '), text.size());
+    const std::string words = text.substr(begin);
+    const size_t number = words.find_first_not_of("0123456789");
+    const bool item = words.starts_with("- ") || words.starts_with("* ") ||
+                      (number > 0 && number < words.size() && words.compare(number, 2, ". ") == 0);
+    const bool fence = words.starts_with("```"), other = words.empty() || words[0] == '#' || words[0] == '|';
+    if (fence || code || other || item) end();
+    if (fence) code = !code;
+    if (fence || code || other) continue;
+    if (paragraph.empty()) first = line;
+    paragraph += text + "\n";
+  }
+  end();
+  return found;
+}
+
 }  // namespace
 
 TEST_CASE("JSON is written by json_text only, which no name from a file can make throw") {
@@ -143,6 +192,57 @@ TEST_CASE("std::filesystem is called in the forms that do not throw") {
   CHECK(throwing_calls("for (const auto& e : fs::directory_iterator(f, error)) e.is_directory();").size() ==
         2);
   CHECK(violations(throwing_calls) == "");
+}
+
+TEST_CASE("no page has a paragraph of more than 90 words; the first page is short") {
+  CHECK(long_paragraphs("a b c\nd\n\n| a b c d e |\n# a b c d e\n- a b c d e\n- f\n", 3) ==
+        std::vector<std::string>{"1: 4 words", "6: 6 words"});
+  CHECK(long_paragraphs("```\na b c d\n```\n1. a b\n2. c d", 3).empty());
+  size_t pages = 0;
+  for (const fs::path& file : files_ending_in({".md"})) {
+    INFO(file);
+    CHECK(long_paragraphs(read(file), 90) == std::vector<std::string>{});
+    ++pages;
+  }
+  CHECK(pages >= 15);
+  const std::string first = read(fs::path(LUCERNA_SOURCE_DIR) / "README.md");
+  CHECK(words_of(first) <= 700);
+  size_t pictures = 0;
+  for (size_t at = first.find("!["); at != std::string::npos; at = first.find("![", at + 1)) ++pictures;
+  CHECK(pictures <= 4);
+}
+
+TEST_CASE("sources have none of the words that readers had to learn") {
+  // In two parts, so that a search for them does not find this file.
+  std::set<std::string> words;
+  for (const auto& [a, b] : std::initializer_list<std::pair<const char*, const char*>>{{"to", "ld"},
+                                                                                       {"hee", "d"},
+                                                                                       {"hee", "ds"},
+                                                                                       {"spo", "il"},
+                                                                                       {"spo", "ils"},
+                                                                                       {"spo", "iled"},
+                                                                                       {"some", "body"},
+                                                                                       {"no", "body"},
+                                                                                       {"make", "_do"},
+                                                                                       {"a", "new"}})
+    words.insert(std::string(a) + b);
+  const auto found_in = [&](const std::string& text) {
+    std::string found, word;
+    for (const char c : text + "\n")
+      if (std::isalpha(static_cast<unsigned char>(c)) || c == '_') {
+        word += char(std::tolower(static_cast<unsigned char>(c)));
+      } else if (!word.empty()) {
+        if (words.contains(word)) found += " " + word;
+        word.clear();
+      }
+    return found;
+  };
+  for (const std::string& word : words) CHECK(found_in("(" + word + "), re" + word) == " " + word);
+  std::string all;
+  for (const fs::path& file : files_ending_in({".h", ".cpp", ".glsl", ".comp", ".py", ".md"}))
+    if (const std::string found = found_in(read(file)); !found.empty())
+      all += file.string() + ":" + found + "\n";
+  CHECK(all == "");
 }
 
 }  // namespace source_rules_tests

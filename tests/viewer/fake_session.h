@@ -397,7 +397,7 @@ struct Session::Impl {
     }
     activity.clear(), progress = -1;
     if (number <= given_up) {
-      log::info("{}: loading was given up", file.string());
+      log::info("{}: loading was cancelled", file.string());
       throw 0;
     }
     if (name.find("missing") != std::string::npos)

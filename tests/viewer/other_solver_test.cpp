@@ -41,7 +41,7 @@ solvers::Report reported(const plan::Settings& settings, std::optional<vec2> loo
 
 /// Before the first use of the solver list.
 const bool k_added = [] {
-  solvers::add(test::ambient_type());
+  solvers::add(lucerna::ambient::type());
   session::fake::more = [](const plan::Settings& settings,
                            std::optional<vec2> looked_at) -> std::optional<solvers::Report> {
     if (settings.text("components.tertiary") != "ambient") return std::nullopt;

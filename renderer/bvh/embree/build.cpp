@@ -198,7 +198,7 @@ Tree build_tree(const Triangles& triangles, const BuildOptions& options) {
 
   const std::string error = embree_error(device.get());
   if (error == "out of memory") throw_error("bvh", "building the tree of {} triangles: {}", count, error);
-  log::warning("bvh: the builder gave up ({}); the tree is split at medians and slower to trace", error);
+  log::warning("bvh: building failed ({}); the tree is split at medians and slower to trace", error);
   return build_median(std::move(references));
 }
 

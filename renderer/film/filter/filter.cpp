@@ -70,7 +70,7 @@ void Filter::begin(const Film& film, Film& filtered, const gpu::Buffer* seen, ui
            .component = 0,
            .stride = 1,
            .first = 0,
-           .looked_up = film.record_errors_complete() ? looked_up : 0,
+           .looked_up = film.lookup_errors_complete() ? looked_up : 0,
            .seen = seen != nullptr,
            .scale = scale_of(means)};
   work_.push_back([&film, &filtered](gpu::Stream& stream) { filtered.copy_surfaces(stream, film); });

@@ -17,7 +17,7 @@ class Filter {
   /// with one group: halves are the filtered halves; samples and surfaces are those of `film`. Pixels with
   /// less than two samples are unchanged. `seen`: visible surfaces of the pixels, also in mirrors and through
   /// glass, one texel each (shaders/shared/preview.h); null: unknown. `looked_up`: components (bits) that
-  /// look up records; their errors, if the film has them, do not count as light. Runs the stream. Throws
+  /// look up stored light; its errors, if the film has them, do not count as light. Runs the stream. Throws
   /// Error, with nothing recorded on the stream, if memory is short or the film is larger than a storage
   /// buffer.
   void apply(gpu::Stream& stream, const Film& film, Film& filtered, const gpu::Buffer* seen = nullptr,

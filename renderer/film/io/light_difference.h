@@ -8,7 +8,7 @@
 
 namespace lucerna::film {
 
-/// Figures of a picture against another one, which counts as the truth. The noise of both is contained.
+/// Figures of a picture against another one, which counts as the truth. They contain the noise of both.
 struct LightDifference {
   double relative_squared = 0;  ///< Comparison::relmse
   double as_seen = 0;  ///< root of SeenMse::all: relative to the light around each pixel; 0.05 is 5 %

@@ -30,8 +30,8 @@ class OcioConfig {
   /// scene_linear.
   const std::string& source() const { return source_; }
   bool source_is_rec709() const { return rec709_; }
-  /// Exposed linear Rec.709 radiance -> encoded colours of a display, in place. Throws Error located at the
-  /// file: there is no such display or view, with what there is; or its files cannot be read.
+  /// Turns exposed linear Rec.709 radiance into encoded colours of a display, in place. Throws Error located
+  /// at the file: there is no such display or view (the message lists all), or its files cannot be read.
   void show(const std::string& display, const std::string& view, std::span<vec3> colors) const;
   /// The display and the view that ocio_text() has joined; a view "" is the default one. A text that fits no
   /// display is split at its first ": ", for the message of show().

@@ -64,7 +64,7 @@ Reference read_reference(const std::filesystem::path& file, uint32_t width, uint
   for (const float y : reference.luminance[0]) sum += double{y};
   reference.mean_luminance = sum / double(pixels);
   if (!(reference.mean_luminance > 0))
-    throw_error(where, "the reference is black; nothing can be held against it");
+    throw_error(where, "the reference is black: nothing can be compared with it");
   const auto attribute = [&](const char* key) {
     const auto at = image.metadata.find(key);
     return at == image.metadata.end() ? std::string() : at->second;

@@ -4,11 +4,11 @@
 // Tiles of both pictures are compared channel by channel, and so is the picture as a whole, each by Welch's
 // t-test of the means. The noise comes from the two halves of the samples (layers "odd" and "samples"): v of
 // a pixel has one degree of freedom, that of a tile has as many as Satterthwaite's formula gives, so a tile
-// with a few bright specks has few, and needs a large difference. Pixels that share data (photons, records)
-// have correlated noise: the variance of a tile is then raised to what the difference of its halves' means
-// implies, averaged over the tiles around; noise and bias of lookups are added (layer "lookup"). The p-values
-// are corrected for the number of tests by Sidak's formula, so equal pictures fail with a probability of
-// about `significance`.
+// with a few bright specks has few, and needs a large difference. Pixels that share data (photons, cache
+// records) have correlated noise: the variance of a tile is then raised to what the difference of its halves'
+// means implies, averaged over the tiles around; noise and bias of lookups are added (layer "lookup"). The
+// p-values are corrected for the number of tests by Sidak's formula, so equal pictures fail with a
+// probability of about `significance`.
 #include <array>
 #include <string>
 #include <vector>

@@ -40,7 +40,7 @@ struct TevAddress {
 /// "HOST:PORT", "HOST" or ":PORT"; "localhost" is a host. "": the default. Throws Error located at `where`.
 TevAddress parse_tev_address(const std::string& text, const std::string& where);
 
-/// A connection to a viewer, on a thread of its own: nothing here waits for it but finish(). It connects with
+/// A connection to a viewer, on a separate thread: only finish() waits for it. It connects with
 /// the first picture. If the viewer is missing, hangs up or stops reading, it ends with a problem, and
 /// ignores further pictures. All methods are for one thread.
 class TevSender {
@@ -60,7 +60,8 @@ class TevSender {
   void open(const std::string& file);
   /// True while a picture or a file waits or is being sent.
   bool busy() const;
-  /// The problem that has ended it, located at the address, the first time it is asked for; else "".
+  /// The problem that ended the connection, located at the address; "" if there is none, and after the
+  /// first call.
   std::string take_problem();
   bool ended() const;
   /// Waits until all is sent. False if it has ended with a problem.

@@ -259,7 +259,7 @@ std::string light_group(const Item& item) {
   if (!group) return "";
   const auto& json = group->json();
   if (json.is_number_integer()) return group_name(json_text(json));
-  if (!json.is_string()) group->fail("expected the name of a group of lights");
+  if (!json.is_string()) group->fail("expected the name of a light group");
   return group_name(json.get<std::string>());
 }
 

@@ -11,7 +11,7 @@ namespace lucerna::scene {
 
 /// Writes the lights of `edited` that differ from those of `loaded`, removes those that are gone, and adds
 /// the new ones as nodes of the default scene. Lights keep their nodes. A light that moves and whose node
-/// holds something else gets a node of its own there.
+/// holds something else gets a new node there.
 void write_lights(EditedJson& root, const Scene& loaded, const Scene& edited);
 
 /// Writes places and visibility of instances that differ. A node that holds something else besides the mesh

@@ -135,7 +135,7 @@ class Cache {
         const CacheOptions& options);
   ~Cache();
 
-  /// For kernels of a wavefront that reads a cache with these routes of its own and this metric. `gathers`:
+  /// For kernels of a wavefront that reads a cache with its own routes and this metric. `gathers`:
   /// CacheOptions::gather.
   static gpu::Defines defines(const paths::LookupRoutes& own, Metric metric, bool gathers);
   /// Binds the names of shaders/irradiance_cache/lookup.glsl.
@@ -201,7 +201,7 @@ class Cache {
   /// wavefront must have the view's frame. False if cancelled.
   bool look_at_picture(transport::Wavefront& wavefront, const CacheView& view,
                        const std::function<bool()>& cancel = {});
-  /// Runs one work item of the film's record errors (picture_error.h), until Film::record_errors_complete().
+  /// Runs one work item of the film's record errors (picture_error.h), until Film::lookup_errors_complete().
   /// Requires ready(); the wavefront must have the view's frame. `restarted`: the picture has begun. False if
   /// cancelled: it will be repeated.
   bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const CacheView& view,

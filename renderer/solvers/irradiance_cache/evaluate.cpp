@@ -16,7 +16,8 @@ RecordPush push_of(const paths::Automaton& automaton, const EvaluateOptions& o) 
           .azimuths = o.azimuths,
           .rays_before = o.rays_before,
           .parts = o.parts,
-          .state = automaton.after(0, paths::Event::diffuse) + (o.elsewhere ? k_fallback_state : 0),
+          .state = in_phase(automaton.after(0, paths::Event::diffuse),
+                            o.elsewhere ? k_phase_fallback : k_phase_start),
           .seed = o.seed};
 }
 

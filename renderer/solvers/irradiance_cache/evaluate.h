@@ -29,9 +29,10 @@ struct EvaluateOptions {
 
 class Evaluator {
  public:
-  /// Maximum rays of a record at once: lavapipe silently ends all loops of an invocation after 65535
-  /// iterations, and gather.comp takes up to 12 for each ray.
-  static constexpr uint32_t k_most_rays = 4096;
+  /// Maximum rays of a record at once, and iterations of gather.comp for each. Lavapipe silently ends all
+  /// loops of an invocation after k_most_iterations.
+  static constexpr uint32_t k_most_rays = 4096, k_ray_iterations = 12, k_most_iterations = 65535;
+  static_assert(k_most_rays * k_ray_iterations < k_most_iterations);
   /// `slots`: of the wavefronts used with it. `groups`: light groups of their paths and of the records
   /// (Records).
   Evaluator(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, uint32_t groups = 1);

@@ -24,11 +24,11 @@ float slab_thickness(float off_plane, float normal_tolerance) {
 RouteTable packed(const paths::LookupRoutes& routes, const paths::LookupRoutes& gather) {
   RouteTable table;
   table.fill(k_no_routes);
-  for (const auto& [from, of] : {std::pair{0u, &routes}, std::pair{k_gather_state, &gather}})
-    for (size_t s = 0; s < of->component.size(); ++s) {
-      table[from + s] = 0;
+  for (const auto& [phase, of] : {std::pair{k_phase_start, &routes}, std::pair{k_phase_gather, &gather}})
+    for (uint32_t s = 0; s < of->component.size(); ++s) {
+      uint32_t& word = table[in_phase(s, phase)] = 0;
       for (uint32_t p = 0; p < k_part_count; ++p)
-        table[from + s] |= std::min<uint32_t>(of->component[s][p], k_component_count) << (4 * p);
+        word |= std::min<uint32_t>(of->component[s][p], k_component_count) << (4 * p);
     }
   return table;
 }
@@ -108,9 +108,10 @@ RouteTable LookupTables::routes_beyond_picture() const {
   // Beyond the picture's lookups paths read like rays of records do; records there contain light of any
   // number of further diffuse events.
   RouteTable table = picture_routes;
-  const auto end = record_routes.begin() + k_gather_state;
+  const auto end = record_routes.begin() + k_phase_states;
   const auto own = std::find_if(record_routes.begin(), end, looks_up);
-  if (own != end) std::fill_n(table.begin() + k_fallback_state + 1, k_gather_state - 1, *own);
+  if (own != end)
+    for (uint32_t s = 1; s < k_phase_states; ++s) table[in_phase(s, k_phase_fallback)] = *own;
   return table;
 }
 

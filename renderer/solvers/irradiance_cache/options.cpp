@@ -57,20 +57,20 @@ std::vector<OptionInfo> light_rows() {
                   "first level. Valid for a record with a radius of 3 % of the picture's height; records "
                   "that more of the picture reads get more rays, others fewer. The bound falls as samples "
                   "accumulate, where more rays are more efficient than more samples.",
-                  "More rays above"),
+                  "Noise bound"),
       real_option("cache.environment_threshold", "16", 2, 1000000, "x mean",
                   "Irradiance cache, with components.primary=cache: texels of the environment brighter than "
                   "this times its mean radiance count as the sun, which is always sampled directly."),
       integer_option("cache.max_records", 300000, 16, 400000, "records",
                      "Irradiance cache: maximum number of records, which sets its memory; building ends when "
                      "it is reached.",
-                     "Room"),
+                     "Most records"),
       integer_option("cache.passes", 12, 1, 64, "passes",
                      "Irradiance cache: maximum number of passes of building.", "Most passes"),
       real_option("cache.stop", "0.02", 0, 1, "",
                   "Irradiance cache: building ends when at most this share of the paths finds no record; "
                   "those paths are path traced.",
-                  "Stop at"),
+                  "Share to stop"),
   };
 }
 
@@ -80,7 +80,7 @@ std::vector<OptionInfo> candidate_rows() {
       real_option("cache.irradiance_weight", "1", 0, 1000, "",
                   "Irradiance cache: weight of the relative difference of irradiance between neighbouring "
                   "cells as detail, in later passes; 0: ignored.",
-                  "Light weighs"),
+                  "Weight of light"),
   };
 }
 

@@ -58,7 +58,7 @@ void PictureError::leave_one_out(const Work& w) {
 }
 
 bool PictureError::step(const Work& w) {
-  w.film.make_room_for_record_errors();
+  w.film.make_room_for_lookup_errors();
   leave_one_out(w);
   const uint32_t side = side_for(w.frame);
   const Frame frame = coarser(w.frame, side);
@@ -70,7 +70,7 @@ bool PictureError::step(const Work& w) {
   w.wavefront.set_frame(w.frame, w.enabled);
   if (!complete) return false;
   done_ = end;
-  if (done_ == blocks) w.film.complete_record_errors();
+  if (done_ == blocks) w.film.complete_lookup_errors();
   return true;
 }
 

@@ -9,7 +9,7 @@
 // not add up.
 //
 // Noise: e_k = sigma_k xi_k, with the standard error stored in record k, and independent xi_k of mean 0 and
-// variance 1. In each of k_record_lanes lanes every xi_k is a random sign. Paths are traced through the
+// variance 1. In each of k_lookup_lanes lanes every xi_k is a random sign. Paths are traced through the
 // picture and every lane is summed over R; the mean square over the lanes is Var(delta_R) = sum_k c_k^2
 // sigma_k^2 (M. Hutchinson's estimator, 1989). The number of lanes is the number of degrees of freedom. The
 // sums of two independent paths per pixel are multiplied, which keeps the paths' own noise out of the square.

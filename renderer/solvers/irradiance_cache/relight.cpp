@@ -138,7 +138,7 @@ solvers::Invalidation Cache::adopt(transport::Wavefront& wavefront, const Cache&
                 ((c.gathers.recursive != c.held.recursive || c.gathers.elsewhere != c.held.elsewhere) &&
                  (c.gathers.parts & tertiary) != 0);
   // Gathering paths make no candidates.
-  for (size_t s = 0; s < k_gather_state; ++s)
+  for (size_t s = 0; s < k_phase_states; ++s)
     lacks.coverage |= c.tables.picture_routes[s] != k_no_routes && o.tables.picture_routes[s] == k_no_routes;
   return lacks;
 }

@@ -53,7 +53,7 @@ class CacheSolver final : public solvers::Solver,
   bool refine(transport::Wavefront& wavefront, const solvers::Picture& picture,
               const solvers::Cancel& cancel) override;
   bool warm() const override { return ready() || cache_.status().pass >= 2; }
-  bool owes_errors(const film::Film& film) const override { return !film.record_errors_complete(); }
+  bool owes_errors(const film::Film& film) const override { return !film.lookup_errors_complete(); }
   bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const solvers::Picture& picture,
                        bool restarted, const solvers::Cancel& cancel) override;
 

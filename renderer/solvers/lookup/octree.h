@@ -22,7 +22,7 @@ struct OctreeOptions {
   /// Maximum leaf size over the mean diameter of the spheres (the minimum is half of that, if levels permit).
   /// Affects speed and memory, never results.
   float leaf_scale = 1;
-  /// Stores copies of the spheres in list order (16 bytes per reference), for octree_copy().
+  /// Stores copies of the spheres in list order (a vec4 per reference), for octree_copy().
   bool copies = false;
   /// Lists each sphere only in the leaf of its centre: the plain grid that the bench compares with. Lookups
   /// must then visit neighbouring leaves.
@@ -75,7 +75,7 @@ class Octree {
   void bind(gpu::Resources& resources) const;
   uint64_t bytes() const;  ///< device memory
 
-  /// Maximum references in the storage buffers of a device; 8 388 607 on lavapipe.
+  /// Maximum references in the storage buffers of a device.
   static uint32_t most_references(const gpu::Device& device);
 
  private:

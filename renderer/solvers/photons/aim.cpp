@@ -188,9 +188,7 @@ bool PhotonSolver::note_importance(transport::Wavefront& wavefront, const Pictur
   solvers::Routing routing = routing_of(task);
   if (feeds_) routing.fallback = picture.task.own;
   Frame own = picture.frame_for(routing, picture.task.own);
-  if (feeds_)
-    for (uint32_t s = 0; s < k_fallback_state; ++s)
-      own.automaton[s] = own.automaton[k_fallback_state + s % k_gather_state];
+  if (feeds_) transport::compute_everything(own);
   own.width = frame.width, own.height = frame.height;
   const schedule::UniformSchedule before = *eye_schedule_;
   wavefront.set_frame(own, picture.task.own);

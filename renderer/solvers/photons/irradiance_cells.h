@@ -19,9 +19,9 @@ namespace lucerna::photons {
 /// Triangle sides that may get irradiance, ordered so that nearby sides of similar orientation are adjacent.
 /// Partly transparent triangles are excluded, because their area is unknown.
 struct SideOrder {
-  /// 6 bits for the orientation of a side, then the 96 bits of its centre's Morton code: 48 and 48. The
-  /// code's cubes are aligned to the world's origin, so that distant geometry does not change them, and 32
-  /// bits per axis make them small everywhere.
+  /// The orientation of a side, then its centre's Morton code, the lower half of it in `low`. The code's
+  /// cubes are aligned to the world's origin, so that distant geometry does not change them, and its bits per
+  /// axis make them small everywhere.
   struct Key {
     uint64_t high = 0, low = 0;
     friend bool operator==(const Key&, const Key&) = default;

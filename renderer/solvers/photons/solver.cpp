@@ -299,22 +299,22 @@ PhotonFrame PhotonSolver::lookup_of(const Picture& picture, const Frame& frame, 
   f.surface_nodes = picture.task.settings.boolean("photons.borders") ? surfaces_.nodes() : 0;
   // Paths in the fallback states of another solver find photons like all others.
   for (uint32_t state = 0; state < k_automaton_states; ++state) {
-    const uint32_t of_eye = state % k_gather_state, own = state % k_delegated_states;
+    const uint32_t of_eye = without_phase(state), phase = phase_of(state);
     const bool here = state < k_delegated_states;
     const paths::LookupRoutes &routes = here ? here_routes_ : delegated_routes_,
                               &unreachable = here ? unreachable_here_ : unreachable_delegated_;
     f.component[state] = k_photon_no_components;
     // Paths that continued for lack of data look up no more, except records' rays, which start in these
     // states.
-    if (own >= (gathers() && !feeds_ ? k_gather_state : k_known_state) || of_eye >= routes.component.size())
-      continue;
+    const bool continued = gathers() && !feeds_ ? phase != k_phase_start : phase == k_phase_known;
+    if (continued || of_eye >= routes.component.size()) continue;
     uint32_t packed = 0;
     for (uint32_t p = 0; p < paths::k_part_count; ++p) {
       uint8_t c = routes.component[of_eye][p];
       // Records contribute tertiary light to paths that they serve; photons contribute it to the records'
       // rays and to paths without records, both in other states.
-      if (feeds_ && own < k_gather_state && c == k_tertiary) c = paths::k_no_component;
-      if (c == paths::k_no_component && own < k_gather_state) {
+      if (feeds_ && phase == k_phase_start && c == k_tertiary) c = paths::k_no_component;
+      if (c == paths::k_no_component && phase == k_phase_start) {
         c = unreachable.component[of_eye][p];
         if (c != paths::k_no_component) packed |= 1u << (k_photon_unreachable_only_shift + p);
       }

@@ -87,9 +87,7 @@ bool PhotonSolver::try_ways(transport::Wavefront& wavefront, const Picture& pict
   solvers::Routing routing = routing_of(task);
   if (irradiance_) routing.fallback = picture.task.own;
   Frame frame = picture.frame_for(routing, delegated);
-  if (irradiance_ && delegated != 0)
-    for (uint32_t s = 0; s < k_fallback_state; ++s)
-      frame.automaton[s] = frame.automaton[k_fallback_state + s % k_gather_state];
+  if (irradiance_ && delegated != 0) transport::compute_everything(frame);
   transport::set_delegated_tables(frame, frame);
   frame.width = small.width, frame.height = small.height;
   wavefront.set_frame(frame, picture.task.own);

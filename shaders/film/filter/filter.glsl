@@ -6,7 +6,7 @@
 #include "shaders/shared/filter.h"
 
 // Light of a pixel over the colour of its surface: rgb of both halves of the film, the standard deviation of a half (root of the
-// sum of the channels' variances), and that of the noise common to both halves (of records).
+// sum of the channels' variances), and that of the noise common to both halves (of lookups).
 struct FilterLight {
   vec3 even, odd;
   float deviation, in_both;

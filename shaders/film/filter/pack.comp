@@ -4,7 +4,7 @@
 #include "film/filter/filter.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { FilterPush push; };
-layout(scalar) readonly buffer FilmRecords { vec2 film_records[]; };  // squares: noise of records, of interpolation
+layout(scalar) readonly buffer FilmLookups { vec2 film_lookups[]; };  // squares: noise of stored light, of interpolation
 uniform samplerBuffer filter_seen;
 layout(scalar) writeonly buffer FilterLights { vec4 lights[]; };
 layout(scalar) writeonly buffer FilterSurfaces { vec4 surfaces[]; };
@@ -43,12 +43,12 @@ void main() {
   if (count < 2u) odd = even;
   float in_both = 0.0;
   if ((push.looked_up >> push.component & 1u) != 0u) {
-    // Assumes equal relative record errors in all components.
+    // Assumes equal relative errors of lookups in all components.
     float all = 0.0;
     for (uint c = 0u; c < k_component_count; ++c)
       if ((push.looked_up >> c & 1u) != 0u) all += luminance_sum(film_load(c, pixel));
     float share = all > 0.0 ? luminance_sum(p) / all : 0.0;
-    in_both = share * sqrt(film_records[pixel].x) * push.scale / luminance(s.albedo);
+    in_both = share * sqrt(film_lookups[pixel].x) * push.scale / luminance(s.albedo);
   }
   lights[pixel] = filter_texel(FilterLight(even * push.scale / s.albedo, odd * push.scale / s.albedo, 0.0, in_both));
 }

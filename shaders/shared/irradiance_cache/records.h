@@ -111,7 +111,7 @@ LUCERNA_CONST uint k_note_media = 32u;
 /// Texels of a record's residual by leave_one_out.comp, relative to the luminance of its irradiance: the
 /// interpolation error at its border, from its difference to the other records; 0, 0, 0; likewise the errors
 /// of the records in every lane.
-LUCERNA_CONST uint k_residual_texels = 1u + k_record_lanes / 4u;
+LUCERNA_CONST uint k_residual_texels = 1u + k_lookup_lanes / 4u;
 
 struct PropagatePush {
   uint width, height;  ///< of the picture, in pixels of the film

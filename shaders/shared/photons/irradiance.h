@@ -4,7 +4,7 @@
 #include "shaders/shared/transport.h"
 LUCERNA_SHARED_BEGIN
 
-// Texels of a node: one, and where groups of lights are kept apart one more for each group. (irradiance, link), (irradiance by
+// Texels of a node: one, and where light groups are separate one more for each group. (irradiance, link), (irradiance by
 // that group's light, 0). A triangle is cut in four at the middles of its edges, and so on; link: the first of the four nodes of
 // the quarters, or
 LUCERNA_CONST uint k_irradiance_none = 0u;   ///< too few photons; node 0
