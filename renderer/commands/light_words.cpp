@@ -1,6 +1,7 @@
 #include "commands/light_words.h"
 
 #include <algorithm>
+#include <array>
 
 #include "base/blackbody.h"
 #include "base/color.h"
@@ -33,6 +34,16 @@ Parameter size(const char* name, const char* help) {
           .optional = true};
 }
 
+Parameter lux_distance() {
+  return {.name = "distance",
+          .type = Type::real,
+          .help = "of lx, from the lamp's middle; without it, that of light.unit",
+          .lo = 1e-3,
+          .hi = 1e4,
+          .unit = "m",
+          .optional = true};
+}
+
 /// Refuses what a lamp of its kind does not have.
 void check_kind(const Arguments& a, const scene::Light& light) {
   const auto refuse = [&](const char* name, const char* why) {
@@ -40,6 +51,8 @@ void check_kind(const Arguments& a, const scene::Light& light) {
   };
   if (light.kind == scene::LightKind::directional) {
     refuse("power", "shines from infinitely far: its intensity is what counts");
+    for (const char* name : {"cd", "lm"}) refuse(name, "shines from infinitely far: give lx");
+    refuse("distance", "is as strong at any distance");
     refuse("position", "is infinitely far: azimuth and elevation say where");
   }
   using scene::LightKind;
@@ -49,7 +62,8 @@ void check_kind(const Arguments& a, const scene::Light& light) {
     for (const char* name : {"width", "height"}) refuse(name, "is no rectangle");
   if (light.kind != LightKind::tube) refuse("length", "is no tube");
   if (!has_shape(light.kind) || light.kind == LightKind::rectangle) refuse("radius", "has no radius");
-  if (!has_shape(light.kind)) refuse("visible", "has no shape");
+  if (!has_shape(light.kind))
+    for (const char* name : {"visible", "nits"}) refuse(name, "has no shape");
   if (light.kind != LightKind::rectangle && light.kind != LightKind::disk)
     refuse("two_sided", "has no second side");
   if (light.kind != LightKind::point && light.kind != LightKind::spot && light.kind != LightKind::profile)
@@ -114,14 +128,22 @@ void shape(const Arguments& a, scene::Light& light) {
   if (a.has("roll")) light.right = scene::rolled(light.direction, a.number("roll"));
 }
 
-/// Applies the requested strength, colour and switch.
-void shine(const Arguments& a, scene::Light& light) {
+/// Applies the requested strength, colour and switch. `distance`: of lux, if not given.
+void shine(const Arguments& a, scene::Light& light, float distance) {
   float strength = strength_of(light.intensity);
   const vec3 tint = requested_tint(a, "color", tint_of(light.intensity));
   take(a, "intensity", strength);
   if (a.has("power")) strength = a.number("power") / std::max(float(scene::solid_angle(light)), 1e-9f);
   if (a.has("intensity") || a.has("power") || a.has("color") || a.has("kelvin"))
     light.intensity = strength * tint;
+  const auto unit = given_unit(a, {});
+  if (a.has("distance") && unit != scene::LightUnit::lux) throw Error("", "distance: it counts for lx only");
+  if (unit) {
+    take(a, "distance", distance);
+    const std::optional<double> factor = scene::unit_factor(light, *unit, double{distance});
+    if (!factor) throw Error("", fmt::format("lx: {} m from its middle is inside the lamp", distance));
+    light.intensity = given_strength(a, *unit, *factor, light.intensity);
+  }
   take(a, "on", light.enabled);
 }
 
@@ -172,14 +194,59 @@ bool can_be_aimed(const scene::Light& light) {
          light.kind == LightKind::disk || light.kind == LightKind::profile;
 }
 
+std::vector<Parameter> strength_parameters(std::initializer_list<scene::LightUnit> units) {
+  static constexpr std::array<const char*, scene::k_light_units> k_helps{
+      "luminous intensity in front of a lamp; of a profile, the largest", "luminous flux of all its light",
+      "illuminance of a small plane that faces a sun, or a lamp at a distance in front of it",
+      "lumens over 683, as exporters of glTF have it; of a sun, per m2", "luminance of a surface"};
+  std::vector<Parameter> parameters;
+  for (const scene::LightUnit unit : units) {
+    const scene::LightUnitInfo& info = info_of(unit);
+    parameters.push_back({.name = info.word,
+                          .type = Type::real,
+                          .help = k_helps[size_t(unit)],
+                          .lo = 0,
+                          .hi = 1e12,
+                          .unit = unit == scene::LightUnit::nit ? "cd/m2" : info.symbol,
+                          .optional = true});
+    if (unit == scene::LightUnit::lux) parameters.push_back(lux_distance());
+  }
+  return parameters;
+}
+
+std::optional<scene::LightUnit> given_unit(const Arguments& a, std::initializer_list<const char*> other) {
+  std::optional<scene::LightUnit> unit;
+  const char* given = nullptr;
+  const auto take_one = [&](const char* name) {
+    if (!a.has(name)) return false;
+    if (given) exclude(a, given, name);
+    given = name;
+    return true;
+  };
+  for (const char* name : other) take_one(name);
+  for (const scene::LightUnitInfo& info : scene::k_unit_table)
+    if (take_one(info.word)) unit = info.unit;
+  return unit;
+}
+
+vec3 given_strength(const Arguments& a, scene::LightUnit unit, double factor, const vec3& before) {
+  constexpr float k_most = 1e9f;
+  const char* word = info_of(unit).word;
+  const vec3 after = scene::with_strength(before, factor, a.real(word));
+  if (!(strength_of(after) <= k_most))
+    throw Error("",
+                fmt::format("{}: {} makes the strongest channel more than {}", word, a.real(word), k_most));
+  return after;
+}
+
 std::vector<Parameter> light_parameters() {
-  return {
+  std::vector<Parameter> all = {
       {.name = "intensity",
        .type = Type::real,
-       .help = "of the strongest channel, in front of the lamp; W/m2 for a sun",
+       .help = "of the strongest channel, in front of the lamp, before the colour; lx of a sun",
        .lo = 0,
        .hi = 1e9,
-       .unit = "W/sr",
+       .unit = "cd",
        .optional = true},
       {.name = "color",
        .type = Type::vector,
@@ -191,10 +258,10 @@ std::vector<Parameter> light_parameters() {
       kelvin(),
       {.name = "power",
        .type = Type::real,
-       .help = "total emitted power of a lamp, strongest channel; replaces intensity",
+       .help = "all light of a lamp in its strongest channel, before the colour; replaces intensity",
        .lo = 0,
        .hi = 1e9,
-       .unit = "W",
+       .unit = "lm",
        .optional = true},
       {.name = "position",
        .type = Type::vector,
@@ -237,20 +304,25 @@ std::vector<Parameter> light_parameters() {
        .type = Type::boolean,
        .help = "the camera sees the shape; mirrors show it in any case",
        .optional = true}};
+  using scene::LightUnit;
+  for (Parameter& p : strength_parameters(
+           {LightUnit::candela, LightUnit::lumen, LightUnit::lux, LightUnit::watt, LightUnit::nit}))
+    all.push_back(std::move(p));
+  return all;
 }
 
 void check_light_words(const Arguments& a) {
-  exclude(a, "intensity", "power"), exclude(a, "color", "kelvin");
+  given_unit(a, {"intensity", "power"}), exclude(a, "color", "kelvin");
   exclude(a, "direction", "azimuth"), exclude(a, "direction", "elevation");
   exclude(a, "right", "roll");
 }
 
-void apply_light_words(const Arguments& a, scene::Light& light) {
+void apply_light_words(const Arguments& a, scene::Light& light, float distance) {
   check_kind(a, light);
   if (a.has("profile")) set_profile(light, scene::load_light_profile(a.text("profile")));
   aim(a, light);
   shape(a, light);
-  shine(a, light);
+  shine(a, light, distance);
 }
 
 }  // namespace lucerna::commands

@@ -215,8 +215,9 @@ enum class LightKind : uint32_t { point, spot, directional, sphere, rectangle, d
 inline bool has_shape(LightKind kind) { return kind >= LightKind::sphere && kind <= LightKind::tube; }
 
 /// KHR_lights_punctual, or a lamp with a shape that emits the same radiance everywhere; shines down its -Z.
-/// Only lamps with a shape are seen; they block no light. `intensity`: W/sr (W/m^2 of directional lights), of
-/// a lamp with a shape in front of it: radiance times the area seen from there. Size does not change it.
+/// Only lamps with a shape are seen; they block no light. `intensity`: cd (lx of directional lights) before
+/// the colour filters it (light_units.h), of a lamp with a shape in front of it: radiance times the area seen
+/// from there. Size does not change it.
 struct Light {
   std::string name;
   LightKind kind = LightKind::point;

@@ -158,11 +158,11 @@ TEST_CASE("a dropped image lights the scene; the first steps are shown on reques
 TEST_CASE("a lamp's strength, temperature and position are dragged in the panel, each drag one step") {
   if (test::no_display()) return;
   const auto lines = session_of("window.section Camera false\nselect light 3\nwait 0.3\n" +
-                                drag(1200, 366, 10, 0) + drag(1200, 418, 10, 0) + drag(1250, 470, 10, 0) +
+                                drag(1200, 366, 10, 0) + drag(1200, 444, 10, 0) + drag(1250, 470, 10, 0) +
                                 drag(1240, 496, 10, 0) + "key ctrl+z\nkey ctrl+z\nkey ctrl+z\n");
   INFO(fmt::format("{}", fmt::join(lines, "\n")));
   REQUIRE(lines.size() == 9);
-  CHECK_THAT(lines[2], Catch::StartsWith("light.set 3 intensity="));
+  CHECK_THAT(lines[2], Catch::StartsWith("light.set 3 cd="));
   CHECK_THAT(lines[3], Catch::StartsWith("light.set 3 kelvin="));
   CHECK_THAT(lines[4], Catch::StartsWith("light.set 3 position=") && Catch::EndsWith(",2,0"));
   CHECK_THAT(lines[5], Catch::StartsWith("light.set 3 azimuth="));
@@ -174,9 +174,9 @@ TEST_CASE("a colour is picked; emissive surfaces are listed among the lights") {
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   const auto lines = session_of(
-      "window.section Camera false\nselect light 3\nwait 0.3\nmouse.move 1200 392\nmouse.down\n"
+      "window.section Camera false\nselect light 3\nwait 0.3\nmouse.move 1200 418\nmouse.down\n"
       "mouse.up\nwait 0.4\n" +
-      ("screenshot " + file("picker.png") + "\n") + drag(1230, 472, 8, 8) +
+      ("screenshot " + file("picker.png") + "\n") + drag(1230, 498, 8, 8) +
       "key escape\nwait 0.3\nmaterial.set 1 strength=2\nselect material 1\nwait 0.4\n"
       "screenshot " +
       file("surface.png"));
