@@ -98,6 +98,8 @@ struct Ui {
   } drag;
   /// Ends a drag of an object; it goes back to where the drag began.
   void cancel_object_drag();
+  /// Likewise of a lamp.
+  void cancel_lamp_drag();
   RebuildTime rebuild;
   /// True: the next click in the picture sets the exposure.
   bool dropper = false;

@@ -92,6 +92,28 @@ TEST_CASE("a lamp's mark is dragged parallel to the picture, with Shift vertical
   CHECK(lines[4] == "undo");
 }
 
+TEST_CASE("with Ctrl and Shift a lamp is put just before a surface; Escape ends a drag without a step") {
+  if (test::no_display()) return;
+  const auto lines = session_of(
+      "camera.place 0,2,6 0,2,0 0,1,0\nselect light 2\nwait 0.5\nkey.hold ctrl on\n"
+      "key.hold shift on\n" +
+      drag(712, 372, 20, 10) +
+      "key.hold ctrl off\nkey.hold shift off\nkey ctrl+z\nwait 0.3\n"
+      "mouse.move 712 372\nmouse.down\nmouse.move 732 372\nmouse.move 752 372\nwait 0.2\n"
+      "expect history.undo is 2\nkey escape\nwait 0.2\nmouse.move 792 372\nmouse.up\n"
+      "expect history.undo is 1\nexpect light 2 position is 0,2,0\n");
+  INFO(fmt::format("{}", fmt::join(lines, "\n")));
+  REQUIRE(lines.size() == 4);
+  CHECK_THAT(lines[2], Catch::StartsWith("light.set 2 position="));
+  CHECK(lines[3] == "undo");
+  // The plane of the triangle (-3,0,-4) (3,0,-4) (3,3,4), from the eye's side.
+  const vec3 at = vector_in(lines[2].substr(lines[2].find('=') + 1), 0);
+  const float off = (-48 * at.y + 18 * at.z + 72) / std::hypot(48.0f, 18.0f);
+  CHECK(off > 1e-3f);
+  CHECK(off < 0.2f);
+  CHECK(at.x > 0.3f);
+}
+
 TEST_CASE("an emissive surface has a mark that selects its material and moves nothing") {
   if (test::no_display()) return;
   // The mark is in the centre of the picture.
