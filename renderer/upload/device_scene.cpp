@@ -36,6 +36,12 @@ std::shared_ptr<const EnvironmentBuffers> environment_of(gpu::Device& device, co
   return std::make_shared<EnvironmentBuffers>(device, flat);
 }
 
+std::shared_ptr<const ProfileBuffer> profiles_of(gpu::Device& device, const FlatLights& flat,
+                                                 const LightBuffers& before) {
+  if (before.profiles && before.profiles->of.shares_with(flat.profiles)) return before.profiles;
+  return std::make_shared<ProfileBuffer>(device, flat);
+}
+
 std::vector<vec4> joined(std::vector<vec4> a, const std::vector<vec4>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
@@ -62,16 +68,19 @@ bool EnvironmentBuffers::holds(const FlatLights& flat) const {
          of_.sun_cells.shares_with(flat.environment.sun_cells);
 }
 
+ProfileBuffer::ProfileBuffer(gpu::Device& device, const FlatLights& flat)
+    : texels(upload<vec4>(device, "distributions of lamps", flat.profiles)), of(flat.profiles) {}
+
 LightBuffers::LightBuffers(gpu::Device& device, const FlatLights& flat, const LightBuffers& before)
     : lights(upload(device, "lights", flat.lights)),
       alias(upload(device, "light table", joined(flat.light_alias, flat.lamp_alias))),
       pmf(upload(device, "light probabilities", flat.primitive_light_pmf, false)),
       groups(upload(device, "groups of lights", whole_texels(flat.emissive_groups))),
-      profiles(upload(device, "distributions of lamps", flat.profiles)),
       sun_density(upload(device, "sun densities", flat.sun_density)),
       portals(upload(device, "portals", flat.portals.portals)),
       portal_sums(upload<uint32_t>(device, "portal tables", flat.portals.sums)),
-      environment(environment_of(device, flat, before)) {}
+      environment(environment_of(device, flat, before)),
+      profiles(profiles_of(device, flat, before)) {}
 
 MaterialBuffers::MaterialBuffers(gpu::Device& device, const FlatMaterials& flat)
     : materials(upload(device, "scene materials", flat.materials)),
@@ -124,7 +133,7 @@ void DeviceScene::bind(gpu::Resources& r) const {
   r.set("light_alias", lights_.alias);
   r.set("PrimitiveLightPmf", lights_.pmf);
   r.set("emissive_groups", lights_.groups);
-  r.set("light_profiles", lights_.profiles);
+  r.set("light_profiles", lights_.profiles->texels);
   r.set("environment_texels", lights_.environment->texels);
   r.set("environment_alias", lights_.environment->alias);
   r.set("sun_cells", lights_.environment->sun_cells);

@@ -19,14 +19,22 @@ struct EnvironmentBuffers {
   EnvironmentTables of_;
 };
 
+/// Measured distributions of lamps on the device.
+struct ProfileBuffer {
+  ProfileBuffer(gpu::Device& device, const FlatLights& flat);
+  gpu::Buffer texels;
+  SharedVector<vec4> of;
+};
+
 /// Lights and environment on the device.
 struct LightBuffers {
   LightBuffers() = default;
-  /// `before`: provides the environment if it is equal.
+  /// `before`: provides the environment and the distributions of lamps if they are equal.
   LightBuffers(gpu::Device& device, const FlatLights& flat, const LightBuffers& before = {});
   explicit operator bool() const { return bool(lights); }
-  gpu::Buffer lights, alias, pmf, groups, profiles, sun_density, portals, portal_sums;
+  gpu::Buffer lights, alias, pmf, groups, sun_density, portals, portal_sums;
   std::shared_ptr<const EnvironmentBuffers> environment;
+  std::shared_ptr<const ProfileBuffer> profiles;
 };
 
 /// Materials on the device, with the albedo tables of their glasses and the volumes of their solids.

@@ -87,11 +87,15 @@ struct LightDistribution {
   std::string lamp_name(uint32_t lamp) const { return lamp < lamp_names.size() ? lamp_names[lamp] : "lamp"; }
 };
 
+/// Profiles of the scene's lamps, each once.
+using Profiles = std::vector<std::shared_ptr<const scene::LightProfile>>;
+
 /// Emission of lights: flatten_emission().
 struct Emission {
   std::vector<vec4> lights;                                ///< the light table
   std::vector<uint8_t> emissive_groups;                    ///< by primitive; empty: groups are not separate
-  std::vector<vec4> profiles;                              ///< light_profiles
+  Profiles profiles_in_table;                              ///< those of light_profiles, in its order
+  SharedVector<vec4> profiles;                             ///< light_profiles; made again for others only
   SharedVector<vec3> environment_texels;                   ///< radiance, without the factor
   std::optional<EnvironmentSource> environment_source;     ///< source of the texels
   uint32_t environment_width = 0, environment_height = 0;  ///< 0: dark

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "scene/lamp.h"
-#include "upload/alias_table.h"
 #include "upload/environment_map.h"
 #include "upload/flatten.h"
 
@@ -29,8 +28,6 @@ LightTexels triangle_texels(const scene::Scene& scene, const FlatScene& flat, ui
           vec4(m.emission, as_float(sides))};
 }
 
-/// Profiles of the scene's lamps, each once.
-using Profiles = std::vector<std::shared_ptr<const scene::LightProfile>>;
 uint32_t number_of(Profiles& profiles, const std::shared_ptr<const scene::LightProfile>& profile) {
   const auto found = std::find(profiles.begin(), profiles.end(), profile);
   const auto number = uint32_t(found - profiles.begin());
@@ -44,17 +41,14 @@ std::vector<vec4> profile_texels(const Profiles& profiles) {
   for (size_t p = 0; p < profiles.size(); ++p) {
     const scene::LightProfile& profile = *profiles[p];
     texels[p] = vec4(as_float(uint32_t(texels.size())), as_float(profile.rows), as_float(profile.columns), 0);
-    const std::vector<double> cells = profile.cells();
-    const std::vector<vec4> alias = build_alias_table(cells);
+    const std::vector<vec4>& alias = profile.alias;
     const double step = std::numbers::pi / (profile.rows - 1), width = 2 * std::numbers::pi / profile.columns;
-    for (size_t i = 0; i < profile.intensity.size(); ++i) {
-      vec4 texel(profile.intensity[i], 1, as_float(uint32_t(i)), 0);
-      if (i < cells.size()) {
-        const auto row = double(i / profile.columns);
-        const double angle = width * (std::cos(step * row) - std::cos(step * (row + 1)));
-        texel = vec4(profile.intensity[i], alias[i].x, alias[i].y, double(alias[i].z) / angle);
-      }
-      texels.push_back(texel);
+    for (uint32_t row = 0, i = 0; row < profile.rows; ++row) {
+      const double angle = width * (std::cos(step * row) - std::cos(step * (row + 1)));
+      for (uint32_t column = 0; column < profile.columns; ++column, ++i)
+        texels.push_back(row + 1 < profile.rows
+                             ? vec4(profile.intensity[i], alias[i].x, alias[i].y, double(alias[i].z) / angle)
+                             : vec4(profile.intensity[i], 1, as_float(i), 0));
     }
   }
   return texels;
@@ -127,7 +121,11 @@ void flatten_emission(const scene::Scene& scene, FlatScene& flat) {
                                                                         << k_light_group_shift);
     e.lights.insert(e.lights.end(), texels.begin(), texels.end());
   }
-  e.profiles = profile_texels(profiles);
+  if (profiles == flat.profiles_in_table)
+    e.profiles = flat.profiles;
+  else
+    e.profiles = profile_texels(profiles);
+  e.profiles_in_table = std::move(profiles);
   e.environment_rotation = scene.environment.rotation * k_pi / 180;
   if (flat.effects.environment_map) {
     const EnvironmentMap map(scene);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/alias_table.h"
 #include "scene/display_name.h"
 #include "scene/lamp.h"
-#include "upload/alias_table.h"
 #include "upload/environment_map.h"
 #include "upload/flatten.h"
 #include "upload/texture_mean.h"
