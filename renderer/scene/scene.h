@@ -152,6 +152,10 @@ struct Primitive {
 struct Mesh {
   std::string name;
   std::vector<Primitive> primitives;
+  /// What was subtracted from the vertices of the file, which are far from its origin [m].
+  glm::dvec3 shift{0};
+  /// Its file's node has placed the vertices in the world: by joints, or by a matrix without an inverse.
+  bool is_baked = false;
 };
 
 /// A mesh placed in the world. `flipped`: the matrix has a negative determinant, so the front side is the
