@@ -258,6 +258,19 @@ void unit_rows(Controls& controls, const scene::Light& light) {
   tooltip("From the middle of the lamp to the plane whose illuminance is shown.");
 }
 
+/// The picture of a selected spot, and its roll.
+void picture_rows(Actions& actions, size_t i, const scene::Light& light) {
+  const scene::LightPicture& p = *light.picture;
+  value_row("Picture",
+            fmt::format("{}, {} \xC3\x97 {}", p.name.empty() ? "unnamed" : p.name, p.width, p.height),
+            "Image that the spot projects (light.set picture=FILE). Its corners are on the cone.");
+  float roll = scene::roll_of(light.direction, light.right);
+  if (slider("##roll", "Roll", roll,
+             {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0", .typed_lo = -360, .typed_hi = 360}))
+    actions.act("light.set", i + 1, named("roll", roll));
+  tooltip("Angle about the direction of its light; at 0 the picture is level.");
+}
+
 /// Properties of a selected lamp besides its strength.
 void light_details(Actions& actions, const Box& core, size_t i, const scene::Light& light) {
   colour_rows(actions, "light.set", i + 1, "color", tint_of(light.intensity));
@@ -268,6 +281,7 @@ void light_details(Actions& actions, const Box& core, size_t i, const scene::Lig
   }
   if (has_shape(light.kind)) shape_rows(actions, i, light);
   if (light.profile) profile_rows(actions, i, light);
+  if (light.picture) picture_rows(actions, i, light);
   if (light.kind != scene::LightKind::point && light.kind != scene::LightKind::sphere &&
       light.kind != scene::LightKind::tube) {
     const commands::Bearing bearing = commands::bearing_of(light.direction);
@@ -283,12 +297,15 @@ void light_details(Actions& actions, const Box& core, size_t i, const scene::Lig
   }
   if (light.kind == scene::LightKind::spot) {
     float cone = light.outer_cone * 180 / k_pi, inner = light.inner_cone * 180 / k_pi;
-    if (slider("##cone", "Cone", cone, {.lo = 0.5f, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
+    const float widest = light.picture ? 80.0f : 90.0f;
+    if (slider("##cone", "Cone", cone, {.lo = 0.5f, .hi = widest, .decimals = 1, .unit = "\xC2\xB0"}))
       actions.act("light.set", i + 1, named("cone", cone));
     tooltip("Angle from the axis at which the light ends.");
-    if (slider("##inner", "Inner cone", inner, {.lo = 0, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
-      actions.act("light.set", i + 1, named("inner_cone", inner));
-    tooltip("Angle from the axis at which the light begins to fade.");
+    if (!light.picture) {
+      if (slider("##inner", "Inner cone", inner, {.lo = 0, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
+        actions.act("light.set", i + 1, named("inner_cone", inner));
+      tooltip("Angle from the axis at which the light begins to fade.");
+    }
   }
 }
 

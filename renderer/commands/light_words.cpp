@@ -6,7 +6,9 @@
 #include "base/blackbody.h"
 #include "base/color.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "commands/light_edit.h"
+#include "scene/io/light_picture_file.h"
 #include "scene/io/light_profile_file.h"
 #include "scene/lamp.h"
 #include "scene/range.h"
@@ -68,7 +70,10 @@ void check_kind(const Arguments& a, const scene::Light& light) {
     refuse("two_sided", "has no second side");
   if (light.kind != LightKind::point && light.kind != LightKind::spot && light.kind != LightKind::profile)
     refuse("profile", "takes no distribution");
-  if (light.kind != LightKind::rectangle && light.kind != LightKind::tube && light.kind != LightKind::profile)
+  if (light.kind != LightKind::spot) refuse("picture", "takes no picture: a spot does");
+  const bool projects = light.picture || a.has("picture");
+  if (light.kind != LightKind::rectangle && light.kind != LightKind::tube &&
+      light.kind != LightKind::profile && !projects)
     for (const char* name : {"right", "roll"}) refuse(name, "looks the same when it is rolled");
   if (light.kind != scene::LightKind::spot)
     for (const char* name : {"cone", "inner_cone"}) refuse(name, "has no cone");
@@ -102,6 +107,17 @@ void aim(const Arguments& a, scene::Light& light) {
   else
     light.inner_cone = std::min(light.inner_cone, light.outer_cone);
   light.outer_cone = std::max(light.outer_cone, light.inner_cone);
+  if (light.picture && light.outer_cone > scene::k_widest_picture)
+    throw Error("", fmt::format("cone: with a picture it has at most {:.0f} degrees",
+                                glm::degrees(scene::k_widest_picture) - 0.5f));
+}
+
+std::shared_ptr<const scene::LightPicture> picture_file(const std::string& file) {
+  size_t mended = 0;
+  auto picture = scene::load_light_picture(file, mended);
+  if (mended > 0)
+    log::warning("{}: {} texels are negative or not finite; they are 0 or the largest value", file, mended);
+  return picture;
 }
 
 /// Applies the requested shape.
@@ -300,6 +316,11 @@ std::vector<Parameter> light_parameters() {
        .help = "measured distribution of a point or spot, IES LM-63 or EULUMDAT; the lamp keeps its power",
        .choices = {".ies", ".ldt"},
        .optional = true},
+      {.name = "picture",
+       .type = Type::file,
+       .help = "image that a spot projects; its corners are on the cone, and white is as strong as the spot",
+       .choices = {".png", ".jpg", ".exr", ".hdr"},
+       .optional = true},
       {.name = "visible",
        .type = Type::boolean,
        .help = "the camera sees the shape; mirrors show it in any case",
@@ -314,12 +335,13 @@ std::vector<Parameter> light_parameters() {
 void check_light_words(const Arguments& a) {
   given_unit(a, {"intensity", "power"}), exclude(a, "color", "kelvin");
   exclude(a, "direction", "azimuth"), exclude(a, "direction", "elevation");
-  exclude(a, "right", "roll");
+  exclude(a, "right", "roll"), exclude(a, "profile", "picture");
 }
 
 void apply_light_words(const Arguments& a, scene::Light& light, float distance) {
   check_kind(a, light);
   if (a.has("profile")) set_profile(light, scene::load_light_profile(a.text("profile")));
+  if (a.has("picture")) set_picture(light, picture_file(a.text("picture")));
   aim(a, light);
   shape(a, light);
   shine(a, light, distance);

@@ -11,6 +11,7 @@
 
 #include "base/math.h"
 #include "base/shared_vector.h"
+#include "scene/light_picture.h"
 #include "scene/light_profile.h"
 #include "scene/sky_model.h"
 #include "scene/sun_time.h"
@@ -236,7 +237,10 @@ struct Light {
   Id id = k_none;
   std::optional<SunTime> sun{};                   ///< of a directional light: its direction follows from this
   std::shared_ptr<const LightProfile> profile{};  ///< of its kind; the intensity is then the largest one
-  /// Of a rectangle's width, a tube's length, or a profile's +X: unit, perpendicular to the direction.
+  /// Projected by a spot, in place of its fall between the cones; null: none. The intensity is that of white.
+  std::shared_ptr<const LightPicture> picture{};
+  /// Of a rectangle's or picture's width, a tube's length, or a profile's +X: unit, perpendicular to the
+  /// direction.
   vec3 right{1, 0, 0};
   float width = 0.5f;      ///< of a rectangle; length of a tube; metres
   float height = 0.5f;     ///< of a rectangle

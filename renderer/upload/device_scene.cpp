@@ -36,10 +36,11 @@ std::shared_ptr<const EnvironmentBuffers> environment_of(gpu::Device& device, co
   return std::make_shared<EnvironmentBuffers>(device, flat);
 }
 
-std::shared_ptr<const ProfileBuffer> profiles_of(gpu::Device& device, const FlatLights& flat,
-                                                 const LightBuffers& before) {
-  if (before.profiles && before.profiles->of.shares_with(flat.profiles)) return before.profiles;
-  return std::make_shared<ProfileBuffer>(device, flat);
+std::shared_ptr<const SharedTable> table_of(gpu::Device& device, const char* name,
+                                            const SharedVector<vec4>& values,
+                                            const std::shared_ptr<const SharedTable>& before) {
+  if (before && before->of.shares_with(values)) return before;
+  return std::make_shared<SharedTable>(device, name, values);
 }
 
 std::vector<vec4> joined(std::vector<vec4> a, const std::vector<vec4>& b) {
@@ -68,8 +69,8 @@ bool EnvironmentBuffers::holds(const FlatLights& flat) const {
          of_.sun_cells.shares_with(flat.environment.sun_cells);
 }
 
-ProfileBuffer::ProfileBuffer(gpu::Device& device, const FlatLights& flat)
-    : texels(upload<vec4>(device, "distributions of lamps", flat.profiles)), of(flat.profiles) {}
+SharedTable::SharedTable(gpu::Device& device, const char* name, const SharedVector<vec4>& values)
+    : texels(upload<vec4>(device, name, values)), of(values) {}
 
 LightBuffers::LightBuffers(gpu::Device& device, const FlatLights& flat, const LightBuffers& before)
     : lights(upload(device, "lights", flat.lights)),
@@ -80,7 +81,8 @@ LightBuffers::LightBuffers(gpu::Device& device, const FlatLights& flat, const Li
       portals(upload(device, "portals", flat.portals.portals)),
       portal_sums(upload<uint32_t>(device, "portal tables", flat.portals.sums)),
       environment(environment_of(device, flat, before)),
-      profiles(profiles_of(device, flat, before)) {}
+      profiles(table_of(device, "distributions of lamps", flat.profiles, before.profiles)),
+      pictures(table_of(device, "pictures of spots", flat.pictures, before.pictures)) {}
 
 MaterialBuffers::MaterialBuffers(gpu::Device& device, const FlatMaterials& flat)
     : materials(upload(device, "scene materials", flat.materials)),
@@ -134,6 +136,7 @@ void DeviceScene::bind(gpu::Resources& r) const {
   r.set("PrimitiveLightPmf", lights_.pmf);
   r.set("emissive_groups", lights_.groups);
   r.set("light_profiles", lights_.profiles->texels);
+  r.set("light_pictures", lights_.pictures->texels);
   r.set("environment_texels", lights_.environment->texels);
   r.set("environment_alias", lights_.environment->alias);
   r.set("sun_cells", lights_.environment->sun_cells);
@@ -155,6 +158,7 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_EMISSIVE", e.emissive);
   set("LUCERNA_SHAPES", e.shapes);
   set("LUCERNA_PROFILES", e.profiles);
+  set("LUCERNA_PICTURES", e.pictures);
   set("LUCERNA_PLAIN_EMITTERS", e.plain_emitters);
   set("LUCERNA_ENVIRONMENT_MAP", e.environment_map);
   set("LUCERNA_SEPARATE_SKY", e.separate_sky);

@@ -19,9 +19,9 @@ struct EnvironmentBuffers {
   EnvironmentTables of_;
 };
 
-/// Measured distributions of lamps on the device.
-struct ProfileBuffer {
-  ProfileBuffer(gpu::Device& device, const FlatLights& flat);
+/// A table on the device that rarely changes.
+struct SharedTable {
+  SharedTable(gpu::Device& device, const char* name, const SharedVector<vec4>& values);
   gpu::Buffer texels;
   SharedVector<vec4> of;
 };
@@ -29,12 +29,12 @@ struct ProfileBuffer {
 /// Lights and environment on the device.
 struct LightBuffers {
   LightBuffers() = default;
-  /// `before`: provides the environment and the distributions of lamps if they are equal.
+  /// `before`: provides the environment, distributions and pictures of lamps if they are equal.
   LightBuffers(gpu::Device& device, const FlatLights& flat, const LightBuffers& before = {});
   explicit operator bool() const { return bool(lights); }
   gpu::Buffer lights, alias, pmf, groups, sun_density, portals, portal_sums;
   std::shared_ptr<const EnvironmentBuffers> environment;
-  std::shared_ptr<const ProfileBuffer> profiles;
+  std::shared_ptr<const SharedTable> profiles, pictures;
 };
 
 /// Materials on the device, with the albedo tables of their glasses and the volumes of their solids.

@@ -5,6 +5,7 @@
 #include <catch2/catch.hpp>
 #include <cmath>
 
+#include "base/error.h"
 #include "scene/lamp.h"
 
 namespace light_units_tests {
@@ -62,6 +63,45 @@ TEST_CASE("a candela is 1/d2 lux, and as many lumens as the lamp's solid angle")
   CHECK(factor(sun, LightUnit::watt) == Approx(1 / 683.0));
   for (const LightUnit none : {LightUnit::candela, LightUnit::lumen, LightUnit::nit})
     CHECK_FALSE(unit_factor(sun, none, 1));
+}
+
+TEST_CASE("a picture's lumens are its luminance over the directions that it covers") {
+  Light spot = lamp(LightKind::spot);
+  set_picture(spot, std::make_shared<LightPicture>(make_picture(3, 2, {6, vec3(1)}, "white")));
+  const vec2 half = picture_extent(spot);
+  const double w{half.x}, h{half.y};
+  // Solid angle of a rectangle before the middle.
+  const double whole = 4 * std::asin(w * h / std::sqrt((1 + w * w) * (1 + h * h)));
+  CHECK(factor(spot, LightUnit::lumen) == Approx(whole).epsilon(1e-3));
+  CHECK(factor(spot, LightUnit::candela) == 1);
+  set_picture(spot, std::make_shared<LightPicture>(make_picture(
+                        3, 2, {vec3(0), vec3(0, 1, 0), vec3(0), vec3(0), vec3(0, 1, 0), vec3(0)}, "stripe")));
+  CHECK(factor(spot, LightUnit::lumen) < 0.7152 * 0.55 * whole);
+  CHECK(factor(spot, LightUnit::lumen) > 0.7152 * 0.5 * whole);
+}
+
+TEST_CASE("pictures: what is refused, and what is made of others") {
+  const auto failure = [](uint32_t w, uint32_t h, std::vector<vec3> texels) {
+    try {
+      make_picture(w, h, std::move(texels), "file.png");
+    } catch (const Error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(failure(2, 2, {4, vec3(0)}) == "file.png: the picture is black");
+  CHECK(failure(0, 0, {}) == "file.png: the picture has no texels");
+  CHECK(failure(1, 2, {vec3(1), vec3(1, NAN, 1)}).find("a texel has the value nan") != std::string::npos);
+  CHECK(failure(1, 1, {vec3(-1)}).find("a texel has the value -1") != std::string::npos);
+  CHECK(failure(3000, 1, std::vector<vec3>(3000, vec3(1))).find("too long") != std::string::npos);
+  const LightPicture one = make_picture(1, 1, {vec3(3)}, "x");
+  CHECK((one.width == 2 && one.height == 2));
+  CHECK(one.at(vec2(0.3f, 0.9f)) == vec3(3));
+  std::vector<vec3> large(size_t{2048} * 1500);
+  for (size_t i = 0; i < large.size(); ++i) large[i] = vec3(float(i % 2));
+  const LightPicture half = make_picture(2048, 1500, large, "x");
+  CHECK((half.width == 1024 && half.height == 750));
+  CHECK(half.texels[5] == vec3(0.5f));
 }
 
 TEST_CASE("a measured distribution has its own lumens, and candela where it is strongest") {
