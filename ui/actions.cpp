@@ -19,6 +19,11 @@ void Actions::act_line(const std::string& line) {
   wake();
 }
 
+void Actions::cancel_gesture() {
+  work_.history.cancel(gesture_);
+  wake();
+}
+
 void Actions::act_in(uint64_t gesture, const std::string& line) {
   const uint64_t held = std::exchange(gesture_, gesture);
   act_line(line);

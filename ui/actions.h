@@ -26,6 +26,9 @@ class Actions {
   /// Toggles a boolean setting.
   void toggle(const std::string& key) { act("set", key, work_.open.setting_on(key) ? "false" : "true"); }
 
+  /// Reverts what the gesture of the held control has changed last, and forgets it.
+  void cancel_gesture();
+
   /// Lets the window draw this number of frames.
   void wake(int frames = 2) { wake_(frames); }
   /// Determines the held control; call once per frame.

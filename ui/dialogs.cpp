@@ -33,6 +33,7 @@ std::vector<std::pair<std::string, std::string>> key_rows() {
       {"I", "trace the paths of the pixel that is held, or of the next clicked one"},
       {"F", "frame the selection, or the scene"},
       {"Z", "handles of the selected object: move, turn, size; with Ctrl in steps"},
+      {"Ctrl + Shift while dragging", "the object or lamp snaps to the surface under the pointer"},
       {"L", "mark lamps and emissive surfaces; click to select, drag to move a lamp"},
       {"Drag on a lamp's mark",
        "move it parallel to the picture, with Shift vertically; a spot's aim follows surfaces"},
@@ -80,7 +81,7 @@ std::vector<std::pair<std::string, std::string>> key_rows() {
            {"Ctrl + Shift + S", "save the scene with its edits"},
            {"Ctrl + L", "type a command"},
            {"Ctrl + Z, Ctrl + Shift + Z", "undo, redo"},
-           {"Esc", "close a message, clear the selection, or cancel a load"},
+           {"Esc", "end a drag, close a message, clear the selection, or cancel a load"},
            {"", ""},
            {"Double-click a number", "type a value"},
            {"Shift, Ctrl while dragging", "ten times finer, ten times coarser"}})
@@ -222,6 +223,8 @@ void handle_keys(Ui& ui) {
   if (ui.pressed(GLFW_KEY_ESCAPE)) {
     if (ui.drag.object)
       ui.cancel_object_drag();
+    else if (ui.drag.lamp && ImGui::IsMouseDragging(0))
+      ui.cancel_lamp_drag();
     else if (ui.cards.welcome)
       ui.cards.welcome = false;
     else if (ui.dropper)

@@ -12,7 +12,7 @@
 #include "lamp_outline.h"
 #include "mark_layout.h"
 #include "scene/projection.h"
-#include "session/pick.h"
+#include "surface_snap.h"
 #include "widgets.h"
 
 namespace lucerna::ui {
@@ -27,6 +27,8 @@ constexpr float k_apart = 19;  // ... between the middles of two marks, so that 
 
 /// Drawn length of a spot's axis that hits nothing, relative to the scene's radius.
 constexpr float k_aim_of_extent = 0.25f;
+/// Way of a lamp from the surface that it snaps to, likewise.
+constexpr float k_gap_of_extent = 0.005f;
 
 LampHandle aim_of(const MarkedScene& marked, uint32_t index, const scene::Light& light) {
   LampHandle aim{.light = index, .part = LampHandle::Part::aim, .point = light.position, .at = {}};
@@ -88,6 +90,16 @@ bool project(const scene::Camera& camera, const Area& shown, const vec3& point, 
   const std::optional<vec2> place = scene::place_in_picture(camera, point, shown.width() / shown.height());
   if (place) at = {shown.lo.x + place->x * shown.width(), shown.lo.y + place->y * shown.height()};
   return place.has_value();
+}
+
+session::PickRay ray_through(const MarkedScene& marked, const Area& shown, const ImVec2& at) {
+  return session::pick_ray(marked.camera.view->camera, (at.x - shown.lo.x) / std::max(1.0f, shown.width()),
+                           (at.y - shown.lo.y) / std::max(1.0f, shown.height()), marked.camera.aspect);
+}
+
+DragSnap drag_snap() {
+  const ImGuiIO& io = ImGui::GetIO();
+  return !io.KeyCtrl ? DragSnap::none : io.KeyShift ? DragSnap::surface : DragSnap::steps;
 }
 
 std::vector<LampHandle> lamp_handles(const MarkedScene& marked, const Area& shown) {
@@ -197,9 +209,7 @@ void drag_lamp(Actions& actions, const MarkedScene& marked, const LampHandle& ha
   if (!marked.open.scene || !marked.camera.view || handle.light >= marked.open.lights().size()) return;
   const ImGuiIO& io = ImGui::GetIO();
   if (handle.part == LampHandle::Part::size) {
-    const session::PickRay ray = session::pick_ray(
-        marked.camera.view->camera, (io.MousePos.x - shown.lo.x) / std::max(1.0f, shown.width()),
-        (io.MousePos.y - shown.lo.y) / std::max(1.0f, shown.height()), marked.camera.aspect);
+    const session::PickRay ray = ray_through(marked, shown, io.MousePos);
     const auto sizes = size_by_ray(marked.open.light(handle.light),
                                    commands::eye_of(marked.camera.view->camera), ray.origin, ray.direction);
     if (sizes.size() == 1) actions.act("light.set", handle.light + 1, named(sizes[0].first, sizes[0].second));
@@ -209,12 +219,9 @@ void drag_lamp(Actions& actions, const MarkedScene& marked, const LampHandle& ha
     return;
   }
   if (handle.part == LampHandle::Part::aim) {
-    const vec2 at((io.MousePos.x - shown.lo.x) / std::max(1.0f, shown.width()),
-                  (io.MousePos.y - shown.lo.y) / std::max(1.0f, shown.height()));
     const session::Probe* rays = marked.camera.probe();
     if (!rays) return;
-    const session::PickRay ray =
-        session::pick_ray(marked.camera.view->camera, at.x, at.y, marked.camera.aspect);
+    const session::PickRay ray = ray_through(marked, shown, io.MousePos);
     if (ray.direction == vec3(0)) return;
     const auto hit = rays->nearest(ray.origin, ray.direction);
     const vec3 from = marked.open.light(handle.light).position;
@@ -223,6 +230,17 @@ void drag_lamp(Actions& actions, const MarkedScene& marked, const LampHandle& ha
         hit ? hit->position : ray.origin + glm::distance(ray.origin, handle.point) * ray.direction;
     if (glm::distance(from, to) > 1e-4f * marked.camera.view->extent)
       actions.act("light.set", handle.light + 1, named("direction", to - from));
+    return;
+  }
+  if (drag_snap() == DragSnap::surface) {
+    const session::Probe* rays = marked.camera.probe();
+    const session::PickRay ray = ray_through(marked, shown, io.MousePos);
+    if (!rays || ray.direction == vec3(0)) return;
+    if (const auto hit = rays->nearest(ray.origin, ray.direction))
+      actions.act(
+          "light.set", handle.light + 1,
+          named("position", lamp_on_surface(marked.open.light(handle.light), {hit->position, hit->normal},
+                                            k_gap_of_extent * marked.camera.view->extent)));
     return;
   }
   const vec2 pixels(io.MousePos.x - io.MouseClickedPos[0].x, io.MousePos.y - io.MouseClickedPos[0].y);

@@ -6,6 +6,7 @@
 #include "actions.h"
 #include "layout.h"
 #include "scene/scene.h"
+#include "session/pick.h"
 
 namespace lucerna::ui {
 
@@ -33,14 +34,21 @@ struct LampHandle {
 /// Projects a point of the scene to the screen; false if it is behind the eye.
 bool project(const scene::Camera& camera, const Area& shown, const vec3& point, ImVec2& at);
 
+/// The ray through a point of the screen, in the view; with direction 0 if it passes no section plane.
+session::PickRay ray_through(const MarkedScene& marked, const Area& shown, const ImVec2& at);
+
+/// What a drag snaps to: steps with Ctrl, surfaces under the pointer with Ctrl and Shift.
+enum class DragSnap { none, steps, surface };
+DragSnap drag_snap();
+
 /// The visible handles: of all lights if they are marked, of the selected lamp always. Suns have none.
 std::vector<LampHandle> lamp_handles(const MarkedScene& marked, const Area& shown);
 /// The handle whose mark is the nearest to a point of the screen, if close enough.
 std::optional<LampHandle> lamp_handle_at(const MarkedScene& marked, const Area& shown, const ImVec2& at);
 /// `hot`: under the pointer, or dragged.
 void draw_lamp_handles(const MarkedScene& marked, const Area& shown, const std::optional<LampHandle>& hot);
-/// Moves a dragged handle with the pointer: a lamp along the picture, with Shift vertically; its aim to the
-/// surface under the pointer; its size.
+/// Moves a dragged handle with the pointer: a lamp along the picture, with Shift vertically, with Ctrl and
+/// Shift to just before the surface under the pointer; its aim to that surface; its size.
 void drag_lamp(Actions& actions, const MarkedScene& marked, const LampHandle& handle, const Area& shown);
 
 }  // namespace lucerna::ui

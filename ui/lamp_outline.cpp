@@ -71,6 +71,11 @@ std::vector<std::vector<vec3>> lamp_outline(const scene::Light& light, float rea
       const float radius = reach * std::sin(light.outer_cone), ahead = reach * std::cos(light.outer_cone);
       lines.push_back(circle(c + ahead * n, radius * x, radius * y));
       for (const vec3& side : {x, -x, y, -y}) lines.push_back({c, c + ahead * n + radius * side});
+      if (light.picture) {
+        const vec2 extent = ahead * picture_extent(light);
+        const vec3 o = c + ahead * n, u = extent.x * x, v = extent.y * y;
+        lines.push_back({o - u - v, o + u - v, o + u + v, o - u + v, o - u - v});
+      }
       break;
     }
     case LightKind::profile:

@@ -4,6 +4,7 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "scene/display_name.h"
 #include "scene/lamp.h"
 #include "scene/light_groups.h"
+#include "scene/light_units.h"
 #include "scene/range.h"
 #include "sun_rows.h"
 
@@ -52,22 +54,79 @@ void colour_rows(Actions& actions, const char* command, size_t item, const char*
 
 namespace {
 
-/// Drags scale the value; a light of strength 0 starts from a thousandth.
-Slider strength_slider(const char* unit) {
-  return {.lo = 1e-3f, .hi = 1e5f, .log = true, .decimals = 2, .unit = unit, .bar = false, .travel = 0.25f};
+using scene::LightUnit;
+
+/// Drags scale the value; a light of strength 0 starts from the least.
+Slider strength_slider(LightUnit unit, const char* symbol) {
+  const bool watts = unit == LightUnit::watt;
+  return {.lo = watts ? 1e-5f : 1e-3f,
+          .hi = watts ? 1e5f : 1e7f,
+          .log = true,
+          .decimals = watts ? 3 : 2,
+          .unit = symbol,
+          .bar = false,
+          .travel = 0.25f};
 }
-constexpr const char* k_radiance_unit = "W/m\xC2\xB2sr";
+
+constexpr std::array<const char*, scene::k_light_units> k_unit_helps{
+    "Luminous intensity in front of the lamp; of a measured distribution where it is strongest.",
+    "Luminous flux: all light that leaves it.",
+    "Illuminance of a small plane that faces the light, of a lamp at a distance in front of it.",
+    "Radiant power: lumens over 683, as glTF exporters have it. An LED makes about 100 lm from a watt of "
+    "electricity.",
+    "Luminance of its surface.",
+};
+
+constexpr std::array<const char*, scene::k_light_units> k_unit_names{"intensity", "luminous flux",
+                                                                     "illuminance", "power", "luminance"};
+
+/// Chooses the unit among those of a light.
+void unit_choice(Actions& actions, const std::vector<LightUnit>& units, LightUnit shown,
+                 bool per_area = false) {
+  std::vector<std::string> names, helps;
+  int chosen = 0;
+  for (const LightUnit unit : units) {
+    if (unit == shown) chosen = int(names.size());
+    names.push_back(per_area && unit == LightUnit::watt
+                        ? "W/m\xC2\xB2, irradiance"
+                        : fmt::format("{}, {}", info_of(unit).symbol, k_unit_names[size_t(unit)]));
+    helps.emplace_back(k_unit_helps[size_t(unit)]);
+  }
+  if (choice("##unit", "Unit", names, chosen, 0, helps))
+    actions.act("light.unit", info_of(units[size_t(chosen)]).word);
+  tooltip("Unit in which the strengths of lights are shown. The light stays as it is.");
+}
+
+/// The unit of a surface, for the one that is chosen.
+LightUnit surface_unit(const commands::OpenScene& open, uint32_t index) {
+  const LightUnit unit = open.light_unit.unit;
+  const bool flux = unit == LightUnit::lumen || unit == LightUnit::watt;
+  return flux && !open.material(index).emission_texture && open.emitting_area(index) > 0 ? unit
+                                                                                         : LightUnit::nit;
+}
 
 }  // namespace
 
 void emission_slider(Controls& controls, uint32_t index) {
-  const Slider how = strength_slider(k_radiance_unit);
-  float shown = std::max(strength_of(controls.open.emission(index)), how.lo);
+  const LightUnit unit = surface_unit(controls.open, index);
+  const scene::LightUnitInfo& info = info_of(unit);
+  const Slider how = strength_slider(unit, info.symbol);
+  const double factor = controls.open.emission_factor(index, unit);
+  float shown = std::max(float(factor * scene::exact_luminance(controls.open.emission(index))), how.lo);
   ImGui::BeginDisabled(!controls.open.emits(index));
-  if (slider("##strength", "Radiance", shown, how))
-    controls.act("material.set", index + 1, named("strength", shown));
+  if (slider("##strength", info.quantity, shown, how))
+    controls.act("material.set", index + 1, named(info.word, shown));
   ImGui::EndDisabled();
-  tooltip("Emitted radiance of the surface's strongest channel; its texture multiplies it.");
+  tooltip(unit == LightUnit::nit
+              ? "Luminance of the surface; its texture multiplies it."
+              : fmt::format("Of all surfaces with this material. {}", k_unit_helps[size_t(unit)]));
+}
+
+void emission_unit(Controls& controls, uint32_t index) {
+  std::vector<LightUnit> units{LightUnit::nit};
+  if (!controls.open.material(index).emission_texture && controls.open.emitting_area(index) > 0)
+    units.insert(units.end(), {LightUnit::lumen, LightUnit::watt});
+  unit_choice(controls.actions, units, surface_unit(controls.open, index));
 }
 
 namespace {
@@ -155,23 +214,74 @@ void profile_rows(Actions& actions, size_t i, const scene::Light& light) {
   tooltip("Angle about the direction of its light; at 0 its X axis is level.");
 }
 
+/// Strength of a light, in the unit that is chosen if it has that one.
+void strength_row(Controls& controls, size_t i, const scene::Light& light) {
+  const auto [wished, distance] = controls.open.light_unit;
+  const LightUnit unit = scene::shown_unit(light, wished, double{distance});
+  const scene::LightUnitInfo& info = info_of(unit);
+  const bool at_distance = unit == LightUnit::lux && light.kind != scene::LightKind::directional;
+  const Slider how = strength_slider(unit, unit_symbol(light, unit));
+  float shown = std::max(float(scene::strength_in(light, unit, double{distance}).value_or(0)), how.lo);
+  ImGui::BeginDisabled(!light.enabled);
+  if (slider("##strength",
+             at_distance ? fmt::format("{} at {:.4g} m", info.quantity, distance) : info.quantity, shown,
+             how)) {
+    if (at_distance)
+      controls.act("light.set", i + 1, named(info.word, shown), named("distance", distance));
+    else
+      controls.act("light.set", i + 1, named(info.word, shown));
+  }
+  ImGui::EndDisabled();
+  tooltip(k_unit_helps[size_t(unit)]);
+}
+
+/// Unit of a selected light's strength, and the distance of its lux.
+void unit_rows(Controls& controls, const scene::Light& light) {
+  const auto [wished, distance] = controls.open.light_unit;
+  std::vector<LightUnit> units;
+  for (const scene::LightUnitInfo& info : scene::k_unit_table)
+    if (scene::unit_factor(light, info.unit, double{distance})) units.push_back(info.unit);
+  const LightUnit unit = scene::shown_unit(light, wished, double{distance});
+  unit_choice(controls.actions, units, unit, light.kind == scene::LightKind::directional);
+  if (wished != LightUnit::lux || light.kind == scene::LightKind::directional) return;
+  float metres = distance;
+  if (slider("##distance", "At a distance of", metres,
+             {.lo = 0.01f,
+              .hi = 100,
+              .log = true,
+              .decimals = 2,
+              .unit = "m",
+              .bar = false,
+              .typed_lo = 1e-3f,
+              .typed_hi = 1e4f}))
+    controls.act("light.unit", info_of(wished).word, named("distance", metres));
+  tooltip("From the middle of the lamp to the plane whose illuminance is shown.");
+}
+
+/// The picture of a selected spot, and its roll.
+void picture_rows(Actions& actions, size_t i, const scene::Light& light) {
+  const scene::LightPicture& p = *light.picture;
+  value_row("Picture",
+            fmt::format("{}, {} \xC3\x97 {}", p.name.empty() ? "unnamed" : p.name, p.width, p.height),
+            "Image that the spot projects (light.set picture=FILE). Its corners are on the cone.");
+  float roll = scene::roll_of(light.direction, light.right);
+  if (slider("##roll", "Roll", roll,
+             {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0", .typed_lo = -360, .typed_hi = 360}))
+    actions.act("light.set", i + 1, named("roll", roll));
+  tooltip("Angle about the direction of its light; at 0 the picture is level.");
+}
+
 /// Properties of a selected lamp besides its strength.
 void light_details(Actions& actions, const Box& core, size_t i, const scene::Light& light) {
   colour_rows(actions, "light.set", i + 1, "color", tint_of(light.intensity));
   if (light.kind != scene::LightKind::directional) {
-    const auto solid = float(scene::solid_angle(light));
-    float power = std::max(strength_of(light.intensity) * solid, 1e-3f);
-    if (slider(
-            "##power", "Power", power,
-            {.lo = 1e-3f, .hi = 1e6f, .log = true, .decimals = 2, .unit = "W", .bar = false, .travel = 0.2f}))
-      actions.act("light.set", i + 1, named("power", power));
-    tooltip("Total power of the lamp, in its strongest channel.");
     vec3 position = light.position;
     if (position_row(core, position)) actions.act("light.set", i + 1, named("position", position));
     tooltip("Position of the lamp: x, y (up), z in metres.");
   }
   if (has_shape(light.kind)) shape_rows(actions, i, light);
   if (light.profile) profile_rows(actions, i, light);
+  if (light.picture) picture_rows(actions, i, light);
   if (light.kind != scene::LightKind::point && light.kind != scene::LightKind::sphere &&
       light.kind != scene::LightKind::tube) {
     const commands::Bearing bearing = commands::bearing_of(light.direction);
@@ -187,12 +297,15 @@ void light_details(Actions& actions, const Box& core, size_t i, const scene::Lig
   }
   if (light.kind == scene::LightKind::spot) {
     float cone = light.outer_cone * 180 / k_pi, inner = light.inner_cone * 180 / k_pi;
-    if (slider("##cone", "Cone", cone, {.lo = 0.5f, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
+    const float widest = light.picture ? 80.0f : 90.0f;
+    if (slider("##cone", "Cone", cone, {.lo = 0.5f, .hi = widest, .decimals = 1, .unit = "\xC2\xB0"}))
       actions.act("light.set", i + 1, named("cone", cone));
     tooltip("Angle from the axis at which the light ends.");
-    if (slider("##inner", "Inner cone", inner, {.lo = 0, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
-      actions.act("light.set", i + 1, named("inner_cone", inner));
-    tooltip("Angle from the axis at which the light begins to fade.");
+    if (!light.picture) {
+      if (slider("##inner", "Inner cone", inner, {.lo = 0, .hi = 90, .decimals = 1, .unit = "\xC2\xB0"}))
+        actions.act("light.set", i + 1, named("inner_cone", inner));
+      tooltip("Angle from the axis at which the light begins to fade.");
+    }
   }
 }
 
@@ -315,15 +428,9 @@ void draw_light_rows(Controls& controls, const commands::Navigation& camera, Sce
       controls.act("light.set", i + 1, named("on", !light.enabled));
     light_menu(controls, i, light);
     const bool sun = light.kind == scene::LightKind::directional;
-    const Slider how = strength_slider(sun ? "W/m\xC2\xB2" : "W/sr");
-    ImGui::BeginDisabled(!light.enabled);
-    float shown = std::max(strength_of(light.intensity), how.lo);
-    if (slider("##strength", sun ? "Irradiance" : "Intensity", shown, how))
-      controls.act("light.set", i + 1, named("intensity", shown));
-    ImGui::EndDisabled();
-    tooltip(sun ? "Irradiance on a surface that faces the light, in its strongest channel."
-                : "Radiant intensity in front of the lamp, in its strongest channel.");
+    strength_row(controls, i, light);
     if (chosen) {
+      unit_rows(controls, light);
       light_details(controls.actions, camera.core, i, light);
       if (sun) sun_details(controls, i, light);
       light_label(controls, view, i, light);
@@ -342,9 +449,11 @@ void draw_light_rows(Controls& controls, const commands::Navigation& camera, Sce
                   tint, on, "material", index))
       controls.act("material.set", index + 1, named("on", !on));
     emission_slider(controls, index);
-    if (chosen)
+    if (chosen) {
+      emission_unit(controls, index);
       colour_rows(controls.actions, "material.set", index + 1, "emission_color", tint,
                   m.emission_texture ? "\xC3\x97 texture" : "");
+    }
     ImGui::PopID();
     gap(4);
   }

@@ -13,7 +13,9 @@ void draw_light_rows(Controls& controls, const commands::Navigation& camera, Sce
 /// Colour by a picker and by temperature: runs `command` with color_name or kelvin.
 void colour_rows(Actions& actions, const char* command, size_t item, const char* color_name, const vec3& tint,
                  const std::string& note = "");
-/// Emitted radiance of a material.
+/// Strength of a material's emission, in the chosen unit if it has that one.
 void emission_slider(Controls& controls, uint32_t index);
+/// The unit of emission_slider().
+void emission_unit(Controls& controls, uint32_t index);
 
 }  // namespace lucerna::ui

@@ -8,6 +8,7 @@
 
 #include "commands/camera_control.h"
 #include "commands/workspace.h"
+#include "surface_snap.h"
 #include "widgets.h"
 
 namespace lucerna::ui {
@@ -32,11 +33,6 @@ std::optional<uint32_t> selected_object(const MarkedScene& marked) {
                      marked.open.snapshot && marked.camera.view &&
                      s.index < marked.open.loaded->instances.size();
   return there ? std::optional(s.index) : std::nullopt;
-}
-
-session::PickRay ray_through(const MarkedScene& marked, const Area& shown, const ImVec2& at) {
-  return session::pick_ray(marked.camera.view->camera, (at.x - shown.lo.x) / std::max(1.0f, shown.width()),
-                           (at.y - shown.lo.y) / std::max(1.0f, shown.height()), marked.camera.aspect);
 }
 
 /// Metres at that point that have the size of so many design pixels.
@@ -226,6 +222,19 @@ void draw_rings(const Pen& pen, const Gizmo& g, const std::optional<GizmoPart>& 
       }
 }
 
+/// The dragged object on the surface that a ray meets behind it; where it is now if there is none.
+scene::ObjectPlace snapped_place(const ObjectDrag& drag, const MarkedScene& marked,
+                                 const session::PickRay& ray) {
+  const session::Probe* rays = marked.camera.probe();
+  if (!rays || ray.direction == vec3(0)) return drag.place;
+  const auto hit = rays->nearest(ray.origin, ray.direction, k_infinity,
+                                 [&](const session::Picked& p) { return p.instance != drag.object; });
+  if (!hit) return drag.place;
+  const scene::Instance& instance = marked.open.loaded->instances[drag.object];
+  return put_on_surface(marked.open.loaded->meshes[instance.mesh], marked.open.object_box(drag.object),
+                        instance.to_world, drag.start, {hit->position, hit->normal});
+}
+
 /// What the drag has done so far, beside the middle.
 std::string text_of(const ObjectDrag& drag) {
   const scene::ObjectPlace &a = drag.start, &b = drag.place;
@@ -311,9 +320,12 @@ ObjectDrag begin_object_drag(const MarkedScene& marked, GizmoMode mode, GizmoPar
 }
 
 void follow_pointer(ObjectDrag& drag, const MarkedScene& marked, const Area& shown, const ImVec2& at,
-                    bool snap, double now) {
+                    DragSnap snap, double now) {
+  const session::PickRay to = ray_through(marked, shown, at);
+  const bool on_surface = snap == DragSnap::surface && drag.gizmo.mode == GizmoMode::move;
   const scene::ObjectPlace place =
-      dragged_place(drag.gizmo, drag.part, drag.start, drag.from, ray_through(marked, shown, at), snap);
+      on_surface ? snapped_place(drag, marked, to)
+                 : dragged_place(drag.gizmo, drag.part, drag.start, drag.from, to, snap != DragSnap::none);
   if (place == drag.place) return;
   try {
     marked.open.object_matrix(drag.object, place);

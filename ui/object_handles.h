@@ -47,9 +47,11 @@ std::optional<GizmoPart> object_handle_at(const MarkedScene& marked, GizmoMode m
 /// Starts a drag there.
 ObjectDrag begin_object_drag(const MarkedScene& marked, GizmoMode mode, GizmoPart part, const Area& shown,
                              const ImVec2& at, double now);
-/// The place for a pointer there. A place that is refused (too far, too large) leaves the one before.
+/// The place for a pointer there; with DragSnap::surface a moved object lies on the surface under the
+/// pointer, and stays where there is none. A place that is refused (too far, too large) leaves the one
+/// before.
 void follow_pointer(ObjectDrag& drag, const MarkedScene& marked, const Area& shown, const ImVec2& at,
-                    bool snap, double now);
+                    DragSnap snap, double now);
 /// Sends the place to the scene, if it differs.
 void send_place(Actions& actions, const commands::OpenScene& open, ObjectDrag& drag, RebuildTime& rebuild,
                 double now);

@@ -324,6 +324,7 @@ void material_details(Controls& controls, uint32_t index, const scene::Material&
   tooltip("0 is a dielectric such as paint, stone or wood; 1 is metal.");
   if (!m.unlit && strength_of(controls.open.emission(index)) > 0) {
     emission_slider(controls, index);
+    emission_unit(controls, index);
     colour_rows(controls.actions, "material.set", index + 1, "emission_color",
                 tint_of(controls.open.emission(index)), m.emission_texture ? "\xC3\x97 texture" : "");
     if (button("##dark", "Remove emission", false, ImGui::CalcItemWidth())) set(named("strength", 0));

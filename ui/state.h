@@ -101,6 +101,8 @@ struct Ui {
   } drag;
   /// Ends a drag of an object; it goes back to where the drag began.
   void cancel_object_drag();
+  /// Likewise of a lamp.
+  void cancel_lamp_drag();
   RebuildTime rebuild;
   bool dropper = false;  ///< the next click in the picture sets the exposure
   /// True if the next click in the picture does not select: it sets the exposure or the plane of focus,

@@ -19,9 +19,15 @@
 namespace lucerna::ui {
 
 void Ui::cancel_object_drag() {
-  drag.object->place = drag.object->start;
-  send_place(actions, open, *drag.object, rebuild, work.now);
+  const uint64_t before = work.session.commands();
+  actions.cancel_gesture();
+  if (work.session.commands() > before) rebuild.begin(work.session.commands(), work.now);
   drag.object.reset(), drag.over = true;
+}
+
+void Ui::cancel_lamp_drag() {
+  actions.cancel_gesture();
+  drag.lamp.reset(), drag.over = true;
 }
 
 namespace {
@@ -151,7 +157,7 @@ void begin_drag(Ui& ui, const Area& shown) {
       ui.drag.object = begin_object_drag(ui.marked(), ui.scene_view.gizmo, *part, shown, at, ui.work.now);
       return;
     }
-  if (!ui.click_taken() && !ImGui::GetIO().KeyCtrl && ImGui::GetIO().MouseDown[0])
+  if (!ui.click_taken() && drag_snap() != DragSnap::steps && ImGui::GetIO().MouseDown[0])
     ui.drag.lamp = lamp_handle_at(ui.marked(), shown, ImGui::GetIO().MousePos);
   if (ui.drag.lamp && ui.drag.lamp->part == LampHandle::Part::surface) ui.drag.lamp.reset();
   ui.drag.azimuth = ui.open.environment_rotation();
@@ -247,7 +253,7 @@ void navigate(Ui& ui, const Area& shown, bool hovered, bool active) {
     const vec2 angles = -drag * (k_pi / height);
     Viewpoint view = *ui.camera.view;
     if (ui.drag.object) {
-      follow_pointer(*ui.drag.object, ui.marked(), shown, io.MousePos, io.KeyCtrl, ui.work.now);
+      follow_pointer(*ui.drag.object, ui.marked(), shown, io.MousePos, drag_snap(), ui.work.now);
     } else if (ui.drag.over) {
     } else if (io.MouseDown[0] && ui.drag.lamp) {
       if (ui.camera.selection != Selection{Kind::light, ui.drag.lamp->light})
@@ -356,8 +362,10 @@ std::string help_of(Ui& ui, const LampHandle& handle) {
     case LampHandle::Part::place:
       break;
   }
-  return fmt::format("{}. Drag to move it parallel to the picture, with Shift vertically.",
-                     ui.open.light(handle.light).name);
+  return fmt::format(
+      "{}. Drag to move it parallel to the picture, with Shift vertically, with Ctrl and "
+      "Shift along surfaces.",
+      ui.open.light(handle.light).name);
 }
 
 std::string help_of(GizmoMode mode, GizmoPart part) {
@@ -367,7 +375,8 @@ std::string help_of(GizmoMode mode, GizmoPart part) {
     return part == GizmoPart::middle ? "Drag to the right or up to size the object."
                                      : "Drag to size the object along this axis, with Ctrl in steps of 0.1.";
   return part == GizmoPart::middle
-             ? "Drag to move the object parallel to the picture, with Ctrl in steps of 0.1 m."
+             ? "Drag to move the object parallel to the picture, with Ctrl in steps of 0.1 m, with Ctrl and "
+               "Shift onto surfaces."
          : part <= GizmoPart::z ? "Drag to move the object along this axis, with Ctrl in steps of 0.1 m."
                                 : "Drag to move the object in this plane, with Ctrl in steps of 0.1 m.";
 }

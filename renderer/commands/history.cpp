@@ -112,6 +112,16 @@ void History::undo() {
   redo_.push_back(std::move(step));
 }
 
+void History::cancel(uint64_t gesture) {
+  if (gesture == 0 || undo_.empty() || undo_.back().gesture != gesture || undo_.back().move) return;
+  const Step step = std::move(undo_.back());
+  undo_.pop_back();
+  restore(step.before);
+  std::erase_if(recorded_, [&](const Recorded& entry) {
+    return entry.gesture == gesture && entry.target == step.target;
+  });
+}
+
 void History::redo() {
   if (redo_.empty()) throw Error("", "there is nothing to do again");
   const Mark before = mark();

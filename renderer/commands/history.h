@@ -30,6 +30,9 @@ class History {
   uint64_t position() const;
   void undo();  ///< throws Error if there is nothing to undo
   void redo();
+  /// Reverts the latest step if it is an edit of that gesture (not 0), as if its lines had not been run: a
+  /// drag that is given up. The steps that its first line took from redo stay forgotten.
+  void cancel(uint64_t gesture);
 
   /// The executed lines, without failed ones, so that they can be run again as a script.
   std::vector<std::string> script() const;

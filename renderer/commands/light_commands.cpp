@@ -96,7 +96,7 @@ scene::Light new_light(Workspace& work, const Arguments& a) {
     const vec3 way = looked_at(room_of(work)).point - light.position;
     if (glm::length(way) > 0) light.direction = vec3(glm::normalize(glm::dvec3(way)));
   }
-  apply_light_words(a, light);
+  apply_light_words(a, light, work.open.light_unit.distance);
   return light;
 }
 
@@ -179,6 +179,27 @@ void add_light_label_commands(Registry& registry, OpenScene& open) {
                 .undoable = true});
 }
 
+/// The unit of the window and of 'light LIGHT lx'. No light changes.
+void add_unit_command(Registry& registry, OpenScene& open) {
+  std::vector<std::string> words;
+  for (const scene::LightUnitInfo& info : scene::k_unit_table) words.emplace_back(info.word);
+  registry.add({.name = "light.unit",
+                .help = "Chooses the unit in which strengths of lights are shown; lights without it show "
+                        "another. Changes no light.",
+                .parameters = {{.name = "unit", .type = Type::choice, .choices = std::move(words)},
+                               {.name = "distance",
+                                .type = Type::real,
+                                .help = "at which lx are shown, from the lamp's middle",
+                                .lo = 1e-3,
+                                .hi = 1e4,
+                                .unit = "m",
+                                .optional = true}},
+                .run = [&open](const Arguments& a) {
+                  open.light_unit.unit = *scene::unit_named(a.text("unit"));
+                  take(a, "distance", open.light_unit.distance);
+                }});
+}
+
 void add_light_place_commands(Workspace& work) {
   work.registry.add(
       {.name = "light.aim_at",
@@ -229,12 +250,13 @@ void add_light_commands(Workspace& work) {
                          [&open = work.open](const Arguments& a) {
                            scene::Light& light = open.edit().lights[open.light_index(a.text("light"))];
                            const scene::Light before = light;
-                           apply_light_words(a, light);
+                           apply_light_words(a, light, open.light_unit.distance);
                            follow_sun(open, before, light);
                          },
                      .undoable = true});
   add_light_list_commands(work);
   add_light_label_commands(work.registry, work.open);
+  add_unit_command(work.registry, work.open);
   add_light_place_commands(work);
 }
 

@@ -1,11 +1,14 @@
 #include "commands/light_words.h"
 
 #include <algorithm>
+#include <array>
 
 #include "base/blackbody.h"
 #include "base/color.h"
 #include "base/error.h"
+#include "base/log.h"
 #include "commands/light_edit.h"
+#include "scene/io/light_picture_file.h"
 #include "scene/io/light_profile_file.h"
 #include "scene/lamp.h"
 #include "scene/range.h"
@@ -33,6 +36,16 @@ Parameter size(const char* name, const char* help) {
           .optional = true};
 }
 
+Parameter lux_distance() {
+  return {.name = "distance",
+          .type = Type::real,
+          .help = "of lx, from the lamp's middle; without it, that of light.unit",
+          .lo = 1e-3,
+          .hi = 1e4,
+          .unit = "m",
+          .optional = true};
+}
+
 /// Refuses what a lamp of its kind does not have.
 void check_kind(const Arguments& a, const scene::Light& light) {
   const auto refuse = [&](const char* name, const char* why) {
@@ -40,6 +53,8 @@ void check_kind(const Arguments& a, const scene::Light& light) {
   };
   if (light.kind == scene::LightKind::directional) {
     refuse("power", "shines from infinitely far: its intensity is what counts");
+    for (const char* name : {"cd", "lm"}) refuse(name, "shines from infinitely far: give lx");
+    refuse("distance", "is as strong at any distance");
     refuse("position", "is infinitely far: azimuth and elevation say where");
   }
   using scene::LightKind;
@@ -49,12 +64,16 @@ void check_kind(const Arguments& a, const scene::Light& light) {
     for (const char* name : {"width", "height"}) refuse(name, "is no rectangle");
   if (light.kind != LightKind::tube) refuse("length", "is no tube");
   if (!has_shape(light.kind) || light.kind == LightKind::rectangle) refuse("radius", "has no radius");
-  if (!has_shape(light.kind)) refuse("visible", "has no shape");
+  if (!has_shape(light.kind))
+    for (const char* name : {"visible", "nits"}) refuse(name, "has no shape");
   if (light.kind != LightKind::rectangle && light.kind != LightKind::disk)
     refuse("two_sided", "has no second side");
   if (light.kind != LightKind::point && light.kind != LightKind::spot && light.kind != LightKind::profile)
     refuse("profile", "takes no distribution");
-  if (light.kind != LightKind::rectangle && light.kind != LightKind::tube && light.kind != LightKind::profile)
+  if (light.kind != LightKind::spot) refuse("picture", "takes no picture: a spot does");
+  const bool projects = light.picture || a.has("picture");
+  if (light.kind != LightKind::rectangle && light.kind != LightKind::tube &&
+      light.kind != LightKind::profile && !projects)
     for (const char* name : {"right", "roll"}) refuse(name, "looks the same when it is rolled");
   if (light.kind != scene::LightKind::spot)
     for (const char* name : {"cone", "inner_cone"}) refuse(name, "has no cone");
@@ -88,6 +107,17 @@ void aim(const Arguments& a, scene::Light& light) {
   else
     light.inner_cone = std::min(light.inner_cone, light.outer_cone);
   light.outer_cone = std::max(light.outer_cone, light.inner_cone);
+  if (light.picture && light.outer_cone > scene::k_widest_picture)
+    throw Error("", fmt::format("cone: with a picture it has at most {:.0f} degrees",
+                                glm::degrees(scene::k_widest_picture) - 0.5f));
+}
+
+std::shared_ptr<const scene::LightPicture> picture_file(const std::string& file) {
+  size_t mended = 0;
+  auto picture = scene::load_light_picture(file, mended);
+  if (mended > 0)
+    log::warning("{}: {} texels are negative or not finite; they are 0 or the largest value", file, mended);
+  return picture;
 }
 
 /// Applies the requested shape.
@@ -114,14 +144,22 @@ void shape(const Arguments& a, scene::Light& light) {
   if (a.has("roll")) light.right = scene::rolled(light.direction, a.number("roll"));
 }
 
-/// Applies the requested strength, colour and switch.
-void shine(const Arguments& a, scene::Light& light) {
+/// Applies the requested strength, colour and switch. `distance`: of lux, if not given.
+void shine(const Arguments& a, scene::Light& light, float distance) {
   float strength = strength_of(light.intensity);
   const vec3 tint = requested_tint(a, "color", tint_of(light.intensity));
   take(a, "intensity", strength);
   if (a.has("power")) strength = a.number("power") / std::max(float(scene::solid_angle(light)), 1e-9f);
   if (a.has("intensity") || a.has("power") || a.has("color") || a.has("kelvin"))
     light.intensity = strength * tint;
+  const auto unit = given_unit(a, {});
+  if (a.has("distance") && unit != scene::LightUnit::lux) throw Error("", "distance: it counts for lx only");
+  if (unit) {
+    take(a, "distance", distance);
+    const std::optional<double> factor = scene::unit_factor(light, *unit, double{distance});
+    if (!factor) throw Error("", fmt::format("lx: {} m from its middle is inside the lamp", distance));
+    light.intensity = given_strength(a, *unit, *factor, light.intensity);
+  }
   take(a, "on", light.enabled);
 }
 
@@ -172,14 +210,59 @@ bool can_be_aimed(const scene::Light& light) {
          light.kind == LightKind::disk || light.kind == LightKind::profile;
 }
 
+std::vector<Parameter> strength_parameters(std::initializer_list<scene::LightUnit> units) {
+  static constexpr std::array<const char*, scene::k_light_units> k_helps{
+      "luminous intensity in front of a lamp; of a profile, the largest", "luminous flux of all its light",
+      "illuminance of a small plane that faces a sun, or a lamp at a distance in front of it",
+      "lumens over 683, as exporters of glTF have it; of a sun, per m2", "luminance of a surface"};
+  std::vector<Parameter> parameters;
+  for (const scene::LightUnit unit : units) {
+    const scene::LightUnitInfo& info = info_of(unit);
+    parameters.push_back({.name = info.word,
+                          .type = Type::real,
+                          .help = k_helps[size_t(unit)],
+                          .lo = 0,
+                          .hi = 1e12,
+                          .unit = unit == scene::LightUnit::nit ? "cd/m2" : info.symbol,
+                          .optional = true});
+    if (unit == scene::LightUnit::lux) parameters.push_back(lux_distance());
+  }
+  return parameters;
+}
+
+std::optional<scene::LightUnit> given_unit(const Arguments& a, std::initializer_list<const char*> other) {
+  std::optional<scene::LightUnit> unit;
+  const char* given = nullptr;
+  const auto take_one = [&](const char* name) {
+    if (!a.has(name)) return false;
+    if (given) exclude(a, given, name);
+    given = name;
+    return true;
+  };
+  for (const char* name : other) take_one(name);
+  for (const scene::LightUnitInfo& info : scene::k_unit_table)
+    if (take_one(info.word)) unit = info.unit;
+  return unit;
+}
+
+vec3 given_strength(const Arguments& a, scene::LightUnit unit, double factor, const vec3& before) {
+  constexpr float k_most = 1e9f;
+  const char* word = info_of(unit).word;
+  const vec3 after = scene::with_strength(before, factor, a.real(word));
+  if (!(strength_of(after) <= k_most))
+    throw Error("",
+                fmt::format("{}: {} makes the strongest channel more than {}", word, a.real(word), k_most));
+  return after;
+}
+
 std::vector<Parameter> light_parameters() {
-  return {
+  std::vector<Parameter> all = {
       {.name = "intensity",
        .type = Type::real,
-       .help = "of the strongest channel, in front of the lamp; W/m2 for a sun",
+       .help = "of the strongest channel, in front of the lamp, before the colour; lx of a sun",
        .lo = 0,
        .hi = 1e9,
-       .unit = "W/sr",
+       .unit = "cd",
        .optional = true},
       {.name = "color",
        .type = Type::vector,
@@ -191,10 +274,10 @@ std::vector<Parameter> light_parameters() {
       kelvin(),
       {.name = "power",
        .type = Type::real,
-       .help = "total emitted power of a lamp, strongest channel; replaces intensity",
+       .help = "all light of a lamp in its strongest channel, before the colour; replaces intensity",
        .lo = 0,
        .hi = 1e9,
-       .unit = "W",
+       .unit = "lm",
        .optional = true},
       {.name = "position",
        .type = Type::vector,
@@ -233,24 +316,35 @@ std::vector<Parameter> light_parameters() {
        .help = "measured distribution of a point or spot, IES LM-63 or EULUMDAT; the lamp keeps its power",
        .choices = {".ies", ".ldt"},
        .optional = true},
+      {.name = "picture",
+       .type = Type::file,
+       .help = "image that a spot projects; its corners are on the cone, and white is as strong as the spot",
+       .choices = {".png", ".jpg", ".exr", ".hdr"},
+       .optional = true},
       {.name = "visible",
        .type = Type::boolean,
        .help = "the camera sees the shape; mirrors show it in any case",
        .optional = true}};
+  using scene::LightUnit;
+  for (Parameter& p : strength_parameters(
+           {LightUnit::candela, LightUnit::lumen, LightUnit::lux, LightUnit::watt, LightUnit::nit}))
+    all.push_back(std::move(p));
+  return all;
 }
 
 void check_light_words(const Arguments& a) {
-  exclude(a, "intensity", "power"), exclude(a, "color", "kelvin");
+  given_unit(a, {"intensity", "power"}), exclude(a, "color", "kelvin");
   exclude(a, "direction", "azimuth"), exclude(a, "direction", "elevation");
-  exclude(a, "right", "roll");
+  exclude(a, "right", "roll"), exclude(a, "profile", "picture");
 }
 
-void apply_light_words(const Arguments& a, scene::Light& light) {
+void apply_light_words(const Arguments& a, scene::Light& light, float distance) {
   check_kind(a, light);
   if (a.has("profile")) set_profile(light, scene::load_light_profile(a.text("profile")));
+  if (a.has("picture")) set_picture(light, picture_file(a.text("picture")));
   aim(a, light);
   shape(a, light);
-  shine(a, light);
+  shine(a, light, distance);
 }
 
 }  // namespace lucerna::commands

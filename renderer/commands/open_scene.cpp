@@ -65,6 +65,7 @@ void OpenScene::begin_scene() {
   own_environment_ = {scene->environment.scale, scene->environment.rotation};
   dark_.clear(), sources_sent_.clear();
   objects_.clear(), objects_sent_.clear(), boxes_.clear();
+  areas_.clear(), areas_in_ = {};
   for (uint32_t i = 0; i < scene->materials.size(); ++i)
     if (const vec3 off = scene->materials[i].off_emission; off != vec3(0)) dark_[i] = off;
   source_ = source_in_force_ = {};
@@ -157,6 +158,23 @@ mat4 OpenScene::object_matrix(uint32_t index) const {
 vec3 OpenScene::emission(uint32_t index) const {
   const auto found = dark_.find(index);
   return found != dark_.end() ? found->second : material(index).emission;
+}
+
+double OpenScene::emitting_area(uint32_t index) const {
+  if (!areas_in_.shares_with(scene->instances)) areas_.clear(), areas_in_ = scene->instances;
+  const auto [place, fresh] = areas_.try_emplace(index);
+  if (fresh) place->second = scene::emitting_area(*scene, index);
+  return place->second;
+}
+
+double OpenScene::emission_factor(uint32_t index, scene::LightUnit unit) const {
+  const char* word = info_of(unit).word;
+  if (unit != scene::LightUnit::nit && scene->materials.at(index).emission_texture)
+    throw Error("", fmt::format("{}: a texture multiplies the emission; give nits", word));
+  const auto factor = scene::unit_factor(unit == scene::LightUnit::nit ? 1 : emitting_area(index), unit);
+  if (!factor) throw Error("", fmt::format("{}: a surface has lm, watts or nits", word));
+  if (!(*factor > 0)) throw Error("", fmt::format("{}: no surface has this material; give nits", word));
+  return *factor;
 }
 
 std::pair<float, float> OpenScene::environment() const {

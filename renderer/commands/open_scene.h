@@ -17,10 +17,17 @@
 #include "commands/document.h"
 #include "plan/facts.h"
 #include "scene/light_mix.h"
+#include "scene/light_units.h"
 #include "session/session.h"
 #include "solvers/info.h"
 
 namespace lucerna::commands {
+
+/// The unit in which strengths of lights are shown; `distance` [m]: of lux.
+struct ShownUnit {
+  scene::LightUnit unit = scene::LightUnit::candela;
+  float distance = 1;
+};
 
 class OpenScene {
  public:
@@ -50,6 +57,7 @@ class OpenScene {
   /// A scene is being loaded, or loaded without a picture yet.
   bool loading() const { return loaded_by_ != 0; }
   bool load_failed() const { return load_failed_; }  ///< the last load failed
+  ShownUnit light_unit;                              ///< by light.unit
 
   // The state as displayed.
   Document document() const;
@@ -75,6 +83,11 @@ class OpenScene {
   /// Emission of a material, also if switched off.
   vec3 emission(uint32_t index) const;
   bool emits(uint32_t index) const { return !dark_.contains(index); }
+  /// Emitting area of its surfaces [m2] (scene::emitting_area); cached.
+  double emitting_area(uint32_t index) const;
+  /// Value of luminance 1 of a material's emission in a unit: unit_factor(). Throws Error if it has none:
+  /// a texture multiplies its emission, or no surface has the material.
+  double emission_factor(uint32_t index, scene::LightUnit unit) const;
   float environment_scale() const { return environment().first; }
   float environment_rotation() const { return environment().second; }
   /// The image that replaces the scene's own environment; "": none.
@@ -189,7 +202,9 @@ class OpenScene {
     Objects before, after;
   };
   std::vector<SentObjects> objects_sent_;
-  mutable std::map<uint32_t, Box> boxes_;          ///< by mesh
+  mutable std::map<uint32_t, Box> boxes_;     ///< by mesh
+  mutable std::map<uint32_t, double> areas_;  ///< by material, in these:
+  mutable SharedVector<scene::Instance> areas_in_;
   std::shared_ptr<const scene::Scene> groups_of_;  ///< scene of groups_, with these rules
   std::string groups_by_;
   scene::LightGroups groups_;

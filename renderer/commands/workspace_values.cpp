@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "commands/command_list.h"
+#include "commands/light_words.h"
 #include "commands/text.h"
 #include "commands/values.h"
 #include "commands/workspace.h"
@@ -18,12 +19,14 @@ template <class T>
 using Part = std::pair<const char*, std::string (*)(const T&)>;
 
 template <class T, size_t N>
-std::string part_of(const T& object, const std::string& name, const Part<T> (&parts)[N]) {
+std::string part_of(const T& object, const std::string& name, const Part<T> (&parts)[N],
+                    const Words& also = {}) {
   Words known;
   for (const auto& [part, read] : parts) {
     if (name == part) return read(object);
     known.emplace_back(part);
   }
+  known.insert(known.end(), also.begin(), also.end());
   throw Error("", fmt::format("there is no part '{}'{}; expected one of {}", name, suggestion(name, known),
                               fmt::join(known, ", ")));
 }
@@ -35,7 +38,20 @@ Words names_in(const Part<T> (&parts)[N]) {
   return names;
 }
 
+Words unit_words() {
+  Words words;
+  for (const scene::LightUnitInfo& info : scene::k_unit_table) words.emplace_back(info.word);
+  return words;
+}
+
 float largest(const vec3& v) { return std::max({v.x, v.y, v.z}); }
+
+/// The strength of a light in a unit. Throws Error if lights of its kind have none.
+std::string strength_text(const scene::Light& light, scene::LightUnit unit, float distance) {
+  const auto strength = scene::strength_in(light, unit, double{distance});
+  if (strength) return word(float(*strength));
+  throw Error("", fmt::format("a {} has no {}", kind_of(light), info_of(unit).word));
+}
 
 const Part<scene::Light> k_light_parts[] = {
     {"on", [](const scene::Light& l) { return word(l.enabled); }},
@@ -59,6 +75,12 @@ const Part<session::ComponentStatus> k_component_parts[] = {
     {"luminance", [](const session::ComponentStatus& c) { return word(c.mean_luminance); }},
     {"share", [](const session::ComponentStatus& c) { return word(c.share); }},
 };
+
+Words light_parts() {
+  Words names = names_in(k_light_parts);
+  for (std::string& unit : unit_words()) names.push_back(std::move(unit));
+  return names;
+}
 
 /// An object with where it is.
 struct PlacedObject {
@@ -111,32 +133,46 @@ void add_picture_values(Workspace& work) {
 }
 
 void add_object_values(Workspace& work) {
-  work.values.add({.name = "light",
-                   .help = fmt::format("of a lamp: {}; intensity is the strongest channel of light (W/sr, or "
-                                       "W/m2 of a directional one)",
-                                       fmt::join(names_in(k_light_parts), ", ")),
-                   .words = {"LIGHT", "PART"},
-                   .names =
-                       [&work](const Words& before) {
-                         if (!before.empty()) return names_in(k_light_parts);
-                         return work.open.scene ? given_names(work.open.scene->lights) : Words();
-                       },
-                   .read =
-                       [&work](const Words& w) {
-                         return part_of(work.open.light(work.open.light_index(w[0])), w[1], k_light_parts);
-                       }});
+  work.values.add(
+      {.name = "light",
+       .help = fmt::format("of a lamp: {}; intensity is the strongest channel of light (cd, or lx "
+                           "of a directional one); {} are its luminance, lx at the distance of "
+                           "light.unit",
+                           fmt::join(light_parts(), ", "), fmt::join(unit_words(), ", ")),
+       .words = {"LIGHT", "PART"},
+       .names =
+           [&work](const Words& before) {
+             if (!before.empty()) return light_parts();
+             return work.open.scene ? given_names(work.open.scene->lights) : Words();
+           },
+       .read =
+           [&work](const Words& w) {
+             const scene::Light& light = work.open.light(work.open.light_index(w[0]));
+             if (const auto unit = scene::unit_named(w[1]))
+               return strength_text(light, *unit, work.open.light_unit.distance);
+             return part_of(light, w[1], k_light_parts, unit_words());
+           }});
   work.values.add({.name = "material",
-                   .help = fmt::format("of a material: {}", fmt::join(names_in(k_material_parts), ", ")),
+                   .help = fmt::format("of a material: {}; of its emission: lm, watts, nits",
+                                       fmt::join(names_in(k_material_parts), ", ")),
                    .words = {"MATERIAL", "PART"},
                    .names =
                        [&work](const Words& before) {
-                         if (!before.empty()) return names_in(k_material_parts);
+                         if (!before.empty()) {
+                           Words names = names_in(k_material_parts);
+                           names.insert(names.end(), {"lm", "watts", "nits"});
+                           return names;
+                         }
                          return work.open.scene ? given_names(work.open.scene->materials) : Words();
                        },
                    .read =
                        [&work](const Words& w) {
                          const uint32_t index = work.open.material_index(w[0]);
-                         return part_of(work.open.document().materials.at(index), w[1], k_material_parts);
+                         if (const auto unit = scene::unit_named(w[1]))
+                           return word(float(work.open.emission_factor(index, *unit) *
+                                             scene::exact_luminance(work.open.emission(index))));
+                         return part_of(work.open.document().materials.at(index), w[1], k_material_parts,
+                                        {"lm", "watts", "nits"});
                        }});
   work.values.add({.name = "object",
                    .help = fmt::format(
@@ -245,6 +281,10 @@ void add_state_values(Workspace& work) {
       [](W w) { return word(w.history.redo_steps()); });
   add("history.last", "the line that undo would revert; \"\" if none",
       [](W w) { return w.history.undo_text(); });
+  add("light.unit", "the unit in which strengths of lights are shown",
+      [](W w) { return std::string(info_of(w.open.light_unit.unit).word); });
+  add("light.distance", "at which lx are shown, in metres",
+      [](W w) { return word(w.open.light_unit.distance); });
   add("selection", "name of what is selected; \"\" if nothing", [](W w) { return w.selection_name(); });
   add("log.errors", "errors logged since the program started", [](W w) { return word(w.error_count); });
 }

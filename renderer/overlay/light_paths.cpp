@@ -31,6 +31,7 @@ void place(const upload::FlatScene& flat, uint32_t entry, AimedPair& pair) {
     case k_light_disk:
     case k_light_tube:
     case k_light_profile:
+    case k_light_projector:
       pair.from = vec3(texels[0]);
       pair.light = flat.lamp_name(flat.entries[entry].index);
       break;

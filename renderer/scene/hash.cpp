@@ -97,12 +97,16 @@ uint64_t lights(const Scene& scene) {
   Hash hash;
   for (const Light& light : scene.lights) {
     const auto& [name, kind, intensity, position, direction, inner_cone, outer_cone, enabled, group, id, sun,
-                 profile, right, width, height, radius, two_sided, visible] = light;
+                 profile, picture, right, width, height, radius, two_sided, visible] = light;
     hash.add_value(enabled);
     if (enabled) add_all(hash, kind, intensity, position, direction, inner_cone, outer_cone);
     if (enabled && profile) {
       add_all(hash, right, profile->rows, profile->columns);
       hash.add_values(profile->intensity);
+    }
+    if (enabled && picture) {
+      add_all(hash, right, picture->width, picture->height);
+      hash.add_values(picture->texels);
     }
     if (enabled && has_shape(kind)) add_all(hash, right, width, height, radius, two_sided, visible);
   }

@@ -11,6 +11,7 @@ double solid_angle(const Light& lamp) {
     case LightKind::point:
       return 4 * std::numbers::pi;
     case LightKind::spot: {
+      if (lamp.picture) return picture_solid_angle(lamp);
       // Full within the inner cone, and the square of what is left of the way to the outer cosine, as
       // shaders/lib/lights.glsl has it: the ramp holds a third of its width.
       const double inner{std::cos(lamp.inner_cone)}, outer{std::cos(lamp.outer_cone)};
@@ -86,13 +87,20 @@ void turn_to(Light& light, const vec3& direction) {
   light.direction = direction;
 }
 
-bool can_roll(const Light& light) { return has_shape(light.kind) || light.kind == LightKind::profile; }
+bool can_roll(const Light& light) {
+  return has_shape(light.kind) || light.kind == LightKind::profile || light.picture;
+}
 
 void set_profile(Light& light, std::shared_ptr<const LightProfile> profile) {
   const double power = solid_angle(light);
   if (light.kind != LightKind::profile) light.right = level_right(light.direction);
-  light.kind = LightKind::profile, light.profile = std::move(profile);
+  light.kind = LightKind::profile, light.profile = std::move(profile), light.picture.reset();
   light.intensity *= float(power / solid_angle(light));
+}
+
+void set_picture(Light& light, std::shared_ptr<const LightPicture> picture) {
+  if (!light.picture) light.right = level_right(light.direction);
+  light.picture = std::move(picture);
 }
 
 const char* kind_name(LightKind kind) {

@@ -25,10 +25,13 @@ float roll_of(const vec3& direction, const vec3& right);
 /// Gives the light that direction (unit); a shape turns along by the least rotation.
 void turn_to(Light& light, const vec3& direction);
 
-/// Whether the light's `right` matters, as of shapes and profiles.
+/// Whether the light's `right` matters, as of shapes, profiles and pictures.
 bool can_roll(const Light& light);
 /// Makes a point, spot or profile lamp a lamp of that distribution, with the same power.
 void set_profile(Light& light, std::shared_ptr<const LightProfile> profile);
+
+/// Gives a spot that picture. White of it is as strong as the spot was.
+void set_picture(Light& light, std::shared_ptr<const LightPicture> picture);
 
 /// "point", "spot", "directional", "sphere", "rectangle", "disk", "tube" or "profile".
 const char* kind_name(LightKind kind);

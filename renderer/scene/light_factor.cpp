@@ -16,7 +16,7 @@ bool same_but_strength(const Light& a, const Light& b) {
   return a.kind == b.kind && a.position == b.position && a.direction == b.direction &&
          a.inner_cone == b.inner_cone && a.outer_cone == b.outer_cone && a.right == b.right &&
          a.width == b.width && a.height == b.height && a.radius == b.radius && a.two_sided == b.two_sided &&
-         a.visible == b.visible && a.profile == b.profile;
+         a.visible == b.visible && a.profile == b.profile && a.picture == b.picture;
 }
 
 bool same_but_strength(const Material& a, Material b) {

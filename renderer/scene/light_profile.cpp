@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "base/alias_table.h"
+
 namespace lucerna::scene {
 namespace {
 
@@ -63,7 +65,9 @@ LightProfile sampled_profile(const std::function<double(double, double)>& candel
   }
   p.peak = *std::max_element(values.begin(), values.end());
   for (const double v : values) p.intensity.push_back(p.peak > 0 ? float(v / p.peak) : 0.f);
-  for (const double cell : p.cells()) p.solid_angle += cell;
+  const std::vector<double> cells = p.cells();
+  for (const double cell : cells) p.solid_angle += cell;
+  p.alias = build_alias_table(cells);
   return p;
 }
 

@@ -20,6 +20,7 @@ struct LightProfile {
   std::vector<float> intensity;  ///< rows * columns, a row after the other, over the peak: 0 to 1
   double peak = 0;               ///< largest intensity [cd]
   double solid_angle = 0;        ///< flux over the peak [sr]
+  std::vector<vec4> alias;       ///< table for choosing a cell by its integral (base/alias_table.h)
   double lumens() const { return peak * solid_angle; }
   /// Relative intensity in a direction, unit, in the lamp's frame.
   float along(const vec3& direction) const;

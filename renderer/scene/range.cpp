@@ -82,6 +82,9 @@ void check_range(const Light& l) {
   if (!(l.inner_cone >= 0 && l.inner_cone <= l.outer_cone && l.outer_cone <= 0.5001f * k_pi))
     throw_error(where, "its cones are {:.4g} and {:.4g} radians, expected 0 <= inner <= outer <= pi/2",
                 l.inner_cone, l.outer_cone);
+  if (l.picture && (l.kind != LightKind::spot || l.outer_cone > k_widest_picture))
+    throw_error(where, "it has a picture, but is no spot with a cone of at most {:.4g} radians",
+                k_widest_picture);
   if (!can_roll(l)) return;
   const bool across = finite(l.right) && std::abs(glm::length(l.right) - 1) < 1e-3f &&
                       std::abs(glm::dot(l.right, l.direction)) < 1e-3f;

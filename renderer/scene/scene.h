@@ -11,6 +11,7 @@
 
 #include "base/math.h"
 #include "base/shared_vector.h"
+#include "scene/light_picture.h"
 #include "scene/light_profile.h"
 #include "scene/sky_model.h"
 #include "scene/sun_time.h"
@@ -152,6 +153,10 @@ struct Primitive {
 struct Mesh {
   std::string name;
   std::vector<Primitive> primitives;
+  /// What was subtracted from the vertices of the file, which are far from its origin [m].
+  glm::dvec3 shift{0};
+  /// Its file's node has placed the vertices in the world: by joints, or by a matrix without an inverse.
+  bool is_baked = false;
 };
 
 /// A mesh placed in the world. `flipped`: the matrix has a negative determinant, so the front side is the
@@ -215,8 +220,9 @@ enum class LightKind : uint32_t { point, spot, directional, sphere, rectangle, d
 inline bool has_shape(LightKind kind) { return kind >= LightKind::sphere && kind <= LightKind::tube; }
 
 /// KHR_lights_punctual, or a lamp with a shape that emits the same radiance everywhere; shines down its -Z.
-/// Only lamps with a shape are seen; they block no light. `intensity`: W/sr (W/m^2 of directional lights), of
-/// a lamp with a shape in front of it: radiance times the area seen from there. Size does not change it.
+/// Only lamps with a shape are seen; they block no light. `intensity`: cd (lx of directional lights) before
+/// the colour filters it (light_units.h), of a lamp with a shape in front of it: radiance times the area seen
+/// from there. Size does not change it.
 struct Light {
   std::string name;
   LightKind kind = LightKind::point;
@@ -231,7 +237,10 @@ struct Light {
   Id id = k_none;
   std::optional<SunTime> sun{};                   ///< of a directional light: its direction follows from this
   std::shared_ptr<const LightProfile> profile{};  ///< of its kind; the intensity is then the largest one
-  /// Of a rectangle's width, a tube's length, or a profile's +X: unit, perpendicular to the direction.
+  /// Projected by a spot, in place of its fall between the cones; null: none. The intensity is that of white.
+  std::shared_ptr<const LightPicture> picture{};
+  /// Of a rectangle's or picture's width, a tube's length, or a profile's +X: unit, perpendicular to the
+  /// direction.
   vec3 right{1, 0, 0};
   float width = 0.5f;      ///< of a rectangle; length of a tube; metres
   float height = 0.5f;     ///< of a rectangle

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "upload/alias_table.h"
+#include "base/alias_table.h"
 
 namespace lucerna::transport {
 
@@ -147,7 +147,7 @@ class Learner {
   }
 
   void put_row(const std::vector<double>& p) {
-    for (vec4 e : upload::build_alias_table(p)) {
+    for (vec4 e : build_alias_table(p)) {
       const uint32_t own = uint32_t(to_.rows.size()) % clusters_.count(),
                      alias = std::bit_cast<uint32_t>(e.y);
       const auto ratio = [&](uint32_t c, float probability) {

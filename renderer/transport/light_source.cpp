@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 
+#include "base/alias_table.h"
 #include "transport/casters.h"
-#include "upload/alias_table.h"
 
 namespace lucerna::transport {
 
@@ -81,7 +81,7 @@ LightSource::LightSource(gpu::Device& device, const upload::FlatLights& lights, 
     power_ += powers_[i];
     if (from_afar(lights, i)) power_from_afar_ += powers_[i];
   }
-  const std::vector<vec4> alias = upload::build_alias_table(powers_);
+  const std::vector<vec4> alias = build_alias_table(powers_);
   table_.count = uint32_t(alias.size());
   if (alias.empty()) power_ = power_from_afar_ = 0;
   alias_ = texels(device, "table of emission", alias);
@@ -116,7 +116,7 @@ void LightSource::aim(gpu::Device& device, const upload::FlatScene& flat, std::s
         by_entry[members[k]] = vec4(as_float(g), as_float(k), 0, 0);
         by_member.emplace_back(as_float(members[k]), 0, 0, 0);
       }
-      const std::vector<vec4> table = upload::build_alias_table(power);
+      const std::vector<vec4> table = build_alias_table(power);
       tables.insert(tables.end(), table.begin(), table.end());
     }
     std::vector<vec4> all = headers, boxes;
@@ -137,8 +137,7 @@ void LightSource::aim(gpu::Device& device, const upload::FlatScene& flat, std::s
 }
 
 void LightSource::choose_by(std::span<const double> weights) {
-  if (const std::vector<vec4> alias =
-          upload::build_alias_table(std::vector<double>(weights.begin(), weights.end()));
+  if (const std::vector<vec4> alias = build_alias_table(std::vector<double>(weights.begin(), weights.end()));
       !alias.empty())
     alias_.write(std::span<const vec4>(alias));
 }

@@ -36,6 +36,13 @@ std::shared_ptr<const EnvironmentBuffers> environment_of(gpu::Device& device, co
   return std::make_shared<EnvironmentBuffers>(device, flat);
 }
 
+std::shared_ptr<const SharedTable> table_of(gpu::Device& device, const char* name,
+                                            const SharedVector<vec4>& values,
+                                            const std::shared_ptr<const SharedTable>& before) {
+  if (before && before->of.shares_with(values)) return before;
+  return std::make_shared<SharedTable>(device, name, values);
+}
+
 std::vector<vec4> joined(std::vector<vec4> a, const std::vector<vec4>& b) {
   a.insert(a.end(), b.begin(), b.end());
   return a;
@@ -62,16 +69,20 @@ bool EnvironmentBuffers::holds(const FlatLights& flat) const {
          of_.sun_cells.shares_with(flat.environment.sun_cells);
 }
 
+SharedTable::SharedTable(gpu::Device& device, const char* name, const SharedVector<vec4>& values)
+    : texels(upload<vec4>(device, name, values)), of(values) {}
+
 LightBuffers::LightBuffers(gpu::Device& device, const FlatLights& flat, const LightBuffers& before)
     : lights(upload(device, "lights", flat.lights)),
       alias(upload(device, "light table", joined(flat.light_alias, flat.lamp_alias))),
       pmf(upload(device, "light probabilities", flat.primitive_light_pmf, false)),
       groups(upload(device, "groups of lights", whole_texels(flat.emissive_groups))),
-      profiles(upload(device, "distributions of lamps", flat.profiles)),
       sun_density(upload(device, "sun densities", flat.sun_density)),
       portals(upload(device, "portals", flat.portals.portals)),
       portal_sums(upload<uint32_t>(device, "portal tables", flat.portals.sums)),
-      environment(environment_of(device, flat, before)) {}
+      environment(environment_of(device, flat, before)),
+      profiles(table_of(device, "distributions of lamps", flat.profiles, before.profiles)),
+      pictures(table_of(device, "pictures of spots", flat.pictures, before.pictures)) {}
 
 MaterialBuffers::MaterialBuffers(gpu::Device& device, const FlatMaterials& flat)
     : materials(upload(device, "scene materials", flat.materials)),
@@ -124,7 +135,8 @@ void DeviceScene::bind(gpu::Resources& r) const {
   r.set("light_alias", lights_.alias);
   r.set("PrimitiveLightPmf", lights_.pmf);
   r.set("emissive_groups", lights_.groups);
-  r.set("light_profiles", lights_.profiles);
+  r.set("light_profiles", lights_.profiles->texels);
+  r.set("light_pictures", lights_.pictures->texels);
   r.set("environment_texels", lights_.environment->texels);
   r.set("environment_alias", lights_.environment->alias);
   r.set("sun_cells", lights_.environment->sun_cells);
@@ -146,6 +158,7 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_EMISSIVE", e.emissive);
   set("LUCERNA_SHAPES", e.shapes);
   set("LUCERNA_PROFILES", e.profiles);
+  set("LUCERNA_PICTURES", e.pictures);
   set("LUCERNA_PLAIN_EMITTERS", e.plain_emitters);
   set("LUCERNA_ENVIRONMENT_MAP", e.environment_map);
   set("LUCERNA_SEPARATE_SKY", e.separate_sky);

@@ -19,14 +19,22 @@ struct EnvironmentBuffers {
   EnvironmentTables of_;
 };
 
+/// A table on the device that rarely changes.
+struct SharedTable {
+  SharedTable(gpu::Device& device, const char* name, const SharedVector<vec4>& values);
+  gpu::Buffer texels;
+  SharedVector<vec4> of;
+};
+
 /// Lights and environment on the device.
 struct LightBuffers {
   LightBuffers() = default;
-  /// `before`: provides the environment if it is equal.
+  /// `before`: provides the environment, distributions and pictures of lamps if they are equal.
   LightBuffers(gpu::Device& device, const FlatLights& flat, const LightBuffers& before = {});
   explicit operator bool() const { return bool(lights); }
-  gpu::Buffer lights, alias, pmf, groups, profiles, sun_density, portals, portal_sums;
+  gpu::Buffer lights, alias, pmf, groups, sun_density, portals, portal_sums;
   std::shared_ptr<const EnvironmentBuffers> environment;
+  std::shared_ptr<const SharedTable> profiles, pictures;
 };
 
 /// Materials on the device, with the albedo tables of their glasses and the volumes of their solids.

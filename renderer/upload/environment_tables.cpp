@@ -6,7 +6,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "upload/alias_table.h"
+#include "base/alias_table.h"
 #include "upload/environment_map.h"
 
 namespace lucerna::upload {

@@ -6,9 +6,9 @@
 #include <glm/gtc/type_ptr.hpp>
 #include <map>
 
+#include "base/alias_table.h"
 #include "base/error.h"
 #include "scene/core.h"
-#include "upload/alias_table.h"
 #include "upload/bsdf_table.h"
 #include "upload/material_kinds.h"
 #include "upload/media.h"

@@ -32,6 +32,7 @@ struct Effects {
   uint32_t lamp_candidates = 0;
   bool shapes = false;    ///< there are lamps with a shape, on or off
   bool profiles = false;  ///< there are lamps with a measured distribution, on or off
+  bool pictures = false;  ///< there are spots with a picture, on or off
 
   bool separate_sky = false, sun = false;  ///< FlatScene::sun_threshold; there are brighter texels
   uint32_t media = 0;                      ///< number of media, if a solid absorbs (upload/media.h)
@@ -87,11 +88,19 @@ struct LightDistribution {
   std::string lamp_name(uint32_t lamp) const { return lamp < lamp_names.size() ? lamp_names[lamp] : "lamp"; }
 };
 
+/// Profiles of the scene's lamps, each once.
+using Profiles = std::vector<std::shared_ptr<const scene::LightProfile>>;
+
+using Pictures = std::vector<std::shared_ptr<const scene::LightPicture>>;
+
 /// Emission of lights: flatten_emission().
 struct Emission {
   std::vector<vec4> lights;                                ///< the light table
   std::vector<uint8_t> emissive_groups;                    ///< by primitive; empty: groups are not separate
-  std::vector<vec4> profiles;                              ///< light_profiles
+  Profiles profiles_in_table;                              ///< those of light_profiles, in its order
+  SharedVector<vec4> profiles;                             ///< light_profiles; made again for others only
+  Pictures pictures_in_table;                              ///< likewise of light_pictures
+  SharedVector<vec4> pictures;                             ///< light_pictures
   SharedVector<vec3> environment_texels;                   ///< radiance, without the factor
   std::optional<EnvironmentSource> environment_source;     ///< source of the texels
   uint32_t environment_width = 0, environment_height = 0;  ///< 0: dark

@@ -6,7 +6,6 @@
 #include <numbers>
 
 #include "scene/lamp.h"
-#include "upload/alias_table.h"
 #include "upload/environment_map.h"
 #include "upload/flatten.h"
 
@@ -29,13 +28,30 @@ LightTexels triangle_texels(const scene::Scene& scene, const FlatScene& flat, ui
           vec4(m.emission, as_float(sides))};
 }
 
-/// Profiles of the scene's lamps, each once.
-using Profiles = std::vector<std::shared_ptr<const scene::LightProfile>>;
-uint32_t number_of(Profiles& profiles, const std::shared_ptr<const scene::LightProfile>& profile) {
-  const auto found = std::find(profiles.begin(), profiles.end(), profile);
-  const auto number = uint32_t(found - profiles.begin());
-  if (found == profiles.end()) profiles.push_back(profile);
+/// Where a profile or a picture is in the list, which gets it if it has not.
+template <class T>
+uint32_t number_of(std::vector<std::shared_ptr<const T>>& list, const std::shared_ptr<const T>& item) {
+  const auto found = std::find(list.begin(), list.end(), item);
+  const auto number = uint32_t(found - list.begin());
+  if (found == list.end()) list.push_back(item);
   return number;
+}
+
+/// The table of pictures (shaders/shared/scene.h).
+std::vector<vec4> picture_texels(const Pictures& pictures) {
+  std::vector<vec4> texels(pictures.size());
+  for (size_t p = 0; p < pictures.size(); ++p) {
+    const scene::LightPicture& picture = *pictures[p];
+    texels[p] = vec4(as_float(uint32_t(texels.size())), as_float(picture.width), as_float(picture.height), 0);
+    for (uint32_t y = 0; y < picture.height; ++y)
+      for (uint32_t x = 0; x < picture.width; ++x) {
+        const bool has_cell = y + 1 < picture.height && x + 1 < picture.width;
+        texels.emplace_back(picture.at(x, y),
+                            has_cell ? picture.cell_density[size_t{y} * (picture.width - 1) + x] : 0);
+      }
+    for (const vec4& entry : picture.alias) texels.emplace_back(entry.x, entry.y, 0, 0);
+  }
+  return texels;
 }
 
 /// The table of profiles (shaders/shared/scene.h).
@@ -44,24 +60,21 @@ std::vector<vec4> profile_texels(const Profiles& profiles) {
   for (size_t p = 0; p < profiles.size(); ++p) {
     const scene::LightProfile& profile = *profiles[p];
     texels[p] = vec4(as_float(uint32_t(texels.size())), as_float(profile.rows), as_float(profile.columns), 0);
-    const std::vector<double> cells = profile.cells();
-    const std::vector<vec4> alias = build_alias_table(cells);
+    const std::vector<vec4>& alias = profile.alias;
     const double step = std::numbers::pi / (profile.rows - 1), width = 2 * std::numbers::pi / profile.columns;
-    for (size_t i = 0; i < profile.intensity.size(); ++i) {
-      vec4 texel(profile.intensity[i], 1, as_float(uint32_t(i)), 0);
-      if (i < cells.size()) {
-        const auto row = double(i / profile.columns);
-        const double angle = width * (std::cos(step * row) - std::cos(step * (row + 1)));
-        texel = vec4(profile.intensity[i], alias[i].x, alias[i].y, double(alias[i].z) / angle);
-      }
-      texels.push_back(texel);
+    for (uint32_t row = 0, i = 0; row < profile.rows; ++row) {
+      const double angle = width * (std::cos(step * row) - std::cos(step * (row + 1)));
+      for (uint32_t column = 0; column < profile.columns; ++column, ++i)
+        texels.push_back(row + 1 < profile.rows
+                             ? vec4(profile.intensity[i], alias[i].x, alias[i].y, double(alias[i].z) / angle)
+                             : vec4(profile.intensity[i], 1, as_float(i), 0));
     }
   }
   return texels;
 }
 
-/// `profile`: number of its profile.
-LightTexels lamp_texels(const scene::Light& l, uint32_t kind, uint32_t profile) {
+/// `table`: number of its profile or picture.
+LightTexels lamp_texels(const scene::Light& l, uint32_t kind, uint32_t table) {
   const vec3 intensity = l.enabled ? l.intensity : vec3(0);
   if (l.kind == scene::LightKind::directional)
     return {vec4(vec3(0), as_float(kind)), vec4(intensity, 0), vec4(l.direction, 0), vec4(0)};
@@ -73,7 +86,12 @@ LightTexels lamp_texels(const scene::Light& l, uint32_t kind, uint32_t profile) 
   }
   if (l.kind == scene::LightKind::profile)
     return {vec4(l.position, as_float(kind)), vec4(intensity, 0), vec4(l.direction, 0),
-            vec4(scene::right_across(l.direction, l.right), as_float(profile << k_light_profile_shift))};
+            vec4(scene::right_across(l.direction, l.right), as_float(table << k_light_profile_shift))};
+  if (l.picture) {
+    const vec2 extent = scene::picture_extent(l);
+    return {vec4(l.position, as_float(kind)), vec4(intensity, extent.x), vec4(l.direction, extent.y),
+            vec4(scene::right_across(l.direction, l.right), as_float(table << k_light_profile_shift))};
+  }
   return {vec4(l.position, as_float(kind)), vec4(intensity, std::cos(l.inner_cone)),
           vec4(l.direction, std::cos(l.outer_cone)), vec4(0)};
 }
@@ -101,7 +119,7 @@ std::vector<uint8_t> surface_groups(const scene::Scene& scene, const FlatScene& 
 }
 
 LightTexels texels_of(const scene::Scene& scene, const FlatScene& flat, const LightEntry& entry,
-                      Profiles& profiles) {
+                      Profiles& profiles, Pictures& pictures) {
   if (entry.kind == k_light_triangle) return triangle_texels(scene, flat, entry.index);
   const vec4 only_kind(vec3(0), as_float(entry.kind));
   if (entry.kind == k_light_environment) {
@@ -110,7 +128,10 @@ LightTexels texels_of(const scene::Scene& scene, const FlatScene& flat, const Li
   }
   if (entry.index == scene::k_none) return {only_kind, vec4(0), vec4(0), vec4(0)};
   const scene::Light& lamp = scene.lights[entry.index];
-  return lamp_texels(lamp, entry.kind, lamp.profile ? number_of(profiles, lamp.profile) : 0);
+  const uint32_t table = lamp.profile   ? number_of(profiles, lamp.profile)
+                         : lamp.picture ? number_of(pictures, lamp.picture)
+                                        : 0;
+  return lamp_texels(lamp, entry.kind, table);
 }
 
 }  // namespace
@@ -120,14 +141,24 @@ void flatten_emission(const scene::Scene& scene, FlatScene& flat) {
   if (flat.effects.light_groups > 1) e.emissive_groups = surface_groups(scene, flat);
   e.lights.reserve(flat.entries.size() * k_light_texels);
   Profiles profiles;
+  Pictures pictures;
   for (const LightEntry& entry : flat.entries) {
-    LightTexels texels = texels_of(scene, flat, entry, profiles);
+    LightTexels texels = texels_of(scene, flat, entry, profiles, pictures);
     if (flat.effects.light_groups > 1)
       texels[3].w = as_float(std::bit_cast<uint32_t>(texels[3].w) | group_of(flat, entry, e.emissive_groups)
                                                                         << k_light_group_shift);
     e.lights.insert(e.lights.end(), texels.begin(), texels.end());
   }
-  e.profiles = profile_texels(profiles);
+  if (profiles == flat.profiles_in_table)
+    e.profiles = flat.profiles;
+  else
+    e.profiles = profile_texels(profiles);
+  e.profiles_in_table = std::move(profiles);
+  if (pictures == flat.pictures_in_table)
+    e.pictures = flat.pictures;
+  else
+    e.pictures = picture_texels(pictures);
+  e.pictures_in_table = std::move(pictures);
   e.environment_rotation = scene.environment.rotation * k_pi / 180;
   if (flat.effects.environment_map) {
     const EnvironmentMap map(scene);

@@ -8,10 +8,10 @@
 #include <numeric>
 #include <queue>
 
+#include "base/alias_table.h"
 #include "shaders/shared/facet.h"
 #include "shaders/shared/learned_lights.h"
 #include "shaders/shared/portals.h"
-#include "upload/alias_table.h"
 
 namespace lucerna::upload {
 namespace {

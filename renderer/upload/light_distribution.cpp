@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "base/alias_table.h"
 #include "scene/display_name.h"
 #include "scene/lamp.h"
-#include "upload/alias_table.h"
 #include "upload/environment_map.h"
 #include "upload/flatten.h"
 #include "upload/texture_mean.h"
@@ -66,6 +66,9 @@ void add_lamps(const scene::Scene& scene, double disk, Choice& choice) {
     const double y = luminance(l.intensity);
     if (l.kind == scene::LightKind::directional) {
       choice.add(k_light_directional, i, y * disk, y * disk);
+    } else if (l.picture) {
+      const double flux = y * scene::solid_angle(l);
+      choice.add(k_light_projector, i, flux, flux);
     } else if (l.kind == scene::LightKind::spot) {
       const float inner = std::cos(l.inner_cone), outer = std::cos(l.outer_cone);
       choice.add(k_light_spot, i, y * (2 * k_pi * (1 - 0.5 * (inner + outer))), y * scene::solid_angle(l));
@@ -202,6 +205,9 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
       flat.effects.lights && std::any_of(scene.lights.begin(), scene.lights.end(), [](const scene::Light& l) {
         return l.kind == scene::LightKind::profile;
       });
+  flat.effects.pictures =
+      flat.effects.lights && std::any_of(scene.lights.begin(), scene.lights.end(),
+                                         [](const scene::Light& l) { return l.picture != nullptr; });
   flat.effects.shapes =
       flat.effects.lights && std::any_of(scene.lights.begin(), scene.lights.end(),
                                          [](const scene::Light& l) { return has_shape(l.kind); });

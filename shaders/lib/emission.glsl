@@ -217,6 +217,15 @@ Emission sample_emission(uvec2 choice, vec2 u_place, vec2 u_direction, uvec2 det
     spread = e.pdf_direction > 0.0 ? share / e.pdf_direction : 0.0;
   }
 #endif
+#if LUCERNA_PICTURES
+  if (kind == k_light_projector) {
+    Picture picture = light_picture(b, c, texelFetch(scene_lights, at + 3));
+    vec3 own = sample_picture(picture, uvec2(coin, hash_mix(coin)), u_direction);
+    e.direction = aims ? aimed_direction : own;
+    emitted *= picture_share(picture, e.direction, e.pdf_direction);
+    spread = e.pdf_direction > 0.0 ? 1.0 / e.pdf_direction : 0.0;
+  }
+#endif
   bool afar = kind == k_light_directional || kind == k_light_environment;
   e.afar = afar;
   if (kind == k_light_directional) {

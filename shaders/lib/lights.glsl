@@ -19,6 +19,9 @@
 #if LUCERNA_PROFILES
 #include "lib/profiles.glsl"
 #endif
+#if LUCERNA_PICTURES
+#include "lib/pictures.glsl"
+#endif
 
 #if LUCERNA_LIGHTS
 uniform samplerBuffer scene_lights;
@@ -233,6 +236,13 @@ float lamp_sends(uint lamp, vec3 position, vec3 normal) {
     return luminance(b.xyz) * share / d2 * max(dot(direction, normal), 0.05);
   }
 #endif
+#if LUCERNA_PICTURES
+  if (kind == k_light_projector) {
+    float density;
+    vec3 share = picture_share(light_picture(b, c, texelFetch(scene_lights, at + 3)), -direction, density);
+    return luminance(b.xyz * share) / d2 * max(dot(direction, normal), 0.05);
+  }
+#endif
   float fall = directional ? 1.0 : (kind == k_light_spot ? spot_share(dot(-direction, c.xyz), b.w, c.w) : 1.0) / d2;
   return luminance(b.xyz) * fall * max(dot(direction, normal), 0.05);
 }
@@ -429,6 +439,12 @@ LightSample sample_light(vec3 position, vec3 normal, uint choice, vec2 u, uvec2 
     vec4 d = texelFetch(scene_lights, at + 3);
     float density;
     s.radiance *= profile_share(light_profile(floatBitsToUint(d.w)), c.xyz, d.xyz, -s.direction, density);
+  }
+#endif
+#if LUCERNA_PICTURES
+  if (kind == k_light_projector) {
+    float density;
+    s.radiance *= picture_share(light_picture(b, c, texelFetch(scene_lights, at + 3)), -s.direction, density);
   }
 #endif
 #if LUCERNA_SHAPES

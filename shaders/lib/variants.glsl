@@ -18,6 +18,10 @@
 #ifndef LUCERNA_PROFILES
 #define LUCERNA_PROFILES 0
 #endif
+// Spots with a picture (lib/pictures.glsl).
+#ifndef LUCERNA_PICTURES
+#define LUCERNA_PICTURES 0
+#endif
 // All emissive surfaces are opaque and emit uniformly.
 #ifndef LUCERNA_PLAIN_EMITTERS
 #define LUCERNA_PLAIN_EMITTERS 0

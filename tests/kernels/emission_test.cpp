@@ -282,6 +282,65 @@ TEST_CASE("a measured distribution emits its flux, in proportion to its intensit
   CHECK(dark < e.paths.size() / 1000);
 }
 
+TEST_CASE("a projector emits the flux of its picture, in proportion to its light") {
+  scene::Scene s = floor();
+  s.lights = {lamp(scene::LightKind::spot, {3, 2, 1})};
+  scene::Light& l = s.lights[0];
+  l.outer_cone = glm::radians(50.0f), l.inner_cone = 0;
+  constexpr uint32_t k_w = 7, k_h = 5;
+  std::vector<vec3> texels;
+  for (uint32_t i = 0; i < k_w * k_h; ++i)
+    texels.push_back(i % 4 == 0 ? vec3(0) : vec3(0.2f + float(i % 3), 1, 0.1f * float(i % 5)));
+  // Black over several cells: no path goes there.
+  for (const uint32_t i : {0, 1, 7, 8}) texels[i] = vec3(0);
+  set_picture(l, std::make_shared<scene::LightPicture>(scene::make_picture(k_w, k_h, texels, "x")));
+  l.right = scene::rolled(l.direction, 40);
+  const Emitted e(s);
+  // The integral of each channel over the directions, by the function of the host.
+  const vec2 half = scene::picture_extent(l);
+  const glm::dvec3 x(l.right), n(l.direction), y = glm::cross(x, n);
+  constexpr int k_n = 600;
+  glm::dvec3 flux(0);
+  for (int j = 0; j < k_n; ++j)
+    for (int i = 0; i < k_n; ++i) {
+      const double u = double(half.x) * ((2 * i + 1.0) / k_n - 1),
+                   v = double(half.y) * ((2 * j + 1.0) / k_n - 1);
+      const double r2 = 1 + u * u + v * v, area = 4 * double(half.x) * double(half.y) / (double(k_n) * k_n);
+      const vec3 share = scene::picture_along(l, vec3(glm::normalize(u * x + v * y + n)));
+      flux += glm::dvec3(l.intensity * share) * (area / (r2 * std::sqrt(r2)));
+    }
+  const vec3 mean = mean_flux(e);
+  for (int c = 0; c < 3; ++c) CHECK(mean[c] == Approx(float(flux[c])).epsilon(1e-2));
+  // Paths by cell, as often as its mean luminance says.
+  std::vector<double> observed(size_t{k_w - 1} * (k_h - 1), 0.0), expected;
+  double sum = 0;
+  for (uint32_t j = 0; j + 1 < k_h; ++j)
+    for (uint32_t i = 0; i + 1 < k_w; ++i) {
+      double light = 0;
+      for (const uint32_t k : {j * k_w + i, j * k_w + i + 1, (j + 1) * k_w + i, (j + 1) * k_w + i + 1})
+        light += double(luminance(texels[k]));
+      expected.push_back(light), sum += light;
+    }
+  for (double& v : expected) v *= double(e.paths.size()) / sum;
+  size_t outside = 0, dark = 0;
+  for (const Beginning& b : e.paths) {
+    const glm::dvec3 d(b.direction);
+    const double ahead = glm::dot(d, n);
+    const double u = 0.5 + 0.5 * glm::dot(d, x) / ahead / double(half.x),
+                 v = 0.5 - 0.5 * glm::dot(d, y) / ahead / double(half.y);
+    outside += !(ahead > 0 && u > -1e-4 && u < 1.0001 && v > -1e-4 && v < 1.0001);
+    const auto i = size_t(std::clamp(u * (k_w - 1), 0.0, k_w - 1.001)),
+               j = size_t(std::clamp(v * (k_h - 1), 0.0, k_h - 1.001));
+    observed[j * (k_w - 1) + i] += 1;
+    dark += !(b.flux.x > 0);
+  }
+  CHECK(outside == 0);
+  CHECK(dark < e.paths.size() / 1000);
+  CHECK(observed[0] == 0);
+  observed.erase(observed.begin()), expected.erase(expected.begin());
+  CHECK(chi_square(observed, expected).p > 1e-4);
+}
+
 TEST_CASE("a sun emits its irradiance through a disk that covers the whole scene") {
   scene::Scene s = floor();
   s.lights = {lamp(scene::LightKind::directional, {3, 2, 1})};

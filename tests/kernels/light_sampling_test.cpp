@@ -4,8 +4,8 @@
 #include <bit>
 #include <cstring>
 
+#include "base/alias_table.h"
 #include "kernels/light_support.h"
-#include "upload/alias_table.h"
 
 namespace light_sampling_tests {
 
@@ -53,7 +53,7 @@ TEST_CASE("alias tables: every entry with its probability, never one of weight 0
     for (const double w : weights) expected.push_back(w / total * k_draws);
     size_t wrong = 0;
     for (const Answer& a :
-         lights.choose(upload::build_alias_table(weights), k_draws, 50 + static_cast<uint32_t>(k))) {
+         lights.choose(build_alias_table(weights), k_draws, 50 + static_cast<uint32_t>(k))) {
       const auto entry = static_cast<size_t>(a.value.x);
       if (entry >= weights.size()) FAIL("entry " << entry);
       observed[entry] += 1;
@@ -75,7 +75,7 @@ TEST_CASE("alias tables of millions of entries: an entry that is almost every al
   weights[k_sun] = k_share;
   Lights lights(triangles());
   double drawn = 0;
-  for (const Answer& a : lights.choose(upload::build_alias_table(weights), k_draws, 9))
+  for (const Answer& a : lights.choose(build_alias_table(weights), k_draws, 9))
     drawn += static_cast<size_t>(a.value.x) == k_sun;
   const double error = std::sqrt(k_share * (1 - k_share) / k_draws);
   INFO("share " << drawn / k_draws << " of " << k_share << " +- " << error);

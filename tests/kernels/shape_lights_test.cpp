@@ -2,6 +2,7 @@
 // Lamps with a shape through shaders/lib/shapes.glsl: their samples, densities and hits, and their light on a
 // plane compared with closed forms.
 #include <functional>
+#include <optional>
 
 #include "kernels/light_support.h"
 #include "scene/lamp.h"
@@ -289,6 +290,48 @@ TEST_CASE("candela of a measured distribution arrive at the angles where they we
         CHECK(d.delta == 1);
       }
     }
+}
+
+TEST_CASE("the light of a projector is that of its picture, upright and in three channels") {
+  scene::Light l = lamp(LightKind::rectangle);
+  l.kind = LightKind::spot, l.outer_cone = glm::radians(40.0f), l.inner_cone = 0;
+  const std::vector<vec3> texels{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0.5f, 0, 0}, {2, 2, 2}, {0, 0.25f, 0}};
+  set_picture(l, std::make_shared<scene::LightPicture>(scene::make_picture(3, 2, texels, "x")));
+  l.right = scene::rolled(l.direction, 25);
+  scene::Light other = l;
+  other.position += vec3(3, 0, 0);
+  other.picture = std::make_shared<scene::LightPicture>(scene::make_picture(2, 2, {4, vec3(1)}, "y"));
+  const glm::dvec3 x(l.right), n(l.direction), y = glm::cross(x, n);
+  const glm::dvec2 half(scene::picture_extent(l));
+  CHECK(glm::length(half) == Approx(std::tan(40 * k_pi_d / 180)));
+  CHECK(half.x / half.y == Approx(1.5));
+  Lights lights(with({l, other}));
+  const auto arrives = [&](double u, double v) {
+    const glm::dvec3 to = glm::normalize((2 * u - 1) * half.x * x + (1 - 2 * v) * half.y * y + n);
+    std::optional<vec3> light;
+    for (const Draw& d : lights.draw(vec3(glm::dvec3(l.position) + 2.0 * to), 64, 2)) {
+      if (std::abs(d.distance - 2) > 1e-4f) continue;
+      light = d.radiance * 4.0f;
+      CHECK(d.delta == 1);
+    }
+    REQUIRE(light);
+    return *light;
+  };
+  const auto check = [&](double u, double v, const vec3& relative) {
+    INFO(u << " " << v);
+    const vec3 light = arrives(u, v);
+    for (int k = 0; k < 3; ++k)
+      CHECK(light[k] == Approx(l.intensity[k] * relative[k]).epsilon(2e-3).margin(2e-3));
+  };
+  // Corners, a little inside; the middle of the upper border; between two points; the middle.
+  check(1e-4, 1e-4, {1, 0, 0}), check(0.9999, 1e-4, {0, 0, 1}), check(1e-4, 0.9999, {0.5f, 0, 0});
+  check(0.9999, 0.9999, {0, 0.25f, 0}), check(0.5, 1e-4, {0, 1, 0}), check(0.25, 1e-4, {0.5f, 0.5f, 0});
+  check(0.5, 0.5, {1, 1.5f, 1});
+  for (const vec2& outside : {vec2(-0.01f, 0.5f), vec2(1.01f, 0.5f), vec2(0.5f, -0.01f), vec2(0.5f, 1.01f)})
+    check(double(outside.x), double(outside.y), vec3(0));
+  // Behind the lamp there is nothing, though the plane's point is the same.
+  for (const Draw& d : lights.draw(vec3(glm::dvec3(l.position) - 2.0 * n), 64, 2))
+    if (std::abs(d.distance - 2) < 1e-4f) CHECK(d.radiance == vec3(0));
 }
 
 TEST_CASE("there were no validation messages: shape lights") { CHECK(device().validation_messages() == 0); }

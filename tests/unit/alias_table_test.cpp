@@ -1,11 +1,16 @@
 // links: upload
-// Alias tables: their stated probabilities are those with which the device chooses, for any weights.
-#include "upload/alias_table.h"
+// Alias tables: their stated probabilities are those with which the device chooses, for any weights. Tables
+// of measured distributions are made once.
+#include "base/alias_table.h"
 
 #include <bit>
 #include <catch2/catch.hpp>
 #include <cmath>
+#include <cstring>
 #include <random>
+
+#include "scene/lamp.h"
+#include "upload/flatten.h"
 
 namespace alias_table_tests {
 
@@ -27,7 +32,7 @@ TEST_CASE("a table's probabilities equal those of its coins, for weights of any 
   lists.emplace_back();
   for (int i = 0; i < 5000; ++i) lists.back().push_back(std::exp2(double(random() % 120) - 60));
   for (const std::vector<double>& weights : lists) {
-    const std::vector<vec4> table = upload::build_alias_table(weights);
+    const std::vector<vec4> table = build_alias_table(weights);
     REQUIRE(table.size() == weights.size());
     const double n = double(weights.size());
     std::vector<double> chosen(weights.size(), 0.0);
@@ -52,6 +57,51 @@ TEST_CASE("a table's probabilities equal those of its coins, for weights of any 
     CHECK(impossible == 0);
     CHECK(sum == Approx(1).epsilon(1e-6));
   }
+}
+
+TEST_CASE("the table of a measured distribution is made with it, and laid out again for other ones only") {
+  const auto profile = [](double power) {
+    return std::make_shared<const scene::LightProfile>(scene::sampled_profile(
+        [=](double polar, double around) {
+          return std::pow(std::abs(std::cos(polar * 0.0174533)), power) * (2 + std::sin(around * 0.0174533));
+        },
+        false));
+  };
+  scene::Scene s;
+  scene::Primitive floor;
+  floor.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}}, floor.normals = {{0, 1, 0}, {0, 1, 0}, {0, 1, 0}};
+  floor.triangles = {{0, 1, 2}};
+  s.meshes.push_back({"floor", {floor}});
+  s.materials.resize(1);
+  s.instances.push_back({.name = "floor", .mesh = 0});
+  const auto first = profile(1), second = profile(4);
+  CHECK(first->alias == build_alias_table(first->cells()));
+  s.lights.resize(2);
+  for (scene::Light& l : s.lights) l.position = {0, 2, 0};
+  set_profile(s.lights[0], first);
+  upload::FlatScene flat = upload::flatten(s);
+  const SharedVector<vec4> before = flat.profiles;
+  CHECK(before.size() == 1 + first->intensity.size());
+  s.lights[0].intensity *= 3, s.lights[0].position.x = 1, s.lights[1].intensity = vec3(7);
+  upload::flatten_lights(s, flat);
+  CHECK(flat.profiles.shares_with(before));
+  const auto as_rebuilt = [&] {
+    const upload::FlatScene rebuilt = upload::flatten(s);
+    // The bits of numbers are texels too: no comparison of floats.
+    return rebuilt.profiles.size() == flat.profiles.size() &&
+           std::memcmp(&rebuilt.profiles[0], &flat.profiles[0], 16 * flat.profiles.size()) == 0 &&
+           rebuilt.lights.size() == flat.lights.size();
+  };
+  CHECK(as_rebuilt());
+  set_profile(s.lights[1], second);
+  upload::flatten_lights(s, flat);
+  CHECK_FALSE(flat.profiles.shares_with(before));
+  CHECK(flat.profiles.size() == 2 + first->intensity.size() + second->intensity.size());
+  CHECK(as_rebuilt());
+  set_profile(s.lights[0], second);
+  upload::flatten_lights(s, flat);
+  CHECK(flat.profiles.size() == 1 + second->intensity.size());
+  CHECK(as_rebuilt());
 }
 
 }  // namespace alias_table_tests

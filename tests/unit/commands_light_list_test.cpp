@@ -1,5 +1,11 @@
 // links: commands
 // Adding, copying, deleting, naming and aiming lights by command; the sun by date; skies.
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "scene/lamp.h"
 #include "scene/solar.h"
 #include "unit/workspace_bench.h"
 
@@ -184,6 +190,31 @@ TEST_CASE("the sun follows date and place, and a sky follows the sun") {
   CHECK(b.work.open.light(0).sun->hours == 10);
 }
 
+TEST_CASE("a spot projects a picture by command; its cone then has a limit") {
+  WorkspaceBench b;
+  b.open();
+  const Document before = b.work.open.document();
+  const auto file =
+      std::filesystem::temp_directory_path() / ("lucerna-slide-" + std::to_string(getpid()) + ".hdr");
+  std::ofstream(file, std::ios::binary) << "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n"
+                                        << std::string("\x80\x40\x20\x81\x20\x40\x80\x81", 8);
+  b.run("light.set 3 cone=30 direction=0,-1,0 picture=" + quote(file.string()));
+  const scene::Light light = b.work.open.light(2);
+  REQUIRE(light.picture);
+  CHECK(light.picture->width == 2);
+  CHECK(light.intensity == before.lights[2].intensity);
+  b.run("light.set 3 roll=90");
+  CHECK(std::abs(glm::dot(b.work.open.light(2).right, light.right)) < 1e-5f);
+  b.run("light.set 3 lm=500");
+  CHECK(scene::solid_angle(b.work.open.light(2)) * double(luminance(b.work.open.light(2).intensity)) ==
+        Approx(500));
+  CHECK_THAT(b.failure("light.set 3 cone=85"), Contains("cone: with a picture it has at most 80 degrees"));
+  REQUIRE(b.settled());
+  for (int i = 0; i < 3; ++i) b.run("undo");
+  CHECK(b.work.open.document() == before);
+  std::filesystem::remove(file);
+}
+
 TEST_CASE("invalid edits of lights are refused and change nothing") {
   WorkspaceBench b;
   b.open();
@@ -204,6 +235,9 @@ TEST_CASE("invalid edits of lights are refused and change nothing") {
   refused("light.add rectangle direction=0,0,1 right=0,0,2", "right: it is 0 or along the light's direction");
   refused("light.add profile", "profile: its file is missing");
   refused("light.add profile profile=/nowhere.ies", "/nowhere.ies: cannot be read");
+  refused("light.add point picture=/nowhere.png", "picture: a point lamp takes no picture: a spot does");
+  refused("light.add spot picture=/nowhere.png", "/nowhere.png: cannot be read");
+  refused("light.set 3 roll=20", "roll: a spot lamp looks the same when it is rolled");
   refused("light.add spot direction=0,0,0", "its length is 0");
   refused("light.add point intensity=-1", "intensity");
   refused("light.duplicate Sun by=1,0,0", "a sun is infinitely far");

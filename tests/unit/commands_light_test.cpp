@@ -1,6 +1,8 @@
 // links: commands
 // Light edits by command: lamps, emissive materials, the environment, the light mix.
 #include "base/blackbody.h"
+#include "base/color.h"
+#include "commands/text.h"
 #include "unit/workspace_bench.h"
 
 namespace commands_light_tests {
@@ -93,6 +95,69 @@ TEST_CASE("a lamp's colour, power, cone, position and direction are edited") {
   CHECK_THAT(b.failure("light.set 2 intensity=1 power=3"),
              Contains("intensity and power exclude each other"));
   CHECK_THAT(b.failure("light.set 2 position=0,nan,0"), Contains("position"));
+  CHECK(b.work.open.document() == before);
+}
+
+TEST_CASE("strengths of lights are read and set in units, which change no light") {
+  WorkspaceBench b;
+  b.open();
+  const Document before = b.work.open.document();
+  const auto value = [&](const std::string& what) {
+    std::vector<std::string> words;
+    for (const Word& w : split(what)) words.push_back(w.text);
+    return std::stod(b.work.values.read(b.work, b.work.values.take(words)));
+  };
+  for (const char* unit : {"lm", "lx distance=2", "watts", "nits", "cd"}) {
+    b.run(std::string("light.unit ") + unit);
+    CHECK(b.work.open.document() == before);
+  }
+  CHECK(b.work.history.undo_steps() == 0);
+  CHECK(value("light.distance") == 2);
+  // What is read and given again changes nothing.
+  const auto text = [&](const std::string& what) {
+    std::vector<std::string> words{"light", "3", what};
+    return b.work.values.read(b.work, b.work.values.take(words));
+  };
+  for (const std::string unit : {"cd", "lm", "lx", "watts"}) {
+    b.run("light.set 3 " + unit + "=" + text(unit));
+    CHECK(b.work.open.document() == before);
+  }
+  b.run("light.set 2 lm=806 kelvin=2700");
+  CHECK(value("light 2 lm") == Approx(806));
+  CHECK(value("light 2 cd") == Approx(806 / (4 * k_pi)));
+  CHECK(value("light 2 lx") == Approx(806 / (16 * k_pi)));
+  CHECK(value("light 2 watts") == Approx(806 / 683.0));
+  CHECK(glm::length(tint_of(b.work.open.light(1).intensity) - blackbody_color(2700)) < 1e-5f);
+  b.run("light.set 2 lx=100 distance=0.5");
+  CHECK(value("light 2 cd") == Approx(25));
+  b.run("light.set 1 lx=5000");
+  CHECK(value("light 1 lx") == Approx(5000));
+  b.run("light.add rectangle width=2 height=0.5 nits=300 color=1,1,1 position=0,1,0 name=Panel");
+  CHECK(value("light Panel cd") == Approx(300));
+  CHECK(value("light Panel lm") == Approx(300 * k_pi));
+  b.run("material.set 1 nits=1000");
+  CHECK(value("material 1 nits") == Approx(1000));
+  b.run("material.set 1 lm=50");
+  CHECK(value("material 1 lm") == Approx(50));
+  CHECK(value("material 1 watts") == Approx(50 / 683.0));
+  for (int i = 0; i < 6; ++i) b.run("undo");
+  CHECK(b.work.open.document() == before);
+
+  CHECK_THAT(b.failure("light.set 1 lm=3"), Contains("lm: a sun shines from infinitely far: give lx"));
+  CHECK_THAT(b.failure("light.set 1 lx=3 distance=2"), Contains("distance: a sun is as strong at any"));
+  CHECK_THAT(b.failure("light.set 2 nits=3"), Contains("nits: a point lamp has no shape"));
+  CHECK_THAT(b.failure("light.set 2 cd=3 lm=3"), Contains("cd and lm exclude each other"));
+  CHECK_THAT(b.failure("light.set 2 power=3 lm=3"), Contains("power and lm exclude each other"));
+  CHECK_THAT(b.failure("light.set 2 cd=3 distance=1"), Contains("distance: it counts for lx only"));
+  CHECK_THAT(b.failure("light.set 2 cd=-3"), Contains("cd = '-3': expected a number"));
+  CHECK_THAT(b.failure("light.set 2 lm=1e12"), Contains("makes the strongest channel more than"));
+  CHECK_THAT(b.failure("light.set 2 lx=nan"), Contains("lx"));
+  CHECK_THAT(b.failure("light.set 2 lx=1 distance=0"), Contains("distance"));
+  CHECK_THAT(b.failure("light.unit candles"), Contains("expected one of cd, lm, lx, watts, nits"));
+  CHECK_THAT(b.failure("material.set 1 lm=1 strength=1"), Contains("strength and lm exclude each other"));
+  CHECK_THAT(b.failure("material.set Filament lm=1"), Contains("lm: no surface has this material"));
+  CHECK_THAT(b.failure("get light 1 cd"), Contains("a sun has no cd"));
+  CHECK_THAT(b.failure("get light 2 mood"), Contains("lm"));
   CHECK(b.work.open.document() == before);
 }
 

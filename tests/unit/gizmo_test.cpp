@@ -7,6 +7,7 @@
 
 #include "scene/projection.h"
 #include "ui/object_handles.h"
+#include "ui/surface_snap.h"
 
 namespace gizmo_tests {
 
@@ -126,6 +127,54 @@ TEST_CASE("a drag is followed at rest in quick scenes, and when it ends in slow 
   CHECK(time.follows(0.4));
   time.begin(6, 20), time.follow(7, 23);
   CHECK_FALSE(time.follows(60));
+}
+
+TEST_CASE("a snapped object touches the surface with its lowest vertex, its middle before the point") {
+  scene::Mesh mesh;
+  mesh.primitives.resize(1);
+  mesh.primitives[0].positions = {{-1, -1, -1}, {1, 1, 1}, {-1, 1, -1}, {1, -1, 1}, {0, 0, -1}};
+  const mat4 loaded = glm::translate(mat4(1), vec3(5, 2, 1));
+  ObjectPlace start;
+  start.moved = {0.5f, 0, 0}, start.turned = {20, 30, 40}, start.scaled = {1, 2, 0.5f};
+  for (const vec3& normal : {vec3(0, 1, 0), vec3(-1, 0, 0), glm::normalize(vec3(1, 2, -3))}) {
+    const SurfacePoint surface{{7, -3, 2}, normal};
+    const ObjectPlace put = put_on_surface(mesh, unit_box(), loaded, start, surface);
+    CHECK(put.turned == start.turned);
+    CHECK(put.scaled == start.scaled);
+    const mat4 to_world = scene::placed(loaded, unit_box(), put);
+    float lowest = k_infinity;
+    for (const vec3& v : mesh.primitives[0].positions)
+      lowest = std::min(lowest, glm::dot(vec3(to_world * vec4(v, 1)) - surface.position, normal));
+    CHECK(lowest == Approx(0).margin(1e-5));
+    const vec3 way = scene::middle_of(unit_box(), to_world) - surface.position;
+    check_near(glm::cross(way, normal), vec3(0));
+    CHECK(glm::dot(way, normal) > 0.5f);
+  }
+  CHECK(put_on_surface({}, Box(), loaded, start, {}) == start);
+}
+
+TEST_CASE("a snapped lamp is just off the surface, with all of its shape") {
+  const SurfacePoint wall{{1, 2, 3}, {1, 0, 0}};
+  scene::Light lamp;
+  lamp.direction = {0, 0, -1}, lamp.right = {1, 0, 0}, lamp.width = 1.2f, lamp.height = 0.4f,
+  lamp.radius = 0.3f;
+  const auto off = [&](scene::LightKind kind) {
+    lamp.kind = kind;
+    const vec3 at = lamp_on_surface(lamp, wall, 0.01f);
+    CHECK(at.y == 2);
+    CHECK(at.z == 3);
+    return at.x - 1.01f;
+  };
+  using scene::LightKind;
+  CHECK(off(LightKind::point) == Approx(0).margin(1e-6));
+  CHECK(off(LightKind::sphere) == Approx(0.3));
+  CHECK(off(LightKind::rectangle) == Approx(0.6));
+  CHECK(off(LightKind::disk) == Approx(0.3));
+  CHECK(off(LightKind::tube) == Approx(0.6));
+  lamp.direction = {1, 0, 0}, lamp.right = {0, 0, 1};
+  CHECK(off(LightKind::rectangle) == Approx(0).margin(1e-6));
+  CHECK(off(LightKind::disk) == Approx(0).margin(1e-6));
+  CHECK(off(LightKind::tube) == Approx(0.3));
 }
 
 }  // namespace gizmo_tests

@@ -95,6 +95,15 @@ TEST_CASE("a change of light changes the hash of its part, and no other") {
   CHECK(moved([](Scene& s) { s.environment.radiance.x = 2; }) == "e");
   CHECK(moved([](Scene& s) { s.environment.scale = 2; }) == "e");
   CHECK(moved([](Scene& s) { s.environment.image = 2; }) == "e");
+  Scene projector = room();
+  projector.lights[0].kind = LightKind::spot;
+  const auto picture = [](float red) {
+    return std::make_shared<const LightPicture>(make_picture(2, 2, {4, vec3(red, 1, 1)}, "x"));
+  };
+  projector.lights[0].picture = picture(0.5f);
+  CHECK(moved([&](Scene& s) { s.lights[0].picture = picture(0.6f); }, projector) == "l");
+  CHECK(moved([&](Scene& s) { s.lights[0].right = {0, 1, 0}; }, projector) == "l");
+  CHECK(moved([&](Scene& s) { s.lights[0].picture = picture(0.5f); }, projector).empty());
   Scene sky = room();
   sky.environment.image = 2;
   CHECK(moved([](Scene& s) { s.environment.rotation = 30; }, sky) == "e");

@@ -3,6 +3,7 @@
 // written.
 #include <catch2/catch.hpp>
 #include <glm/gtc/matrix_transform.hpp>
+#include <glm/gtc/quaternion.hpp>
 #include <memory>
 
 #include "base/file.h"
@@ -277,6 +278,42 @@ TEST_CASE("animated nodes, skins and copies of a node are saved in nodes of thei
   c.put("tile #2", {.hidden = true});
   check_same(c.saved(), *c.edited);
   CHECK(!c.document().contains("extensionsRequired"));
+}
+
+TEST_CASE("copies of a mesh far from its own origin keep their places, flattened ones are refused") {
+  Asset far;
+  far.mesh(
+      {{"attributes", {{"POSITION", far.accessor<float>("VEC3", {40000, 0, 0, 40001, 0, 0, 40000, 1, 0})}}}},
+      {{"name", "tile"}, {"rotation", {0, 0.6, 0, 0.8}}});
+  const int where = far.accessor<float>("VEC3", {-40000, 0, 0, -40002, 0, 0, -40004, 1, 0});
+  far.doc["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"] = {{"attributes", {{"TRANSLATION", where}}}};
+  far.doc["extensionsUsed"] = {"EXT_mesh_gpu_instancing"};
+  Bench b(far);
+  const glm::dvec3 shift = b.loaded->meshes[0].shift;
+  REQUIRE(std::abs(shift.x - 40000) < 10);
+  b.put("tile #1", {.moved = {0, 1, 0}, .turned = {0, 30, 0}});
+  const Scene read = b.saved();
+  check_same(read, *b.edited);
+  // Other programs read the nodes alone: the first corner of each copy.
+  const json d = b.document();
+  for (size_t i = 0; i < 3; ++i) {
+    const json& n = d["nodes"][1 + i];
+    glm::dmat4 local(1);
+    REQUIRE(n.contains("matrix"));
+    for (int k = 0; k < 16; ++k) local[k / 4][k % 4] = n["matrix"][size_t(k)].get<double>();
+    glm::dmat4 parent = glm::mat4_cast(glm::dquat(0.8, 0, 0.6, 0));
+    const glm::dvec3 corner(parent * local * glm::dvec4(40000, 0, 0, 1));
+    const vec3 shown(b.edited->instances[b.find(n["name"])].to_world *
+                     vec4(vec3(glm::dvec3(40000, 0, 0) - shift), 1));
+    CHECK(glm::length(vec3(corner) - shown) < 1e-2f);
+  }
+
+  Asset flat = far;
+  const int sizes = flat.accessor<float>("VEC3", {1, 1, 1, 1, 1, 0, 1, 1, 1});
+  flat.doc["nodes"][0]["extensions"]["EXT_mesh_gpu_instancing"]["attributes"]["SCALE"] = sizes;
+  Bench c(flat);
+  c.put("tile #0", {.moved = {0, 1, 0}});
+  CHECK_THROWS_WITH(c.saved(), Contains("object 'tile #1': it is placed by joints or by a matrix"));
 }
 
 TEST_CASE("a scene whose objects are as they were is saved to the byte") {

@@ -2,12 +2,14 @@
 // Saving of scenes: edits read back exactly, and everything else is kept.
 #include "scene/io/save.h"
 
+#include <algorithm>
 #include <catch2/catch.hpp>
 #include <memory>
 
 #include "base/color.h"
 #include "base/file.h"
 #include "scene/io/json_edit.h"
+#include "scene/io/light_picture_file.h"
 #include "scene/io/light_profile_file.h"
 #include "scene/lamp.h"
 #include "scene/sky_image.h"
@@ -232,6 +234,67 @@ TEST_CASE("lamps with a shape or a measured distribution read back exactly") {
   b.edited->lights.erase(b.edited->lights.begin() + 4, b.edited->lights.begin() + 9);
   back = b.saved(b.folder / "c.gltf");
   check_equal(b.edited->lights, same_profiles(back.lights, b.edited->lights));
+}
+
+TEST_CASE("the picture of a spot is saved with it, and one that cannot be read is a warning") {
+  const auto hdr = [](std::initializer_list<int> bytes) {
+    std::string text = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n";
+    for (const int b : bytes) text += char(b);
+    return text;
+  };
+  Asset a;
+  a.triangle();
+  Bench b(a);
+  write_file((b.folder / "slide.hdr").string(), hdr({128, 64, 0, 129, 0, 32, 128, 129}));
+  write_file((b.folder / "black.hdr").string(), hdr({0, 0, 0, 0, 0, 0, 0, 0}));
+  size_t mended = 7;
+  const auto picture = load_light_picture(b.folder / "slide.hdr", mended);
+  CHECK(mended == 0);
+  CHECK(picture->texels[0].x == Approx(1).epsilon(0.01));
+  CHECK_THROWS_WITH(load_light_picture(b.folder / "black.hdr", mended),
+                    Contains("black.hdr: the picture is black"));
+  CHECK_THROWS_WITH(load_light_picture(b.folder / "gone.png", mended), Contains("gone.png: cannot be read"));
+  write_file((b.folder / "text.png").string(), "no picture");
+  CHECK_THROWS_WITH(load_light_picture(b.folder / "text.png", mended), Contains("text.png"));
+
+  Light l;
+  l.name = "projector", l.id = k_first_added, l.kind = LightKind::spot, l.position = {1, 2, 3};
+  l.direction = vec3(glm::normalize(glm::dvec3(1, -2, 0.5)));
+  set_picture(l, picture);
+  l.right = rolled(l.direction, 33);
+  b.edited->lights.push_back(l);
+  Scene back = b.saved();
+  REQUIRE(back.lights.size() == 1);
+  REQUIRE(back.lights[0].picture);
+  CHECK(back.lights[0].picture->texels == picture->texels);
+  CHECK(back.lights[0].picture->name == "slide.hdr");
+  back.lights[0].picture = picture;
+  check_equal(b.edited->lights, back.lights);
+
+  // By a file beside the scene; files that are gone or black.
+  using Case = std::pair<const char*, bool>;
+  for (const auto& [name, read] :
+       std::initializer_list<Case>{{"slide.hdr", true}, {"gone.hdr", false}, {"black.hdr", false}}) {
+    json doc = b.document();
+    doc["extensions"]["KHR_lights_punctual"]["lights"][0]["extras"]["lucerna"]["picture"] = {{"uri", name}};
+    write_file((b.folder / "c.gltf").string(), doc.dump());
+    const Scene scene = load(b.folder / "c.gltf");
+    REQUIRE(scene.lights.size() == 1);
+    CHECK((scene.lights[0].picture != nullptr) == read);
+    const auto warned = std::count_if(scene.warnings.begin(), scene.warnings.end(), [&](const auto& text) {
+      return text.find("pictures of spots that cannot be read") != std::string::npos &&
+             text.find(name) != std::string::npos;
+    });
+    CHECK((warned > 0) == !read);
+  }
+  json wide = b.document();
+  wide["extensions"]["KHR_lights_punctual"]["lights"][0]["spot"]["outerConeAngle"] = 1.5;
+  write_file((b.folder / "d.gltf").string(), wide.dump());
+  const Scene without = load(b.folder / "d.gltf");
+  CHECK_FALSE(without.lights.at(0).picture);
+  CHECK(std::any_of(without.warnings.begin(), without.warnings.end(), [](const std::string& w) {
+    return w.find("more than 80 degrees") != std::string::npos;
+  }));
 }
 
 TEST_CASE("shapes and distributions that cannot be used: a warning with the place, and the rest is read") {

@@ -92,6 +92,28 @@ TEST_CASE("a lamp's mark is dragged parallel to the picture, with Shift vertical
   CHECK(lines[4] == "undo");
 }
 
+TEST_CASE("with Ctrl and Shift a lamp is put just before a surface; Escape ends a drag without a step") {
+  if (test::no_display()) return;
+  const auto lines = session_of(
+      "camera.place 0,2,6 0,2,0 0,1,0\nselect light 2\nwait 0.5\nkey.hold ctrl on\n"
+      "key.hold shift on\n" +
+      drag(712, 372, 20, 10) +
+      "key.hold ctrl off\nkey.hold shift off\nkey ctrl+z\nwait 0.3\n"
+      "mouse.move 712 372\nmouse.down\nmouse.move 732 372\nmouse.move 752 372\nwait 0.2\n"
+      "expect history.undo is 2\nkey escape\nwait 0.2\nmouse.move 792 372\nmouse.up\n"
+      "expect history.undo is 1\nexpect light 2 position is 0,2,0\n");
+  INFO(fmt::format("{}", fmt::join(lines, "\n")));
+  REQUIRE(lines.size() == 4);
+  CHECK_THAT(lines[2], Catch::StartsWith("light.set 2 position="));
+  CHECK(lines[3] == "undo");
+  // The plane of the triangle (-3,0,-4) (3,0,-4) (3,3,4), from the eye's side.
+  const vec3 at = vector_in(lines[2].substr(lines[2].find('=') + 1), 0);
+  const float off = (-48 * at.y + 18 * at.z + 72) / std::hypot(48.0f, 18.0f);
+  CHECK(off > 1e-3f);
+  CHECK(off < 0.2f);
+  CHECK(at.x > 0.3f);
+}
+
 TEST_CASE("an emissive surface has a mark that selects its material and moves nothing") {
   if (test::no_display()) return;
   // The mark is in the centre of the picture.
@@ -158,11 +180,11 @@ TEST_CASE("a dropped image lights the scene; the first steps are shown on reques
 TEST_CASE("a lamp's strength, temperature and position are dragged in the panel, each drag one step") {
   if (test::no_display()) return;
   const auto lines = session_of("window.section Camera false\nselect light 3\nwait 0.3\n" +
-                                drag(1200, 366, 10, 0) + drag(1200, 418, 10, 0) + drag(1250, 470, 10, 0) +
+                                drag(1200, 366, 10, 0) + drag(1200, 444, 10, 0) + drag(1250, 470, 10, 0) +
                                 drag(1240, 496, 10, 0) + "key ctrl+z\nkey ctrl+z\nkey ctrl+z\n");
   INFO(fmt::format("{}", fmt::join(lines, "\n")));
   REQUIRE(lines.size() == 9);
-  CHECK_THAT(lines[2], Catch::StartsWith("light.set 3 intensity="));
+  CHECK_THAT(lines[2], Catch::StartsWith("light.set 3 cd="));
   CHECK_THAT(lines[3], Catch::StartsWith("light.set 3 kelvin="));
   CHECK_THAT(lines[4], Catch::StartsWith("light.set 3 position=") && Catch::EndsWith(",2,0"));
   CHECK_THAT(lines[5], Catch::StartsWith("light.set 3 azimuth="));
@@ -174,9 +196,9 @@ TEST_CASE("a colour is picked; emissive surfaces are listed among the lights") {
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   const auto lines = session_of(
-      "window.section Camera false\nselect light 3\nwait 0.3\nmouse.move 1200 392\nmouse.down\n"
+      "window.section Camera false\nselect light 3\nwait 0.3\nmouse.move 1200 418\nmouse.down\n"
       "mouse.up\nwait 0.4\n" +
-      ("screenshot " + file("picker.png") + "\n") + drag(1230, 472, 8, 8) +
+      ("screenshot " + file("picker.png") + "\n") + drag(1230, 498, 8, 8) +
       "key escape\nwait 0.3\nmaterial.set 1 strength=2\nselect material 1\nwait 0.4\n"
       "screenshot " +
       file("surface.png"));

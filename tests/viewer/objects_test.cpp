@@ -112,6 +112,31 @@ TEST_CASE("Escape ends a drag, and the rest of it moves nothing") {
   CHECK(lines.empty());
 }
 
+TEST_CASE("Escape after the scene has followed a drag leaves neither a step nor a line") {
+  if (test::no_display()) return;
+  const auto lines = session_of(
+      fmt::format("mouse.move {0} {1}\nmouse.down\nmouse.move {2} {1}\nmouse.move {3} {1}\nwait 0.6\n"
+                  "expect history.undo is 2\nkey escape\nwait 0.4\nmouse.move {4} {1}\nmouse.up\n"
+                  "expect history.undo is 1\nexpect object 4 position is 0,1.5,0\n",
+                  k_x + 60, k_y, k_x + 70, k_x + 90, k_x + 120));
+  INFO(fmt::format("{}", fmt::join(lines, "\n")));
+  CHECK(lines.empty());
+}
+
+TEST_CASE("with Ctrl and Shift an object lies on the surface under the pointer") {
+  if (test::no_display()) return;
+  const auto lines = session_of("key.hold ctrl on\nkey.hold shift on\n" + drag(k_x, k_y, 20, 10) +
+                                    "key.hold ctrl off\nkey.hold shift off\nexpect history.undo is 2\n",
+                                "surface");
+  INFO(fmt::format("{}", fmt::join(lines, "\n")));
+  REQUIRE(lines.size() == 1);
+  CHECK_THAT(lines[0], Catch::StartsWith("object.set 4 position="));
+  // All objects are the same slanted triangle: the middle of its box is in its plane.
+  const vec3 at = vector_of(lines[0]);
+  CHECK(at.z < -0.5f);
+  CHECK(at.y == Approx(1.5f + 0.375f * at.z).margin(2e-3));
+}
+
 TEST_CASE("a click beside the handles selects what is there; hidden objects have no handles") {
   if (test::no_display()) return;
   const auto clicked =

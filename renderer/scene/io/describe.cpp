@@ -71,6 +71,7 @@ Json describe_lights(const Scene& scene) {
       item["profile"] = light.profile->name;
       item["profile_lumens"] = light.profile->lumens();
     }
+    if (light.picture) item["picture"] = light.picture->name;
     if (has_shape(light.kind)) item["size"] = {2 * half_size(light).x, 2 * half_size(light).y};
     if (light.kind == LightKind::spot)
       item["cone_degrees"] = {glm::degrees(light.inner_cone), glm::degrees(light.outer_cone)};

@@ -309,7 +309,7 @@ std::shared_ptr<const LightProfile> load_light_profile(const std::filesystem::pa
   const uintmax_t size = std::filesystem::file_size(file, error);
   if (error) throw_error(where, "cannot be read: {}", error.message());
   if (size > k_most_bytes) throw_error(where, "{} bytes are more than the limit of {}", size, k_most_bytes);
-  return light_profile_of(read_file(file), file.filename().string(), where);
+  return light_profile_of(lucerna::read_file(file), file.filename().string(), where);
 }
 
 }  // namespace lucerna::scene

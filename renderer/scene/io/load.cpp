@@ -71,6 +71,7 @@ void load_meshes(Document& document, Scene& scene, Placement& placement, Materia
                       "geometry");
     const auto& [index, pose] = placement.uses[use];
     Mesh mesh = load_mesh(document, index, materials, pose, origins[use]);
+    mesh.is_baked = pose.placed();
     for (const size_t portal : portals_of[use])
       take_corners(document, mesh, origins[use], placement.portals[portal]);
     if (mesh.primitives.empty() || !shown_use[use]) continue;
@@ -198,6 +199,7 @@ void place(Scene& scene, Placement& placement, const std::vector<Box>& boxes, Do
     if (glm::length(centre) > (moved ? k_far : k_far * k_far) * radius)
       shifts[i] = round_origin(centre, radius);
     if (shifts[i] == glm::dvec3(0)) continue;
+    scene.meshes[i].shift = shifts[i];
     for (Primitive& primitive : scene.meshes[i].primitives)
       for (vec3& p : primitive.positions) p = vec3(glm::dvec3(p) - shifts[i]);
   }

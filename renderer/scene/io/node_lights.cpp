@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scene/io/light_picture_file.h"
 #include "scene/io/light_profile_file.h"
 #include "scene/io/node_matrix.h"
 #include "scene/io/own_extras.h"
@@ -70,9 +71,44 @@ std::shared_ptr<const LightProfile> NodeLights::profile_of(const Item& reference
   return place->second;
 }
 
+// Each is read once.
+std::shared_ptr<const LightPicture> NodeLights::picture_of(const Item& definition, size_t number) {
+  const auto [place, fresh] = pictures_.try_emplace(number);
+  if (!fresh) return place->second;
+  try {
+    const std::optional<Item> item = own_picture(definition);
+    if (!item) return nullptr;
+    const Item uri = item->at("uri");
+    std::string name = item->text("name", "");
+    std::vector<uint8_t> bytes;
+    if (is_data_uri(uri.text())) {
+      bytes = decode_data_uri(uri);
+    } else {
+      const std::filesystem::path file = resolve_uri(document_, uri);
+      bytes = read_file(document_, file, uri.where());
+      name = file.filename().string();
+    }
+    size_t mended = 0;
+    place->second = light_picture_of(
+        std::move(bytes), name, name.empty() ? item->where() : fmt::format("{} ({})", item->where(), name),
+        document_.budget, mended);
+    if (mended > 0)
+      document_.warnings.add("{} pictures of spots with texels that are negative or not finite: mended",
+                             item->path());
+  } catch (const OverBudget&) {
+    throw;
+  } catch (const OutsideFolder&) {
+    throw;
+  } catch (const Error& error) {
+    document_.warnings.add("{} pictures of spots that cannot be read: spots without one", error.what());
+  }
+  return place->second;
+}
+
 Light NodeLights::punctual(const Item& reference, const Place& place) {
   const Item lights = lights_of(root_, "KHR_lights_punctual", reference);
-  const Item item = lights.at(reference.at("light").index(lights.size(), "lights"));
+  const auto number = reference.at("light").index(lights.size(), "lights");
+  const Item item = lights.at(number);
   Light light;
   light.name = item.text("name", place.name);
   if (light.name.empty()) light.name = place.name;
@@ -107,6 +143,13 @@ Light NodeLights::punctual(const Item& reference, const Place& place) {
   } catch (const Error& error) {
     document_.warnings.add("{} shapes of lamps that cannot be used: lamps without a shape", error.what());
   }
+  if (light.kind == LightKind::spot) light.picture = picture_of(item, number);
+  if (light.picture && light.outer_cone > k_widest_picture) {
+    document_.warnings.add("{} spots with a picture and a cone of more than 80 degrees: without the picture",
+                           item.path());
+    light.picture.reset();
+  }
+  if (light.picture) set_frame(light, place.world);
   if (has_shape(light.kind)) {
     light.inner_cone = Light().inner_cone, light.outer_cone = Light().outer_cone;
     set_frame(light, place.world);

@@ -28,10 +28,13 @@ class NodeLights {
 
  private:
   std::shared_ptr<const LightProfile> profile_of(const Item& reference);
+  /// The picture that extras.lucerna of a spot names; a warning and null if it cannot be read.
+  std::shared_ptr<const LightPicture> picture_of(const Item& definition, size_t number);
 
   Document& document_;
   Item root_;
   std::map<size_t, std::shared_ptr<const LightProfile>> profiles_;  // by number; null: cannot be read
+  std::map<size_t, std::shared_ptr<const LightPicture>> pictures_;  // likewise
 };
 
 }  // namespace lucerna::scene

@@ -83,6 +83,11 @@ void read_own_shape(const Item& definition, Light& light) {
   light = shaped;
 }
 
+std::optional<Item> own_picture(const Item& definition) {
+  const auto own = own_extras(definition);
+  return own ? own->find("picture") : std::nullopt;
+}
+
 void read_own_emission(const Item& item, Material& material) {
   const auto own = own_extras(item);
   const auto off = own ? own->find("off_emission") : std::nullopt;

@@ -26,6 +26,9 @@ std::optional<glm::dmat4> own_matrix(const Item& node, const char* key);
 /// types and values.
 void read_own_shape(const Item& definition, Light& light);
 
+/// Of a spot in KHR_lights_punctual: {"picture": {"uri": file or data, "name": text}}; nothing without.
+std::optional<Item> own_picture(const Item& definition);
+
 /// Of a material {"off_emission": [r, g, b]}: emission that is switched off. Ignored beside other emission.
 void read_own_emission(const Item& item, Material& material);
 

@@ -120,8 +120,9 @@ class LightWriter {
   void change(const Light& before, const Light& after) {
     Id index = before.id;
     const bool moved = before.position != after.position && after.kind != LightKind::directional;
-    const bool turned =
-        (before.direction != after.direction || before.right != after.right) && has_direction(after);
+    const bool turned = (before.direction != after.direction || before.right != after.right ||
+                         can_roll(before) != can_roll(after)) &&
+                        has_direction(after);
     if ((moved || turned) && !holds_light_only(index)) index = move_to_own_node(index, after);
     const dmat4 parent = tree_.world_of(tree_.parent(index));
     if (turned) turn(node(index), parent, after);
@@ -138,7 +139,8 @@ class LightWriter {
                          before.intensity != after.intensity || before.inner_cone != after.inner_cone ||
                          before.outer_cone != after.outer_cone || before.width != after.width ||
                          before.height != after.height || before.radius != after.radius ||
-                         before.two_sided != after.two_sided || before.visible != after.visible;
+                         before.two_sided != after.two_sided || before.visible != after.visible ||
+                         before.picture != after.picture;
     if (!defined) return;
     own_definition(index);
     EditedJson& slot = definitions()[reference(index).get<size_t>()];
@@ -254,6 +256,7 @@ class LightWriter {
   static void write_shape(EditedJson& n, const Light& light) {
     for (const char* key : {"shape", "radius", "width", "height", "length", "two_sided", "visible"})
       remove_own(n, key);
+    write_picture(n, light);
     if (!has_shape(light.kind)) return;
     set_own(n, "shape", kind_name(light.kind));
     if (light.kind == LightKind::rectangle) {
@@ -265,6 +268,15 @@ class LightWriter {
     }
     if (light.two_sided) set_own(n, "two_sided", true);
     if (!light.visible) set_own(n, "visible", false);
+  }
+
+  /// As own_picture() finds it.
+  static void write_picture(EditedJson& n, const Light& light) {
+    if (!light.picture) return remove_own(n, "picture");
+    const std::vector<uint8_t>& file = light.picture->file;
+    const std::string uri = "data:application/octet-stream;base64," +
+                            base64({reinterpret_cast<const char*>(file.data()), file.size()});
+    set_own(n, "picture", {{"uri", uri}, {"name", light.picture->name}});
   }
 
   static EditedJson definition(const Light& light, EditedJson from) {

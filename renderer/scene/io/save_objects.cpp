@@ -168,7 +168,7 @@ class ObjectWriter {
     if (extent_of(dmat4(difference)) > 1e-5 * extent_of(from))  // a flattened mesh is in its place
       remove_own(node(nodes_[i]), "to_world");
     else
-      keep_digits(nodes_[i], after);
+      keep_digits(i);
   }
 
   void place_skinned(Id index, const dmat4& by, const Instance& after) {
@@ -203,12 +203,16 @@ class ObjectWriter {
     tree_.set_local(nodes_[i], glm::transpose(turn));
   }
 
+  const Mesh& mesh_of(size_t i) const { return loaded_.meshes[loaded_.instances[i].mesh]; }
+
   /// Notes the instance's matrix if reading the nodes gives another rounding.
-  void keep_digits(Id index, const Instance& instance) {
-    if (mat4(moved_by(-loaded_.origin) * tree_.world_of(index)) == instance.to_world)
+  void keep_digits(size_t i) {
+    const mat4& to_world = edited_.instances[i].to_world;
+    const Id index = nodes_[i];
+    if (mat4(moved_by(-loaded_.origin) * tree_.world_of(index) * moved_by(mesh_of(i).shift)) == to_world)
       remove_own(node(index), "to_world");
     else
-      set_own(node(index), "to_world", matrix_json(dmat4(instance.to_world)));
+      set_own(node(index), "to_world", matrix_json(dmat4(to_world)));
   }
 
   /// Makes nodes of a node's EXT_mesh_gpu_instancing, all where they are in the edited scene.
@@ -222,6 +226,11 @@ class ObjectWriter {
           "object '" + name + "'",
           fmt::format("it is one of {} in a node: to save its place, all must become nodes, at most {}",
                       all.size(), k_most_copies));
+    for (const size_t i : all)
+      if (mesh_of(i).is_baked)
+        throw Error("object '" + loaded_.instances[i].name + "'",
+                    "it is placed by joints or by a matrix without an inverse, with EXT_mesh_gpu_instancing: "
+                    "the places of objects of its node cannot be saved");
     const EditedJson made = mesh_node(node(from), "");
     take_mesh(from);
     remove_extension(node(from), k_instancing);
@@ -230,8 +239,10 @@ class ObjectWriter {
       EditedJson own = made;
       own["name"] = loaded_.instances[i].name;
       nodes_[i] = tree_.add_first_child(from, std::move(own));
-      set_world(i, moved_by(loaded_.origin) * dmat4(edited_.instances[i].to_world));
-      keep_digits(nodes_[i], edited_.instances[i]);
+      // The file's vertices are not those of the scene if these are far from their origin.
+      set_world(
+          i, moved_by(loaded_.origin) * dmat4(edited_.instances[i].to_world) * moved_by(-mesh_of(i).shift));
+      keep_digits(i);
     }
     split_.insert(from);
   }

@@ -106,7 +106,7 @@ bool PhotonSolver::may_hide(const Picture& picture) const {
   for (size_t i = 0; i < picture.flat.entries.size(); ++i) {
     const uint32_t kind = picture.flat.entries[i].kind;
     const bool has_no_size = kind == k_light_point || kind == k_light_spot || kind == k_light_directional ||
-                             kind == k_light_profile;
+                             kind == k_light_profile || kind == k_light_projector;
     if (has_no_size && powers[i] > 0) return true;
   }
   return false;

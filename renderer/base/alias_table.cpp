@@ -1,10 +1,10 @@
-#include "upload/alias_table.h"
+#include "base/alias_table.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
-namespace lucerna::upload {
+namespace lucerna {
 namespace {
 
 /// The nearest probability that coin_below() of shaders/lib/sampler.glsl represents exactly; above 0 for one
@@ -59,4 +59,4 @@ std::vector<vec4> build_alias_table(std::span<const double> weights) {
   return table;
 }
 
-}  // namespace lucerna::upload
+}  // namespace lucerna

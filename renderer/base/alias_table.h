@@ -5,7 +5,7 @@
 
 #include "base/math.h"
 
-namespace lucerna::upload {
+namespace lucerna {
 
 /// One texel an entry: (threshold, bits of the alias index, pmf of this entry, pmf of the alias). Entry i is
 /// chosen uniformly, then i itself when a uniform number is below the threshold, else its alias.
@@ -14,4 +14,4 @@ namespace lucerna::upload {
 /// empty table.
 std::vector<vec4> build_alias_table(std::span<const double> weights);
 
-}  // namespace lucerna::upload
+}  // namespace lucerna
