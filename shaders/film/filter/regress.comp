@@ -61,8 +61,6 @@ FilterLight guide_at(int pixel, FilterLight light) {
 #endif
 }
 
-const int k_reach = 3;
-
 void main() {
   uint pixel = push.first + global_index();
   if (pixel >= push.width * push.height) return;
@@ -75,8 +73,9 @@ void main() {
   vec2 most = vec2(0.0);  // weight of a neighbour, even and odd
   float least_alike = is_smooth() ? log2(k_filter_least_alike) : -1e30;
   float z = max(window.surface.depth, 1e-20);
-  for (int y = -k_reach; y <= k_reach; ++y)
-    for (int x = -k_reach; x <= k_reach; ++x) {
+  for (int y = -k_window_reach; y <= k_window_reach; ++y)
+    for (int x = -k_window_reach; x <= k_window_reach; ++x) {
+      if (!window_near(x, y) || (x == 0 && y == 0)) continue;
       ivec2 step = int(push.stride) * ivec2(x, y), at = window.xy + step;
       bool inside = window_has(at);
       int there = inside ? at.y * int(push.width) + at.x : int(pixel);
@@ -88,10 +87,9 @@ void main() {
       float v = square(g.deviation) + square(g.in_both);
       float by_odd = inside ? exp2(alike - distance_of(guide.odd, g.odd, variance, v)) : 0.0;
       float by_even = inside ? exp2(alike - distance_of(guide.even, g.even, variance, v)) : 0.0;
-      vec4 a = vec4(1.0, vec2(x, y) / float(k_reach), luminance(window.surface.albedo) / luminance(s.albedo) - 1.0);
+      vec4 a = vec4(1.0, vec2(x, y) / float(k_window_reach), luminance(window.surface.albedo) / luminance(s.albedo) - 1.0);
       vec4 b = vec4(s.normal - window.surface.normal, (s.depth - window.surface.depth) / (0.1 * z));
       if (s.covered == 0.0 || window.surface.covered == 0.0) b = vec4(0.0);
-      if (x == 0 && y == 0) continue;
       add(even, by_odd, a, b, light.even);
       add(odd, by_even, a, b, light.odd);
       most = max(most, vec2(by_odd, by_even));

@@ -7,6 +7,10 @@ struct Window {
   vec2 slope;  // of depth [m a pixel]
 };
 
+// A window is a disk: its pixels are those of a square of this half side that are near enough.
+const int k_window_reach = 3;
+bool window_near(int x, int y) { return x * x + y * y <= 10; }
+
 bool window_has(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(push.width, push.height))); }
 
 float window_depth(ivec2 at) {
