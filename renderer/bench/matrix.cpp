@@ -285,8 +285,8 @@ Matrix parse_matrix(const std::string& text, const std::string& where, const fs:
   for (const Node& node : top.at("settings").list()) m.settings.push_back(read_setting(node, m));
   for (const Setting& s : m.settings)
     if (!s.beside.empty() && (s.beside == s.name || !find_setting(m, s.beside)))
-      throw_error(top.where() + "settings",
-                  "'{}' is compared with '{}', but no other setting has that name", s.name, s.beside);
+      throw_error(top.where() + "settings", "'{}' is compared with '{}', but no other setting has that name",
+                  s.name, s.beside);
   for (const Node& node : top.at("scenes").list())
     m.scenes.push_back(read_scene(node, m, folder, budgets, reference_samples));
   return m;

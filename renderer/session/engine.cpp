@@ -40,10 +40,11 @@ void claim(std::array<const solvers::SolverInfo*, paths::k_component_count>& by,
   for (size_t c = 0; c < by.size(); ++c) {
     if ((bits >> c & 1u) == 0) continue;
     if (by[c])
-      throw_error(std::string("components.") + paths::k_component_names[c],
-                  "light of the words {} would be counted twice: by '{}', whose lookups for another component "
-                  "include it, and by '{}'; choose one of them for both components",
-                  paths::k_component_expressions[c], by[c]->name, info.name);
+      throw_error(
+          std::string("components.") + paths::k_component_names[c],
+          "light of the words {} would be counted twice: by '{}', whose lookups for another component "
+          "include it, and by '{}'; choose one of them for both components",
+          paths::k_component_expressions[c], by[c]->name, info.name);
     by[c] = &info;
   }
 }

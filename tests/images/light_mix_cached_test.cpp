@@ -149,7 +149,7 @@ TEST_CASE("reported record errors are those of the mixed light") {
   CHECK(brighter.relative_lookup_noise() == Approx(as_it_is.relative_lookup_noise()).epsilon(1e-3));
   const std::vector<film::TileError> after = b.r.tile_errors();
   for (size_t t = 0; t < before.size(); ++t)
-    CHECK(after[t].records.noise == Approx(4 * before[t].records.noise).epsilon(1e-3));
+    CHECK(after[t].lookups.noise == Approx(4 * before[t].lookups.noise).epsilon(1e-3));
   // Without light there is no error.
   b.mix("sky: mute; sun: mute; lamp: mute; spot: mute; block: mute");
   CHECK(b.r.image_error().lookup_noise_rms == 0);

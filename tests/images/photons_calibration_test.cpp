@@ -50,7 +50,7 @@ void count(Figures& f, const Shot& shot, const Shot& reference) {
     const double off = std::abs(a.luminance - r.luminance);
     ++f.tested;
     f.by_sum += off <= a.half_width_90();
-    a.records.interpolation = 0;
+    a.lookups.interpolation = 0;
     f.by_noise += off <= a.half_width_90();
   }
 }

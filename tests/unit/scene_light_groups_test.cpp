@@ -192,7 +192,8 @@ TEST_CASE("extras of a file's nodes, lamps and materials are read and described"
   CHECK_THAT(scene::describe_text(scene), Contains("light groups 3\n  evening: 1 lamp\n"));
 
   asset.doc["nodes"][1]["extras"]["light_group"] = json::array();
-  CHECK_THROWS_WITH(asset.load(), Contains("nodes[1].extras.light_group") && Contains("name of a light group"));
+  CHECK_THROWS_WITH(asset.load(),
+                    Contains("nodes[1].extras.light_group") && Contains("name of a light group"));
 }
 
 }  // namespace scene_light_groups_tests
