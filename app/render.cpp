@@ -396,7 +396,8 @@ void filter(session::Renderer& r, const std::optional<double>& target) {
   if (r.samples() < 2)
     log::warning("--filter: pixels with fewer than two samples stay unfiltered: their noise is unknown");
   const session::Filtered& f = r.filtered() ? *r.filtered() : r.filter();
-  log::info("filtered in {:.2f} s; estimated error {:.2g} %", 1e-3 * f.ms, 100 * f.error.relative());
+  log::info("filtered in {:.2f} s; estimated error {:.2g} %", 1e-3 * f.ms(), 100 * f.error.relative());
+  for (const auto& [kernel, ms] : f.kernel_ms) log::debug("filter: {}: {:.1f} ms", kernel, ms);
   if (!target) return;
   const double error = filtered_error(r, f);
   if (error <= *target)

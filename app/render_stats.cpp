@@ -73,7 +73,7 @@ nlohmann::ordered_json make_filtered(session::Renderer& r, const session::Filter
   j["filter"] = {{"rms", f.rms}, {"of_mean", f.relative()}};
   j["filter"]["tile_median"] = f.tile_median;
   j["filter"]["tile_worst_decile"] = f.tile_worst_tenth;
-  j["ms"] = filtered.ms;
+  j["ms"] = filtered.ms();
   return j;
 }
 

@@ -1,10 +1,15 @@
 #include "session/filtered.h"
 
-#include "base/log.h"
 #include "film/io/planes.h"
 #include "paths/automaton.h"
 
 namespace lucerna::session {
+
+double Filtered::ms() const {
+  double sum = 0;
+  for (const auto& [kernel, ms] : kernel_ms) sum += ms;
+  return sum;
+}
 
 void PictureFilter::begin(const FilterJob& job) {
   stop();
@@ -15,7 +20,6 @@ void PictureFilter::stop() {
   if (filter_) filter_->release();
   job_.reset();
   result_ = {};
-  steps_ms_.clear();
   begun_ = filtered_ = false;
 }
 
@@ -30,7 +34,7 @@ void PictureFilter::step(Engine& engine, const PictureView& view, PixelSight& si
     } else if (!begun_ && sight.wanted(engine, view)) {
       sight.see(engine, view, cancel);
     } else if (!begun_) {
-      result_ = {std::make_unique<film::Film>(device_, film.width(), film.height()), {}, 0, job_->paths};
+      result_ = {std::make_unique<film::Film>(device_, film.width(), film.height()), {}, job_->paths};
       filter_->begin(film, *result_.film, sight.surfaces(engine, view), job_->looked_up);
       begun_ = true;
     } else if (!filtered_) {
@@ -38,15 +42,10 @@ void PictureFilter::step(Engine& engine, const PictureView& view, PixelSight& si
         stream.run();
         stream.take_times();
         filtered_ = !filter_->step(stream);
-        for (const gpu::StageTime& t : stream.take_times()) {
-          result_.ms += t.milliseconds;
-          steps_ms_[t.stage] += t.milliseconds;
-        }
+        for (const gpu::StageTime& t : stream.take_times()) result_.kernel_ms[t.stage] += t.milliseconds;
       });
     } else {
       filter_->release();
-      for (const auto& [step, ms] : steps_ms_) log::debug("filter: {}: {:.1f} ms", step, ms);
-      steps_ms_.clear();
       result_.error =
           film::filter_error(film.read(), result_.film->read(), job_->tile, double{job_->luminance_floor});
       job_.reset();

@@ -17,8 +17,9 @@ namespace lucerna::session {
 struct Filtered {
   std::unique_ptr<film::Film> film;
   film::FilterError error;
-  double ms = 0;       ///< device time
-  uint64_t paths = 0;  ///< of the filtered picture
+  uint64_t paths = 0;                            ///< of the filtered picture
+  std::map<std::string, double> kernel_ms = {};  ///< device time
+  double ms() const;                             ///< of all kernels
 };
 
 /// Input of the filter, and how its error is estimated.
@@ -49,7 +50,6 @@ class PictureFilter {
   gpu::ShaderCompiler& compiler_;
   std::optional<film::Filter> filter_;  ///< kernels are compiled at the first use
   std::optional<FilterJob> job_;
-  std::map<std::string, double> steps_ms_;  ///< device time by kernel
   bool begun_ = false,
        filtered_ = false;  ///< progress: visible surfaces known; filtered, error not estimated yet
   Filtered result_;
