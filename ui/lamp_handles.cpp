@@ -92,9 +92,17 @@ bool project(const scene::Camera& camera, const Area& shown, const vec3& point, 
   return place.has_value();
 }
 
-session::PickRay ray_through(const MarkedScene& marked, const Area& shown, const ImVec2& at) {
-  return session::pick_ray(marked.camera.view->camera, (at.x - shown.lo.x) / std::max(1.0f, shown.width()),
-                           (at.y - shown.lo.y) / std::max(1.0f, shown.height()), marked.camera.aspect);
+session::PickRay ray_through(const commands::Navigation& camera, const Area& shown, const ImVec2& at) {
+  return session::pick_ray(camera.view->camera, (at.x - shown.lo.x) / std::max(1.0f, shown.width()),
+                           (at.y - shown.lo.y) / std::max(1.0f, shown.height()), camera.aspect);
+}
+
+std::optional<session::Picked> surface_at(commands::Navigation& camera, const Area& shown, const ImVec2& at,
+                                          const std::function<bool(const session::Picked&)>& wanted) {
+  const session::Probe* rays = camera.probe();
+  const session::PickRay ray = ray_through(camera, shown, at);
+  if (!rays || ray.direction == vec3(0)) return std::nullopt;
+  return rays->nearest(ray.origin, ray.direction, k_infinity, wanted);
 }
 
 DragSnap drag_snap() {
@@ -209,7 +217,7 @@ void drag_lamp(Actions& actions, const MarkedScene& marked, const LampHandle& ha
   if (!marked.open.scene || !marked.camera.view || handle.light >= marked.open.lights().size()) return;
   const ImGuiIO& io = ImGui::GetIO();
   if (handle.part == LampHandle::Part::size) {
-    const session::PickRay ray = ray_through(marked, shown, io.MousePos);
+    const session::PickRay ray = ray_through(marked.camera, shown, io.MousePos);
     const auto sizes = size_by_ray(marked.open.light(handle.light),
                                    commands::eye_of(marked.camera.view->camera), ray.origin, ray.direction);
     if (sizes.size() == 1) actions.act("light.set", handle.light + 1, named(sizes[0].first, sizes[0].second));
@@ -221,7 +229,7 @@ void drag_lamp(Actions& actions, const MarkedScene& marked, const LampHandle& ha
   if (handle.part == LampHandle::Part::aim) {
     const session::Probe* rays = marked.camera.probe();
     if (!rays) return;
-    const session::PickRay ray = ray_through(marked, shown, io.MousePos);
+    const session::PickRay ray = ray_through(marked.camera, shown, io.MousePos);
     if (ray.direction == vec3(0)) return;
     const auto hit = rays->nearest(ray.origin, ray.direction);
     const vec3 from = marked.open.light(handle.light).position;
@@ -233,10 +241,7 @@ void drag_lamp(Actions& actions, const MarkedScene& marked, const LampHandle& ha
     return;
   }
   if (drag_snap() == DragSnap::surface) {
-    const session::Probe* rays = marked.camera.probe();
-    const session::PickRay ray = ray_through(marked, shown, io.MousePos);
-    if (!rays || ray.direction == vec3(0)) return;
-    if (const auto hit = rays->nearest(ray.origin, ray.direction))
+    if (const auto hit = surface_at(marked.camera, shown, io.MousePos))
       actions.act(
           "light.set", handle.light + 1,
           named("position", lamp_on_surface(marked.open.light(handle.light), {hit->position, hit->normal},

@@ -1,5 +1,6 @@
 #pragma once
 // Marks of lights in the picture: for selecting them, dragging lamps, and aiming spots.
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -35,7 +36,11 @@ struct LampHandle {
 bool project(const scene::Camera& camera, const Area& shown, const vec3& point, ImVec2& at);
 
 /// The ray through a point of the screen, in the view; with direction 0 if it passes no section plane.
-session::PickRay ray_through(const MarkedScene& marked, const Area& shown, const ImVec2& at);
+session::PickRay ray_through(const commands::Navigation& camera, const Area& shown, const ImVec2& at);
+/// The nearest surface on that ray; passes through those for which `wanted` is false. Nothing while the rays
+/// are not ready (Navigation::probe()).
+std::optional<session::Picked> surface_at(commands::Navigation& camera, const Area& shown, const ImVec2& at,
+                                          const std::function<bool(const session::Picked&)>& wanted = {});
 
 /// What a drag snaps to: steps with Ctrl, surfaces under the pointer with Ctrl and Shift.
 enum class DragSnap { none, steps, surface };

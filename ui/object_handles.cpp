@@ -222,13 +222,11 @@ void draw_rings(const Pen& pen, const Gizmo& g, const std::optional<GizmoPart>& 
       }
 }
 
-/// The dragged object on the surface that a ray meets behind it; where it is now if there is none.
-scene::ObjectPlace snapped_place(const ObjectDrag& drag, const MarkedScene& marked,
-                                 const session::PickRay& ray) {
-  const session::Probe* rays = marked.camera.probe();
-  if (!rays || ray.direction == vec3(0)) return drag.place;
-  const auto hit = rays->nearest(ray.origin, ray.direction, k_infinity,
-                                 [&](const session::Picked& p) { return p.instance != drag.object; });
+/// The dragged object on the surface behind it at a point of the screen; where it is now if there is none.
+scene::ObjectPlace snapped_place(const ObjectDrag& drag, const MarkedScene& marked, const Area& shown,
+                                 const ImVec2& at) {
+  const auto hit = surface_at(marked.camera, shown, at,
+                              [&](const session::Picked& p) { return p.instance != drag.object; });
   if (!hit) return drag.place;
   const scene::Instance& instance = marked.open.loaded->instances[drag.object];
   return put_on_surface(marked.open.loaded->meshes[instance.mesh], marked.open.object_box(drag.object),
@@ -313,7 +311,7 @@ ObjectDrag begin_object_drag(const MarkedScene& marked, GizmoMode mode, GizmoPar
   drag.object = marked.camera.selection.index;
   drag.part = part;
   drag.gizmo = gizmo_of(marked, mode, shown, drag.object, marked.open.object_matrix(drag.object));
-  drag.from = ray_through(marked, shown, at);
+  drag.from = ray_through(marked.camera, shown, at);
   drag.start = drag.place = drag.sent = marked.open.object(drag.object);
   drag.moved_at = now;
   return drag;
@@ -321,11 +319,11 @@ ObjectDrag begin_object_drag(const MarkedScene& marked, GizmoMode mode, GizmoPar
 
 void follow_pointer(ObjectDrag& drag, const MarkedScene& marked, const Area& shown, const ImVec2& at,
                     DragSnap snap, double now) {
-  const session::PickRay to = ray_through(marked, shown, at);
   const bool on_surface = snap == DragSnap::surface && drag.gizmo.mode == GizmoMode::move;
   const scene::ObjectPlace place =
-      on_surface ? snapped_place(drag, marked, to)
-                 : dragged_place(drag.gizmo, drag.part, drag.start, drag.from, to, snap != DragSnap::none);
+      on_surface ? snapped_place(drag, marked, shown, at)
+                 : dragged_place(drag.gizmo, drag.part, drag.start, drag.from,
+                                 ray_through(marked.camera, shown, at), snap != DragSnap::none);
   if (place == drag.place) return;
   try {
     marked.open.object_matrix(drag.object, place);

@@ -107,16 +107,12 @@ bool dragging() {
 
 /// The point of the scene under the pointer, if any.
 std::optional<vec3> under_pointer(commands::Navigation& camera, const Area& shown) {
-  const session::Probe* rays = camera.probe();
   const ImVec2 at = ImGui::GetIO().MousePos;
   const float x = (at.x - shown.lo.x) / std::max(1.0f, shown.width());
   const float y = (at.y - shown.lo.y) / std::max(1.0f, shown.height());
-  if (!rays || !camera.view || x < 0 || x > 1 || y < 0 || y > 1) return std::nullopt;
-  const session::PickRay ray = session::pick_ray(camera.view->camera, x, y, camera.aspect);
-  if (ray.direction == vec3(0)) return std::nullopt;
-  const auto hit = rays->nearest(ray.origin, ray.direction);
-  if (!hit) return std::nullopt;
-  return hit->position;
+  if (!camera.view || x < 0 || x > 1 || y < 0 || y > 1) return std::nullopt;
+  const auto hit = surface_at(camera, shown, at);
+  return hit ? std::optional(hit->position) : std::nullopt;
 }
 
 /// The sun that a drag rotates if there is no environment image: the first one that is on.
