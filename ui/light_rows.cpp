@@ -18,6 +18,7 @@
 #include "scene/light_groups.h"
 #include "scene/light_units.h"
 #include "scene/range.h"
+#include "state.h"
 #include "sun_rows.h"
 
 namespace lucerna::ui {
@@ -77,9 +78,6 @@ constexpr std::array<const char*, scene::k_light_units> k_unit_helps{
     "Luminance of its surface.",
 };
 
-constexpr std::array<const char*, scene::k_light_units> k_unit_names{"intensity", "luminous flux",
-                                                                     "illuminance", "power", "luminance"};
-
 /// Chooses the unit among those of a light.
 void unit_choice(Actions& actions, const std::vector<LightUnit>& units, LightUnit shown,
                  bool per_area = false) {
@@ -89,7 +87,7 @@ void unit_choice(Actions& actions, const std::vector<LightUnit>& units, LightUni
     if (unit == shown) chosen = int(names.size());
     names.push_back(per_area && unit == LightUnit::watt
                         ? "W/m\xC2\xB2, irradiance"
-                        : fmt::format("{}, {}", info_of(unit).symbol, k_unit_names[size_t(unit)]));
+                        : fmt::format("{}, {}", info_of(unit).symbol, uncapitalised(info_of(unit).quantity)));
     helps.emplace_back(k_unit_helps[size_t(unit)]);
   }
   if (choice("##unit", "Unit", names, chosen, 0, helps))
@@ -97,12 +95,16 @@ void unit_choice(Actions& actions, const std::vector<LightUnit>& units, LightUni
   tooltip("Unit in which the strengths of lights are shown. The light stays as it is.");
 }
 
-/// The unit of a surface, for the one that is chosen.
+/// The units of a material's emission.
+std::vector<LightUnit> surface_units(const commands::OpenScene& open, uint32_t index) {
+  if (open.material(index).emission_texture || !(open.emitting_area(index) > 0)) return {LightUnit::nit};
+  return {LightUnit::nit, LightUnit::lumen, LightUnit::watt};
+}
+/// The chosen unit if a material's emission has it, or else nits.
 LightUnit surface_unit(const commands::OpenScene& open, uint32_t index) {
-  const LightUnit unit = open.light_unit.unit;
-  const bool flux = unit == LightUnit::lumen || unit == LightUnit::watt;
-  return flux && !open.material(index).emission_texture && open.emitting_area(index) > 0 ? unit
-                                                                                         : LightUnit::nit;
+  const std::vector<LightUnit> units = surface_units(open, index);
+  const auto at = std::find(units.begin(), units.end(), open.light_unit.unit);
+  return at == units.end() ? LightUnit::nit : *at;
 }
 
 }  // namespace
@@ -123,15 +125,21 @@ void emission_slider(Controls& controls, uint32_t index) {
 }
 
 void emission_unit(Controls& controls, uint32_t index) {
-  std::vector<LightUnit> units{LightUnit::nit};
-  if (!controls.open.material(index).emission_texture && controls.open.emitting_area(index) > 0)
-    units.insert(units.end(), {LightUnit::lumen, LightUnit::watt});
-  unit_choice(controls.actions, units, surface_unit(controls.open, index));
+  unit_choice(controls.actions, surface_units(controls.open, index), surface_unit(controls.open, index));
 }
 
 namespace {
 
 constexpr const char* k_menu = "##menu";  ///< of a row's right button
+
+/// Roll of a selected lamp; `level`: what is level at 0.
+void roll_row(Actions& actions, size_t i, const scene::Light& light, const char* level) {
+  float roll = scene::roll_of(light.direction, light.right);
+  if (slider("##roll", "Roll", roll,
+             {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0", .typed_lo = -360, .typed_hi = 360}))
+    actions.act("light.set", i + 1, named("roll", roll));
+  tooltip(fmt::format("Angle about the direction of its light; at 0 {} is level.", level));
+}
 
 /// Sizes of a selected lamp with a shape. Its power stays.
 void shape_rows(Actions& actions, size_t i, const scene::Light& light) {
@@ -165,13 +173,7 @@ void shape_rows(Actions& actions, size_t i, const scene::Light& light) {
       actions.act("light.set", i + 1, named("right", axis));
     tooltip("Direction of the tube: x, y (up), z; any length above 0.");
   }
-  if (light.kind == LightKind::rectangle) {
-    float roll = scene::roll_of(light.direction, light.right);
-    if (slider("##roll", "Roll", roll,
-               {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0", .typed_lo = -360, .typed_hi = 360}))
-      actions.act("light.set", i + 1, named("roll", roll));
-    tooltip("Angle about the direction of its light; at 0 the width is level.");
-  }
+  if (light.kind == LightKind::rectangle) roll_row(actions, i, light, "the width");
   const float half = 0.5f * (ImGui::CalcItemWidth() - px(4));
   if (button("##visible", "Seen by the camera", light.visible, half))
     actions.act("light.set", i + 1, named("visible", !light.visible));
@@ -207,11 +209,7 @@ void profile_rows(Actions& actions, size_t i, const scene::Light& light) {
   }
   ImGui::Dummy({size, size});
   tooltip("Intensity by direction, down the lamp's axis: across its X axis (bright line) and its Y axis.");
-  float roll = scene::roll_of(light.direction, light.right);
-  if (slider("##roll", "Roll", roll,
-             {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0", .typed_lo = -360, .typed_hi = 360}))
-    actions.act("light.set", i + 1, named("roll", roll));
-  tooltip("Angle about the direction of its light; at 0 its X axis is level.");
+  roll_row(actions, i, light, "its X axis");
 }
 
 /// Strength of a light, in the unit that is chosen if it has that one.
@@ -264,11 +262,7 @@ void picture_rows(Actions& actions, size_t i, const scene::Light& light) {
   value_row("Picture",
             fmt::format("{}, {} \xC3\x97 {}", p.name.empty() ? "unnamed" : p.name, p.width, p.height),
             "Image that the spot projects (light.set picture=FILE). Its corners are on the cone.");
-  float roll = scene::roll_of(light.direction, light.right);
-  if (slider("##roll", "Roll", roll,
-             {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0", .typed_lo = -360, .typed_hi = 360}))
-    actions.act("light.set", i + 1, named("roll", roll));
-  tooltip("Angle about the direction of its light; at 0 the picture is level.");
+  roll_row(actions, i, light, "the picture");
 }
 
 /// Properties of a selected lamp besides its strength.
