@@ -40,6 +40,19 @@ void set_intensity(Light& light, const Item& item, double strength, Document& do
     document.warnings.add("{} lights with a negative or endless intensity: clamped", item.path());
 }
 
+/// The bytes that a URI has or whose file it names; `name` becomes that of the file.
+std::vector<uint8_t> read_uri(const Document& document, const Item& uri, std::string& name) {
+  if (is_data_uri(uri.text())) return decode_data_uri(uri);
+  const std::filesystem::path file = resolve_uri(document, uri);
+  name = file.filename().string();
+  return read_file(document, file, uri.where());
+}
+
+/// Where errors of such a file are located.
+std::string where_of(const Item& item, const std::string& name) {
+  return name.empty() ? item.where() : fmt::format("{} ({})", item.where(), name);
+}
+
 }  // namespace
 
 // Each is read once.
@@ -52,13 +65,7 @@ std::shared_ptr<const LightProfile> NodeLights::profile_of(const Item& reference
   std::vector<uint8_t> bytes;
   std::string name = item.text("name", "");
   if (const auto uri = item.find("uri")) {
-    if (is_data_uri(uri->text())) {
-      bytes = decode_data_uri(*uri);
-    } else {
-      const std::filesystem::path file = resolve_uri(document_, *uri);
-      bytes = read_file(document_, file, uri->where());
-      name = file.filename().string();
-    }
+    bytes = read_uri(document_, *uri, name);
   } else {
     const auto view = item.at("bufferView").index(document_.model.bufferViews.size(), "bufferViews");
     const tinygltf::BufferView& v = document_.model.bufferViews[view];
@@ -67,7 +74,7 @@ std::shared_ptr<const LightProfile> NodeLights::profile_of(const Item& reference
                  data.begin() + std::ptrdiff_t(v.byteOffset + v.byteLength));
   }
   place->second = light_profile_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name,
-                                   name.empty() ? item.where() : fmt::format("{} ({})", item.where(), name));
+                                   where_of(item, name));
   return place->second;
 }
 
@@ -78,20 +85,10 @@ std::shared_ptr<const LightPicture> NodeLights::picture_of(const Item& definitio
   try {
     const std::optional<Item> item = own_picture(definition);
     if (!item) return nullptr;
-    const Item uri = item->at("uri");
     std::string name = item->text("name", "");
-    std::vector<uint8_t> bytes;
-    if (is_data_uri(uri.text())) {
-      bytes = decode_data_uri(uri);
-    } else {
-      const std::filesystem::path file = resolve_uri(document_, uri);
-      bytes = read_file(document_, file, uri.where());
-      name = file.filename().string();
-    }
+    std::vector<uint8_t> bytes = read_uri(document_, item->at("uri"), name);
     size_t mended = 0;
-    place->second = light_picture_of(
-        std::move(bytes), name, name.empty() ? item->where() : fmt::format("{} ({})", item->where(), name),
-        document_.budget, mended);
+    place->second = light_picture_of(std::move(bytes), name, where_of(*item, name), document_.budget, mended);
     if (mended > 0)
       document_.warnings.add("{} pictures of spots with texels that are negative or not finite: mended",
                              item->path());
