@@ -75,8 +75,8 @@ struct TileError {
   double relative = 0;
   double variance = 0, fourth = 0;  ///< sums of v and v^2, from which the two above come
   double difference = 0;            ///< half of the difference of `luminance` in the film's two halves
-  LookupsError
-      lookups;  ///< errors of the mean; pixels that read the same stored light have correlated errors
+  /// Errors of the mean. Pixels that read the same stored light have correlated errors.
+  LookupsError lookups;
   /// Root mean squares over the pixels of the lookup errors, relative as in `relative`.
   double relative_lookup_noise = 0, relative_interpolation = 0;
   /// Sum of the three relative ones: the estimated error of the tile.

@@ -54,8 +54,8 @@ float filter_slope(float before, float here, float after) {
   return abs(a) < abs(b) ? a : b;
 }
 
-// Binary logarithm of the likeness, 1 for equal surfaces, of the surface of a pixel `offset` away. `slope`: slope of depth per pixel
-// at the first pixel.
+// Likeness of the surface of a pixel `offset` away, as its binary logarithm: 0 for equal surfaces, else below. `slope`: slope of
+// depth per pixel at the first pixel.
 float filter_log_alike(FilterSurface a, FilterSurface b, vec2 offset, vec2 slope) {
   float z = max(a.depth, 1e-20);
   float reach = 0.01 * z + 0.5 * (abs(slope.x * offset.x) + abs(slope.y * offset.y));
