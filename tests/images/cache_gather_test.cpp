@@ -64,18 +64,26 @@ struct Seeds {
   std::vector<film::Image> cached, traced;
   irradiance_cache::RawRecords records;
 };
-Seeds seeds_of(const scene::Scene& room, const Settings& cache, const char* samples_of_paths) {
-  std::vector<film::Image> cached, traced;
-  test::CacheRenderer by_cache(room, k_size, false), by_paths(room, k_size, false);
+std::vector<film::Image> traced_of(const scene::Scene& room, const char* samples) {
+  std::vector<film::Image> all;
+  test::CacheRenderer by_paths(room, k_size, false);
+  for (int seed = 101; seed <= 108; ++seed) {
+    by_paths.set({{"seed", std::to_string(seed)}, {"samples", samples}});
+    all.push_back(by_paths.finish());
+  }
+  return all;
+}
+Seeds seeds_of(const scene::Scene& room, const Settings& cache, std::vector<film::Image> traced) {
+  Seeds seeds{.cached = {}, .traced = std::move(traced), .records = {}};
+  test::CacheRenderer by_cache(room, k_size, false);
   by_cache.set(test::k_cached);
   by_cache.set(cache);
   for (int seed = 1; seed <= 8; ++seed) {
     by_cache.set({{"seed", std::to_string(seed)}, {"samples", "16"}});
-    by_paths.set({{"seed", std::to_string(100 + seed)}, {"samples", samples_of_paths}});
-    cached.push_back(by_cache.finish());
-    traced.push_back(by_paths.finish());
+    seeds.cached.push_back(by_cache.finish());
   }
-  return {std::move(cached), std::move(traced), by_cache.records()};
+  seeds.records = by_cache.records();
+  return seeds;
 }
 
 /// Checks that a component's means agree within 4.2 standard errors and `bias` of the component, and that the
@@ -96,7 +104,8 @@ void check_alike(const Seeds& seeds, int component, double bias, double error) {
 TEST_CASE("a picture gathered by paths alone agrees with path tracing and has less noise") {
   for (const bool environment : {false, true}) {
     INFO((environment ? "with a sky" : "with a lamp alone"));
-    const Seeds seeds = seeds_of(test::block_room(environment), k_all_gathered, "64");
+    const scene::Scene room = test::block_room(environment);
+    const Seeds seeds = seeds_of(room, k_all_gathered, traced_of(room, "64"));
     INFO(crowded(seeds.records) << " of " << seeds.records.size() << " records crowd");
     CHECK(crowded(seeds.records) == seeds.records.size());
     for (const int c : {1, 2}) check_alike(seeds, c, 0, 0.03);
@@ -108,9 +117,10 @@ TEST_CASE("a picture gathered by paths alone agrees with path tracing and has le
 TEST_CASE("paths that gather and then read records include environment light") {
   // Paths gather along edges, which is half of the picture; at the points that their rays hit records are
   // read.
+  const scene::Scene room = test::block_room(true);
   const Seeds seeds =
-      seeds_of(test::block_room(true),
-               {{"cache.min_radius", "2"}, {"cache.rays", "256"}, {"cache.error", "0.15"}}, "32");
+      seeds_of(room, {{"cache.min_radius", "2"}, {"cache.rays", "256"}, {"cache.error", "0.15"}},
+               traced_of(room, "32"));
   const size_t count = seeds.records.size();
   INFO(crowded(seeds.records) << " of " << count << " records crowd");
   CHECK(crowded(seeds.records) > count / 4);
@@ -125,10 +135,11 @@ TEST_CASE("a sample that gathers with several paths gives the same picture with 
   scene::Scene room = test::block_room(true);
   room.materials[0].specular = 1, room.materials[0].roughness = 0.4f;
   room.materials[1].alpha_mode = scene::AlphaMode::blend, room.materials[1].base_color.w = 0.6f;
+  const std::vector<film::Image> traced = traced_of(room, "64");
   const auto with = [&](const char* branches) {
     Settings settings = k_all_gathered;
     settings["cache.branches"] = branches;
-    return seeds_of(room, settings, "64");
+    return seeds_of(room, settings, traced);
   };
   const Seeds one = with("1"), many = with("8");
   for (const int c : {0, 1, 2}) check_alike(one, c, 0, 0.03);
