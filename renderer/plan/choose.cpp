@@ -18,6 +18,8 @@ using solvers::Findings, solvers::Prospect, solvers::SolverInfo;
 constexpr size_t k_count = paths::k_component_count;
 constexpr double k_least_sample = 0.1;  // of the cost of a path-traced sample
 constexpr double k_most_samples = 1e7;
+// Part of the time for preparation that a prediction may take: predictions are right within 1.5.
+constexpr double k_safe = 1 / 1.5;
 constexpr double k_never = std::numeric_limits<double>::max();
 
 std::string key_of(size_t component) {
@@ -55,6 +57,8 @@ std::vector<Slot> slots_of(uint32_t undecided) {
 struct Combination {
   std::vector<const SolverInfo*> solvers;
   Prospect sum{.sample = 1};
+  double spent = 0;  ///< of the goal's cost, on the picture so far
+  double has = 0;    ///< samples of the picture so far that stay
 
   double sample_cost() const { return std::max(sum.sample, k_least_sample); }
   /// Error as seen with that many samples.
@@ -63,14 +67,12 @@ struct Combination {
   }
   /// Squared error after the goal's cost, k_never before the first sample.
   double squared_error(const Goal& goal) const {
-    const double most = goal.cuts_preparation ? 0.5 * goal.samples : goal.samples;
-    const double preparation = std::min(sum.preparation, most);
-    const double samples = (goal.samples - preparation) / sample_cost();
+    // Data that is prepared in part is worse than none: its errors are the largest where it is missing.
+    const double left = goal.samples - spent;
+    if (goal.cuts_preparation && sum.preparation > k_safe * 0.5 * left) return k_never;
+    const double samples = has + (left - sum.preparation) / sample_cost();
     if (!(samples >= 1)) return k_never;
-    // Data that is prepared in part has larger errors.
-    Combination cut = *this;
-    if (preparation > 0) cut.sum.prepared *= sum.preparation / preparation;
-    return cut.error(samples) * cut.error(samples);
+    return error(samples) * error(samples);
   }
   /// Cost until the error is reached, k_never if it is not.
   double cost(double target) const {
@@ -113,6 +115,17 @@ std::optional<Combination> combine(const Findings& findings, uint32_t decided, c
     all.sum.prepared = std::hypot(all.sum.prepared, p->prepared);
     all.sum.floor = std::hypot(all.sum.floor, p->floor);
   }
+  if (!findings.begun) return all;
+  all.spent = findings.begun->spent;
+  bool same = true;  // as the picture was begun
+  for (size_t s = 0; s < slots.size(); ++s)
+    for (size_t c = 0; c < k_count; ++c)
+      if ((slots[s].components >> c & 1u) != 0)
+        same &= findings.begun->solvers[c] == (all.solvers[s] ? all.solvers[s]->name : "path");
+  if (!same) return all;
+  all.has = findings.begun->samples;
+  all.sum.sample = findings.begun->sample;
+  all.sum.preparation = 0;
   return all;
 }
 
@@ -199,21 +212,26 @@ std::array<Choice, 4> choose(const SceneFacts& facts, const Settings& settings, 
     if (choices[c].solver != "off") decided |= 1u << c;
   }
   if (!findings || undecided == 0) return choices;
+  Findings own = *findings;
+  // The cost of solvers that are given is measured with the others, but not predicted.
+  for (size_t c = 0; c < k_count; ++c)
+    if ((undecided >> c & 1u) == 0 && choices[c].solver != "path" && choices[c].solver != "off")
+      own.begun.reset();
   const std::vector<Slot> slots = slots_of(undecided);
-  const std::vector<Combination> all = combinations(*findings, decided, slots);
+  const std::vector<Combination> all = combinations(own, decided, slots);
   const auto less = [&](const Combination& a, const Combination& b) {
     return a.badness(goal) < b.badness(goal);
   };
   const Combination *best = &*std::min_element(all.begin(), all.end(), less), *paths = &all.front();
   if (best->badness(goal) * k_clearly > paths->badness(goal)) best = paths;
-  const double noise = variance_of(*findings, decided | undecided);
+  const double noise = variance_of(own, decided | undecided);
   for (size_t s = 0; s < slots.size(); ++s) {
-    const double share = noise > 0 ? variance_of(*findings, slots[s].components) / noise : 0;
+    const double share = noise > 0 ? variance_of(own, slots[s].components) / noise : 0;
     const SolverInfo* solver = best->solvers[s];
     // The same choice but for this slot.
     std::vector<const SolverInfo*> without = best->solvers;
     without[s] = nullptr;
-    const std::optional<Combination> other = combine(*findings, decided, slots, without);
+    const std::optional<Combination> other = combine(own, decided, slots, without);
     const Choice choice =
         solver ? Choice{solver->name, fmt::format("{}; {} of the noise of paths is here",
                                                   advantage(*best, *other, goal), percent(share))}

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <string>
 
 namespace lucerna::solvers {
 
@@ -18,6 +19,16 @@ struct Findings {
   std::array<Component, 4> components{};  ///< primary, secondary, tertiary, caustic
   double pixels = 0;                      ///< of the picture to be rendered
   double seconds = 0;                     ///< a sample of that picture, measured; for limits of time only
+
+  /// What the picture has cost so far with the solvers chosen first; for limits of time only. Measured
+  /// instead of predicted: the cost of these solvers.
+  struct Begun {
+    std::array<std::string, 4> solvers;  ///< of each component
+    double samples = 0;                  ///< of every pixel
+    double sample = 0;                   ///< cost of one
+    double spent = 0;                    ///< cost so far, with preparation
+  };
+  std::optional<Begun> begun{};
 };
 
 /// Prospect of components that a solver computes together.

@@ -96,12 +96,13 @@ TEST_CASE("interreflection goes to the cache where it has the noise and there is
   CHECK(with_time[2].reason.find("instead of") != std::string::npos);
   // No time for records.
   CHECK(plan::choose(facts, settings, &noisy, Goal{.samples = 16})[2].solver == "path");
-  // With a limit of time, half of it is for records.
-  CHECK(plan::choose(facts, settings, &noisy, Goal{.samples = 60})[2].solver == "path");
-  CHECK(plan::choose(facts, settings, &noisy, Goal{.samples = 60, .cuts_preparation = true})[2].solver ==
-        "cache");
-  CHECK(plan::choose(facts, settings, &noisy, Goal{.samples = 4, .cuts_preparation = true})[2].solver ==
-        "path");
+  // With a limit of time, half of it is for records: they are not begun if they are likely to be left
+  // unfinished (here they take 91 samples).
+  const auto limited = [&](double samples) {
+    return plan::choose(facts, settings, &noisy, Goal{.samples = samples, .cuts_preparation = true});
+  };
+  CHECK(limited(240)[2].solver == "path");
+  CHECK(limited(300)[2].solver == "cache");
   // Direct light has the noise: records would only cost.
   const Findings direct = findings(20, 0.5, 0.3, 0);
   CHECK(plan::choose(facts, settings, &direct, Goal{.samples = 400})[2].solver == "path");
@@ -124,6 +125,30 @@ TEST_CASE("caustics go to photons where they have the noise") {
   CHECK(plan::choose(facts, settings, &caustics, Goal{.samples = 256})[3].solver == "photons");
   const Findings faint = findings(1, 1, 1, 0.1);
   CHECK(plan::choose(facts, settings, &faint, Goal{.samples = 256})[3].solver == "path");
+}
+
+TEST_CASE("solvers that cost more than predicted are replaced while that pays") {
+  const SceneFacts facts = plan::facts_of(room(true, false));
+  const Settings settings = all_auto();
+  const Goal goal{.samples = 128, .cuts_preparation = true};
+  Findings caustics = findings(0.1, 0.1, 0.1, 3);
+  const auto by = [&](double sample, double spent) {
+    caustics.begun = Findings::Begun{
+        .solvers = {"path", "path", "path", "photons"}, .samples = 2, .sample = sample, .spent = spent};
+    return plan::choose(facts, settings, &caustics, goal)[3].solver;
+  };
+  REQUIRE(plan::choose(facts, settings, &caustics, goal)[3].solver == "photons");
+  CHECK(by(1.7, 4) == "photons");
+  // Of the variance .6 of 3.3 is left: a sample may cost five times as much.
+  CHECK(by(4, 10) == "photons");
+  CHECK(by(8, 16) == "path");
+  // Too late: the time that is left gives paths more noise.
+  CHECK(by(8, 112) == "photons");
+  // Photons for what is given cost time, too, which was not predicted.
+  Settings given = settings;
+  given.set("components.tertiary", "photons");
+  caustics.begun->sample = 8, caustics.begun->spent = 16;
+  CHECK(plan::choose(facts, given, &caustics, goal)[3].solver == "photons");
 }
 
 TEST_CASE("a dark pilot leaves everything to paths") {
