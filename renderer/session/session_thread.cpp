@@ -17,7 +17,22 @@ constexpr int k_nice = 10;                 // rendering yields to the window's t
 
 }  // namespace
 
-std::unique_ptr<Renderer> Session::Impl::make_renderer() {
+SessionThread::SessionThread(const Options& o) : options(o) {
+  if (!options.idle) thread = std::thread([this] { run(); });
+}
+
+SessionThread::~SessionThread() {
+  {
+    std::lock_guard lock(mutex);
+    quit = true;
+    given_up = loads.load();
+    pending = true;
+  }
+  wake.notify_one();
+  if (thread.joinable()) thread.join();
+}
+
+std::unique_ptr<Renderer> SessionThread::make_renderer() {
   try {
     RendererOptions made{options.device, options.validation, options.shaders, {}, true, options.scenes};
     if (!options.validation) made.on = kept_device(options.device);
@@ -32,7 +47,7 @@ std::unique_ptr<Renderer> Session::Impl::make_renderer() {
   }
 }
 
-void Session::Impl::carry_out_next(Renderer* renderer, std::unique_lock<std::mutex>& lock) {
+void SessionThread::carry_out_next(Renderer* renderer, std::unique_lock<std::mutex>& lock) {
   Command command = queue.pop();
   const uint64_t number = command.number;
   lock.unlock();
@@ -71,7 +86,7 @@ void Session::Impl::carry_out_next(Renderer* renderer, std::unique_lock<std::mut
   done = next.commands;
 }
 
-void Session::Impl::advance(Renderer& renderer, bool work) {
+void SessionThread::advance(Renderer& renderer, bool work) {
   // The former picture in the new view does not wait for new light.
   if (std::exchange(recall_wanted, false) && renderer.remembers()) publish_picture(renderer, false);
   bool changed = dirty;
@@ -108,7 +123,7 @@ void Session::Impl::advance(Renderer& renderer, bool work) {
   }
 }
 
-void Session::Impl::measure_effects() {
+void SessionThread::measure_effects() {
   effects->step([&] { return pending.load() || quit; });
   if (!effects->done()) {
     if (since_publish.seconds() < k_publish_seconds) return;
@@ -121,7 +136,7 @@ void Session::Impl::measure_effects() {
   end_effects(std::move(result));
 }
 
-void Session::Impl::end_effects(std::shared_ptr<const EffectCosts> result) {
+void SessionThread::end_effects(std::shared_ptr<const EffectCosts> result) {
   effects.reset();
   next.effect_costs = std::move(result);
   next.measures_effects = false;
@@ -130,7 +145,7 @@ void Session::Impl::end_effects(std::shared_ptr<const EffectCosts> result) {
 }
 
 /// `numbers`: including values read back from the film.
-void Session::Impl::publish_picture(Renderer& renderer, bool numbers) {
+void SessionThread::publish_picture(Renderer& renderer, bool numbers) {
   if (numbers) since_numbers.restart();
   fill_snapshot(renderer, numbers);
   publish();
@@ -138,7 +153,7 @@ void Session::Impl::publish_picture(Renderer& renderer, bool numbers) {
   dirty = false;
 }
 
-void Session::Impl::end(Renderer* renderer, std::unique_lock<std::mutex>& lock) {
+void SessionThread::end(Renderer* renderer, std::unique_lock<std::mutex>& lock) {
   while (!queue.empty())
     if (const Command command = queue.pop();
         command.saves && renderer && (command.scene == k_any_scene || command.scene == scene_id))
@@ -151,7 +166,7 @@ void Session::Impl::end(Renderer* renderer, std::unique_lock<std::mutex>& lock) 
   give_up_saves("the program ended");
 }
 
-void Session::Impl::run() {
+void SessionThread::run() {
   // Threads of the device inherit this, so the window has priority.
   setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), k_nice);
   const std::unique_ptr<Renderer> renderer = make_renderer();

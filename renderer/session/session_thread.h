@@ -24,12 +24,18 @@ inline constexpr double k_numbers_seconds = 0.5;  // between read-backs of the f
 /// Thrown by a command that was cancelled as requested.
 struct Abandoned {};
 
-struct Session::Impl {
+struct SessionThread {
+  using Command = session::Command<Renderer>;
+
+  explicit SessionThread(const Options& options);
+  /// Ends the thread, with pending saves written.
+  ~SessionThread();
+
   Options options;
   std::thread thread;
   mutable std::mutex mutex;
   std::condition_variable wake;
-  CommandQueue queue;
+  CommandQueue<Renderer> queue;
   std::atomic<bool> quit{false}, pending{false};
   uint64_t done = 0;  // number of the last command carried out
   // Loads and edits of objects are numbered in order of request; those up to a number are cancelled.
@@ -115,17 +121,12 @@ struct Session::Impl {
   }
 
   /// Answers with `answer(renderer)` as soon as the picture has a sample, or rendering rests without.
-  template <class Answer>
-  std::shared_future<Answer> when_pictured(std::function<Answer(Renderer&)> answer, const char* subject,
-                                           SceneId scene) {
-    auto promise = std::make_shared<std::promise<Answer>>();
-    auto result = promise->get_future().share();
-    const auto question = [this, promise, answer = std::move(answer)](Renderer& r) {
-      try {
-        promise->set_value(answer(r));
-      } catch (...) {
-        promise->set_exception(std::current_exception());
-      }
+  template <class T>
+  Answer<T> when_pictured(std::function<T(Renderer&)> answer, const char* subject, SceneId scene) {
+    auto task = std::make_shared<std::packaged_task<T(Renderer&)>>(std::move(answer));
+    Answer<T> result = task->get_future().share();
+    const auto question = [this, task](Renderer& r) {
+      (*task)(r);
       dirty = true;
     };
     post({.run = [this, question](Renderer&) { questions.push_back(question); },

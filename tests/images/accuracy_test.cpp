@@ -137,7 +137,9 @@ TEST_CASE("the session clock counts the time between steps and stops while rende
 }
 
 TEST_CASE("every report of a session uses one clock, which stands still while rendering is paused") {
-  session::Session s({.device = test::device_name(), .validation = false, .shaders = {}});
+  const auto made =
+      session::start_session({.device = test::device_name(), .validation = false, .shaders = {}});
+  session::Session& s = *made;
   const auto wait = [&](const auto& until) {
     for (int i = 0; i < 6000; ++i, sleep_ms(5))
       if (const auto at = s.snapshot(); at && until(*at)) return at;

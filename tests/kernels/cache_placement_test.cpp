@@ -389,7 +389,8 @@ TEST_CASE("chosen candidates are drawn with their radius, and hidden by nearer s
 }
 
 TEST_CASE("a session with a paused cache is idle, responds, and continues on command") {
-  session::Session session({.device = test::device_name()});
+  const auto made = session::start_session({.device = test::device_name()});
+  session::Session& session = *made;
   session.set_size(48, 48);
   session.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
   for (const auto& [key, value] : {std::pair{"components.secondary", "cache"},

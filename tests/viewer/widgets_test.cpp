@@ -100,7 +100,7 @@ namespace {
 /// A window's panels without a window: frames are drawn into lists that are not displayed.
 class Walk {
  public:
-  explicit Walk(float width = 1600, float height = 1000) : session_({}), ui_(session_) {
+  explicit Walk(float width = 1600, float height = 1000) : ui_(session_) {
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
@@ -290,7 +290,7 @@ class Walk {
     frame();
   }
 
-  session::Session session_;
+  session::FakeSession session_;
   ui::Ui ui_;
 };
 

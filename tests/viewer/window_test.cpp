@@ -30,7 +30,7 @@ std::vector<std::string> lines_of(const std::string& file) {
 }  // namespace
 
 TEST_CASE("a script is checked before it runs") {
-  session::Session session({});
+  session::FakeSession session;
   ui::Ui window(session);
   commands::ReportFolder report;
   ui::Runner runner(window, report);
@@ -56,7 +56,7 @@ TEST_CASE("a script is checked before it runs") {
 }
 
 TEST_CASE("every command of the window is unchanged after read, write and read") {
-  session::Session session({});
+  session::FakeSession session;
   ui::Ui window(session);
   commands::ReportFolder report;
   ui::Runner runner(window, report);
