@@ -259,7 +259,7 @@ class Latency {
       check();
       r.step();
     }
-    film::FilmImage image = r.film_image();
+    film::FilmImage image = r.output().film_image();
     add_odd_half(image, r.image());
     image.metadata["bench.key"] = key;
     film::write_exr(kept, image);

@@ -71,7 +71,7 @@ class RenderSession final : public Session {
 
   void set_window_scale(uint32_t scale) override {
     const auto run = [s = &thread_, scale](Renderer& r) {
-      r.set_window_scale(scale);
+      r.overlays().set_window_scale(scale);
       s->dirty = true;
     };
     thread_.post({.run = run, .subject = "the scale of the window"});
@@ -188,7 +188,7 @@ class RenderSession final : public Session {
 
   void set_reference(const std::filesystem::path& file, SceneId scene) override {
     const auto run = [file](Renderer& r) {
-      r.set_reference(file);
+      r.progress().set_reference(file);
       r.finish_ledger();  // the present samples are compared at once
       log::info("{} is the reference", file.string());
     };
@@ -196,12 +196,12 @@ class RenderSession final : public Session {
   }
 
   void clear_reference() override {
-    const auto run = [](Renderer& r) { r.clear_reference(); };
+    const auto run = [](Renderer& r) { r.progress().clear_reference(); };
     thread_.post({.run = run, .subject = "the reference"});
   }
 
   void inspect(std::optional<vec2> at, SceneId scene) override {
-    const auto run = [at](Renderer& r) { r.inspect(at); };
+    const auto run = [at](Renderer& r) { r.overlays().inspect(at); };
     thread_.post({.run = run, .subject = "a place of the picture", .scene = scene});
   }
 
@@ -231,7 +231,7 @@ class RenderSession final : public Session {
 
   Answer<film::FilmImage> layers(SceneId scene) override {
     auto task = std::make_shared<std::packaged_task<film::FilmImage(Renderer&)>>(
-        [](Renderer& r) { return r.film_image_with_halves(); });
+        [](Renderer& r) { return r.output().film_image_with_halves(); });
     Answer<film::FilmImage> result = task->get_future().share();
     const auto run = [task](Renderer& r) { (*task)(r); };
     thread_.post({.run = run, .subject = "the layers", .scene = scene});
@@ -243,34 +243,34 @@ class RenderSession final : public Session {
     return thread_.when_pictured<std::shared_ptr<const recording::Recording>>(
         [at, samples](Renderer& r) {
           const uvec2 pixel = pixel_at(at, r.film().width(), r.film().height());
-          recording::Recording all = r.begin_recording();
-          r.record_paths(choices_of({.left = pixel.x,
-                                     .top = pixel.y,
-                                     .right = pixel.x + 1,
-                                     .bottom = pixel.y + 1,
-                                     .samples = samples},
-                                    all.width, all.height),
-                         all);
+          recording::Recording all = r.paths().begin();
+          r.paths().record(choices_of({.left = pixel.x,
+                                       .top = pixel.y,
+                                       .right = pixel.x + 1,
+                                       .bottom = pixel.y + 1,
+                                       .samples = samples},
+                                      all.width, all.height),
+                           all);
           auto recorded = std::make_shared<const recording::Recording>(std::move(all));
-          r.show_paths({recorded});
+          r.overlays().show_paths({recorded});
           return recorded;
         },
         "the paths of a pixel", scene);
   }
 
   void show_paths(const ShownPaths& paths, SceneId scene) override {
-    const auto run = [paths](Renderer& r) { r.show_paths(paths); };
+    const auto run = [paths](Renderer& r) { r.overlays().show_paths(paths); };
     thread_.post({.run = run, .subject = "recorded paths", .scene = scene});
   }
 
   Answer<recording::NoiseReport> explain_noise(const vec2& lo, const vec2& hi, SceneId scene) override {
     return thread_.when_pictured<recording::NoiseReport>(
-        [lo, hi](Renderer& r) { return r.explain_noise(lo, hi); }, "the noise of the picture", scene);
+        [lo, hi](Renderer& r) { return r.paths().explain_noise(lo, hi); }, "the noise of the picture", scene);
   }
 
   Answer<std::shared_ptr<const HeldPicture>> held_picture(SceneId scene) override {
     return thread_.when_pictured<std::shared_ptr<const HeldPicture>>(
-        [](Renderer& r) { return std::make_shared<const HeldPicture>(r.held_picture()); },
+        [](Renderer& r) { return std::make_shared<const HeldPicture>(r.output().held_picture()); },
         "the picture to be held", scene);
   }
 
@@ -311,7 +311,7 @@ class RenderSession final : public Session {
       const solvers::SolverInfo* info = solvers::find(solver);
       if (!info || !solvers::find_command(*info, command))
         throw Error(solver, fmt::format("there is no command '{}'", command));
-      r.solver_command(solver, command);
+      r.solvers().command(solver, command);
       s->paused = false;
     };
     thread_.post({.run = run, .subject = solver + "." + command, .scene = scene});

@@ -88,17 +88,17 @@ void SessionThread::carry_out_next(Renderer* renderer, std::unique_lock<std::mut
 
 void SessionThread::advance(Renderer& renderer, bool work) {
   // The former picture in the new view does not wait for new light.
-  if (std::exchange(recall_wanted, false) && renderer.remembers()) publish_picture(renderer, false);
+  if (std::exchange(recall_wanted, false) && renderer.output().remembers()) publish_picture(renderer, false);
   bool changed = dirty;
   // During edits faster than preview samples, some of them are still shown.
   const auto draft_cancelled = [&] {
     return quit || (pending && (!draft_given_up || since_given_up.seconds() < k_draft_seconds));
   };
-  if (!paused && !draft_cancelled() && renderer.draw_draft(draft_cancelled)) {
+  if (!paused && !draft_cancelled() && renderer.previews().draw(draft_cancelled)) {
     draft_given_up = false;
-    changed = changed || renderer.draft_news();
+    changed = changed || renderer.previews().news();
     // The first one, and the first of improved light, are shown at once; more of them at the usual rate.
-    if (renderer.has_draft())
+    if (renderer.previews().begun())
       changed = changed || std::exchange(coarse_wanted, false);
     else
       coarse_wanted = coarse_wanted || std::exchange(better_wanted, false);
@@ -108,17 +108,17 @@ void SessionThread::advance(Renderer& renderer, bool work) {
     accuracy.follow(renderer, scene_id);
   }
   // The last entry of the ledger is that of the finished image.
-  if (renderer.done() && !renderer.ledger().entries().empty() &&
-      renderer.ledger().entries().back().paths != renderer.stats().paths)
+  if (renderer.done() && !renderer.progress().ledger().entries().empty() &&
+      renderer.progress().ledger().entries().back().paths != renderer.stats().paths)
     renderer.finish_ledger();
   if (!filled && renderer.samples() > 0) filled = changed = true;
-  changed = renderer.filter_news() || changed;
-  const bool over = (renderer.done() && !renderer.filter_due()) || renderer.waits();
+  changed = renderer.output().filter_news() || changed;
+  const bool over = (renderer.done() && !renderer.output().filter_due()) || renderer.waits();
   if (changed || since_publish.seconds() > publish_seconds || over)
-    publish_picture(renderer, renderer.samples() > 0 && !renderer.mix_pending() &&
+    publish_picture(renderer, renderer.samples() > 0 && !renderer.mix().pending() &&
                                   (since_numbers.seconds() > numbers_seconds || renderer.done() || paused));
-  if (!dirty && renderer.overlay_waits()) {
-    renderer.trace_overlay([&] { return pending.load() || quit; });
+  if (!dirty && renderer.overlays().waits()) {
+    renderer.overlays().trace([&] { return pending.load() || quit; });
     dirty = true;
   }
 }
@@ -176,13 +176,13 @@ void SessionThread::run() {
     pending = false;
     // During a drag at a group's slider display comes first; the film's sums and more samples follow when it
     // pauses.
-    const bool mixing = renderer && renderer->mix_pending();
+    const bool mixing = renderer && renderer->mix().pending();
     if (mixing && !dirty && wake.wait_for(lock, std::chrono::duration<double>(k_mix_pause_seconds), [&] {
           return quit || !queue.empty();
         }))
       continue;
     const bool work = renderer && (effects || works(*renderer)) && !(mixing && dirty);
-    if (renderer && !work) renderer->rest();
+    if (renderer && !work) renderer->progress().rest();
     if (!work && !dirty && !mixing) {
       const auto woken = [&] { return quit || !queue.empty(); };
       if (!renderer || !tev || !tev->waits(*renderer)) {
@@ -199,7 +199,7 @@ void SessionThread::run() {
       if (renderer && renderer->ready()) {
         if (mixing && !dirty) {
           // A drag has shown unfiltered samples, which may be few: filter before taking more.
-          renderer->settle_mix();
+          renderer->mix().settle();
           publish_picture(*renderer, false);
         }
         if (effects) measure_effects();

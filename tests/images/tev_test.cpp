@@ -61,7 +61,7 @@ TEST_CASE("the viewer ends with the layers of the finished picture, by its sampl
   session::TevLink link(film::parse_tev_address(viewer.address(), ""), "cornell");
   while (r.step()) CHECK(link.follow(r));
   link.finish(r);
-  const film::FilmImage image = r.film_image();
+  const film::FilmImage image = r.output().film_image();
   REQUIRE(soon([&] {
     const auto images = viewer.images();
     const auto at = images.find("Lucerna: cornell");

@@ -127,12 +127,12 @@ int measure_mix(const MixArguments& a) {
   const auto drag = [&] {
     r.settings().set("relight.mix", mix_of(names, step++));
     r.apply_settings();
-    r.shown_picture(false);
+    r.output().shown_picture(false);
   };
   const double cpu_before = cpu_seconds();
   const Timing shown = take_turns({{{}, drag}}, 4 * a.repeats)[0];
   const double shown_cpu = (cpu_seconds() - cpu_before) / (4 * a.repeats + 1);
-  const Timing settled = take_turns({{drag, [&] { r.settle_mix(); }}}, a.repeats)[0];
+  const Timing settled = take_turns({{drag, [&] { r.mix().settle(); }}}, a.repeats)[0];
   if (r.stats().rays != rays) throw_error(a.scene, "a mix traced rays");
   const std::unique_ptr<session::Session> s = render_in_session(a);
   const Timing begun = drag_session(*s, names, 2 * a.repeats, 0.5),
