@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "session/device_keeper.h"
 #include "ui/runner.h"
+#include "ui/state.h"
 #include "ui/viewer.h"
 
 namespace lucerna::app {
@@ -144,7 +145,7 @@ int help(const std::string& topic) {
   session::Session& idle = *made;
   ui::Ui state(idle);
   commands::ReportFolder report;
-  const ui::Runner runner(state, report);
+  const ui::Runner runner(state.viewport, state.areas, state.log, state.requests, report);
   std::printf("%s\n", state.work.manual(topic).c_str());
   return 0;
 }

@@ -7,6 +7,7 @@
 
 #include "inside.h"
 #include "ui/runner.h"
+#include "ui/state.h"
 
 namespace script_tests {
 
@@ -53,7 +54,7 @@ TEST_CASE("file names of other formats are refused before the script runs") {
   session::FakeSession session;
   ui::Ui window(session);
   commands::ReportFolder report;
-  ui::Runner runner(window, report);
+  ui::Runner runner(window.viewport, window.areas, window.log, window.requests, report);
   for (const char* line : {"image.save a.jpg", "image.save .exr", "image.save a", "screenshot a.exr",
                            "script.save a.txt", "cache.save a.exr"})
     CHECK_THROWS_WITH(commands::parse_script(window.work.registry, {line}, "s"),
