@@ -220,7 +220,20 @@ HeldPicture PictureOutput::held_picture() {
 
 film::FilmImage PictureOutput::film_image() {
   mix_.settle();
-  film::FilmImage out = picture_layers(setup_);
+  return layers_of(setup_.film->read());
+}
+
+film::FilmImage PictureOutput::film_image_with_halves() {
+  if (!setup_.engine || sampling_.samples() == 0) throw Error("", "the picture has no sample yet");
+  mix_.settle();
+  const film::Image image = setup_.film->read();
+  film::FilmImage out = layers_of(image);
+  add_noise_layers(out, *setup_.film, image, !setup_.engine->solvers().empty());
+  return out;
+}
+
+film::FilmImage PictureOutput::layers_of(const film::Image& image) const {
+  film::FilmImage out = picture_layers(setup_, image);
   // In the window the rest has samples too.
   if (const auto part = sampling_.only_region())
     out.window = {part->left, part->top, part->right, part->bottom};
@@ -228,13 +241,6 @@ film::FilmImage PictureOutput::film_image() {
   out.metadata["tracer"] = setup_.tracer_name();
   out.metadata["noise"] = film::noise_text(progress_.estimate_error().rms);
   if (const Filtered* f = filtered()) add_filtered_layers(out, *f);
-  return out;
-}
-
-film::FilmImage PictureOutput::film_image_with_halves() {
-  if (!setup_.engine || sampling_.samples() == 0) throw Error("", "the picture has no sample yet");
-  film::FilmImage out = film_image();
-  add_noise_layers(out, *setup_.film, !setup_.engine->solvers().empty());
   return out;
 }
 

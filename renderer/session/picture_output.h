@@ -115,6 +115,8 @@ class PictureOutput {
  private:
   PictureView picture_view() const { return setup_.view(context_.automaton); }
   const transport::TransportStats& stats() const { return setup_.engine->wavefront().stats(); }
+  /// film_image() of the film's image.
+  film::FilmImage layers_of(const film::Image& image) const;
   std::vector<uint8_t> picture_of(const Filtered& filtered, const film::View& view,
                                   const std::function<bool()>& cancel);
   FilterJob filter_job() const;
