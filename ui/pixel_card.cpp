@@ -30,11 +30,10 @@ bool inspect_while_held(Viewport& view, const Area& picture, bool active) {
   if (held.reported || !still || view.work.open.loading() || !view.has_picture()) return false;
   view.controls.actions.wake(2);
   if (view.work.now - *held.since < k_hold) return false;
-  const float x = (io.MousePos.x - picture.lo.x) / std::max(1.0f, picture.width());
-  const float y = (io.MousePos.y - picture.lo.y) / std::max(1.0f, picture.height());
-  if (x < 0 || x > 1 || y < 0 || y > 1) return false;
+  if (!picture.contains(io.MousePos)) return false;
+  const vec2 place = picture.place_of(io.MousePos);
   held.reported = true;
-  view.controls.act("inspect.pixel", x, y);
+  view.controls.act("inspect.pixel", place.x, place.y);
   return false;
 }
 

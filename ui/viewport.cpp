@@ -132,9 +132,7 @@ bool dragging() {
 /// The point of the scene under the pointer, if any.
 std::optional<vec3> under_pointer(commands::Navigation& camera, const Area& shown) {
   const ImVec2 at = ImGui::GetIO().MousePos;
-  const float x = (at.x - shown.lo.x) / std::max(1.0f, shown.width());
-  const float y = (at.y - shown.lo.y) / std::max(1.0f, shown.height());
-  if (!camera.view || x < 0 || x > 1 || y < 0 || y > 1) return std::nullopt;
+  if (!camera.view || !shown.contains(at)) return std::nullopt;
   const auto hit = surface_at(camera, shown, at);
   return hit ? std::optional(hit->position) : std::nullopt;
 }
@@ -282,20 +280,19 @@ void click(Viewport& v, const Area& shown) {
     if (const auto lamp = lamp_handle_at(v.marked(), shown, at))
       return v.controls.act("select", lamp->part == LampHandle::Part::surface ? "material" : "light",
                             lamp->light + 1);
-  const float x = (at.x - shown.lo.x) / std::max(1.0f, shown.width());
-  const float y = (at.y - shown.lo.y) / std::max(1.0f, shown.height());
-  if (x < 0 || x > 1 || y < 0 || y > 1) return;
+  if (!shown.contains(at)) return;
+  const vec2 place = shown.place_of(at);
   if (v.dropper) {
     v.controls.act("exposure.dropper", false);
-    v.controls.act("exposure.at", x, y);
+    v.controls.act("exposure.at", place.x, place.y);
   } else if (v.scene_view.focusing) {
     v.controls.act("camera.focusing", false);
-    v.controls.act("camera.focus", x, y);
+    v.controls.act("camera.focus", place.x, place.y);
   } else if (v.paths.pick == PathsView::Pick::pixel) {
     v.controls.act("paths.pick", "none");
-    trace_pixel(v.controls.actions, v.paths, {x, y});
+    trace_pixel(v.controls.actions, v.paths, place);
   } else if (!v.click_taken()) {
-    v.controls.act("pick", x, y);
+    v.controls.act("pick", place.x, place.y);
   }
 }
 
@@ -359,12 +356,10 @@ void inspect_at_rest(Viewport& v, const Area& shown, bool active) {
     v.inspected_place.reset();
   }
   if (v.script_inspects) return;
-  const vec2 place((at.x - shown.lo.x) / std::max(1.0f, shown.width()),
-                   (at.y - shown.lo.y) / std::max(1.0f, shown.height()));
-  const bool inside = place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
+  const vec2 place = shown.place_of(at);
   // During a load the renderer refuses inspections.
   const bool still = !(active && dragging()) && !v.moves.flying() && !v.work.open.loading();
-  if (inspects_pointer(v.controls) && v.hovered && inside && still) {
+  if (inspects_pointer(v.controls) && v.hovered && shown.contains(at) && still) {
     if (active || v.inspected_place == place || v.work.now - since < k_rest) return;
     v.inspected_place = place;
     ++v.inspections_known;
