@@ -102,7 +102,7 @@ struct Snapshot {
   std::string preparing;
   double preparing_done = -1;            ///< progress of that, 0..1; -1: unknown
   std::optional<double> preparing_left;  ///< remaining seconds of rendering, estimated (stats::WorkPace)
-  /// Pace of pure path tracing (Renderer::path_pace).
+  /// Pace of pure path tracing (PreviewSamples::path_pace).
   std::optional<stats::SamplePace> path_pace;
   /// Wall time since this image was begun, without pauses: the clock of the ledger's wall_s and of forecasts.
   double seconds = 0;
@@ -166,7 +166,7 @@ class Session {
   /// If several consecutive ones are in the queue, only the last is used; they share one number.
   virtual void set_camera(const scene::Camera& camera, SceneId scene = k_any_scene) = 0;
   virtual void set_size(uint32_t width, uint32_t height) = 0;
-  /// Renderer::set_window_scale.
+  /// Overlays::set_window_scale.
   virtual void set_window_scale(uint32_t scale) = 0;
   virtual void set_light(uint32_t index, const scene::Light& light, SceneId scene = k_any_scene) = 0;
   /// Replaces the scene's lights: adds, removes, renames (Renderer::set_light_list).
@@ -187,19 +187,19 @@ class Session {
   virtual void restart() = 0;  ///< discards all samples and restarts
   /// Compiles again; on error the old kernels stay and the message is logged.
   virtual void reload_shaders() = 0;
-  /// Compares the picture with this reference from now on (Renderer::set_reference).
+  /// Compares the picture with this reference from now on (ImageProgress::set_reference).
   virtual void set_reference(const std::filesystem::path& file, SceneId scene = k_any_scene) = 0;
   virtual void clear_reference() = 0;
   /// Inspects solver data at that place of the picture (0..1 to the right and down): reported in
   /// Snapshot::reports and drawn over the picture from now on; nullopt: ends it.
   virtual void inspect(std::optional<vec2> at, SceneId scene = k_any_scene) = 0;
-  /// Renderer::measure, as soon as there is an image.
+  /// PictureOutput::measure, as soon as there is an image.
   virtual Answer<film::Brightness> measure(std::optional<vec2> at, SceneId scene = k_any_scene) = 0;
   /// Measures what each effect of the scene costs and contributes (EffectMeasurement), while the picture
   /// waits. Errors are logged, as is the result, which snapshots contain from then on.
   virtual void measure_effects(SceneId scene = k_any_scene) = 0;
   virtual void stop_measuring_effects() = 0;
-  /// The layers of the present picture as floats (Renderer::film_image_with_halves); Error if it has no
+  /// The layers of the present picture as floats (PictureOutput::film_image_with_halves); Error if it has no
   /// sample.
   virtual Answer<film::FilmImage> layers(SceneId scene = k_any_scene) = 0;
   /// Records the first `samples` paths of the pixel at that place, and draws them over the picture from then
@@ -208,11 +208,11 @@ class Session {
                                                                           SceneId scene = k_any_scene) = 0;
   /// Draws recorded paths over the picture; nullptr: none.
   virtual void show_paths(const ShownPaths& paths, SceneId scene = k_any_scene) = 0;
-  /// Explains the noise of a part of the picture (0..1 to the right and down): Renderer::explain_noise. As
+  /// Explains the noise of a part of the picture (0..1 to the right and down): PathStudy::explain_noise. As
   /// soon as there is a picture.
   virtual Answer<recording::NoiseReport> explain_noise(const vec2& lo, const vec2& hi,
                                                        SceneId scene = k_any_scene) = 0;
-  /// Renderer::held_picture, as soon as there is a picture.
+  /// PictureOutput::held_picture, as soon as there is a picture.
   virtual Answer<std::shared_ptr<const HeldPicture>> held_picture(SceneId scene = k_any_scene) = 0;
   /// Sends the layers of the picture to a viewer with tev's protocol from now on (TevLink), at this address
   /// (film::parse_tev_address); nullopt: ends it. A connection that fails ends it with a warning.

@@ -73,7 +73,7 @@ TEST_CASE("pixels of a region are bit for bit those of the whole picture, by eac
     const film::ImageError error = part.image_error();
     CHECK(error.pixels == double(k_blocks.right - k_blocks.left) * (k_blocks.bottom - k_blocks.top));
     CHECK(error.seen(0) > 0);
-    const film::FilmImage file = part.film_image();
+    const film::FilmImage file = part.output().film_image();
     REQUIRE(file.window);
     CHECK(file.window->left == 20);
     CHECK(file.window->bottom == 29);
