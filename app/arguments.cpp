@@ -29,6 +29,12 @@ CLI::Validator named() {
       "");
 }
 
+void Common::complete(VerbArguments& arguments) const {
+  if (arguments.device.empty()) arguments.device = device;
+  arguments.scenes = scenes;
+  arguments.command = command();
+}
+
 void add_scene_options(CLI::App& verb, Common& common) {
   verb.add_flag("--allow-outside", common.scenes.outside,
                 "allow scenes to read files outside their folder (\"..\", absolute paths, symbolic links)");

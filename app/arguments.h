@@ -2,9 +2,11 @@
 // Declares the arguments of the batch verbs (CLI11) and runs the one that was given.
 #include <CLI/CLI.hpp>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "app/verbs.h"
 #include "scene/io/load.h"
 
 namespace lucerna::app {
@@ -16,10 +18,10 @@ struct Common {
   double scene_gib = 0;            ///< --scene-memory
   std::vector<std::string> typed;  ///< the program's arguments, without its name
 
-  /// A verb's own device, or else the common one.
-  std::string device_or(const std::string& own) const { return own.empty() ? device : own; }
   /// "lucerna bench --quick": the program's name and its arguments.
   std::string command() const;
+  /// Completes a verb's arguments by these; its own device has priority.
+  void complete(VerbArguments& arguments) const;
 };
 
 struct Verb {
@@ -27,6 +29,16 @@ struct Verb {
   std::function<int()> run;  ///< returns the exit status; throws Error
   std::string footer = {};   ///< below its help
 };
+
+/// Runs a verb with its arguments, completed by `common`.
+template <class Arguments>
+std::function<int()> runs(int (*verb)(const Arguments&), std::shared_ptr<Arguments> arguments,
+                          const Common& common) {
+  return [verb, arguments, &common] {
+    common.complete(*arguments);
+    return verb(*arguments);
+  };
+}
 
 inline constexpr const char* k_device_help =
     "device: index, part of a name, cpu or gpu (also LUCERNA_DEVICE)";

@@ -28,11 +28,7 @@ Verb add_rays(CLI::App& parent, Common& common) {
   verb->add_option("--device", a.device, k_device_help);
   verb->add_flag("--json", a.json, "as JSON");
   add_scene_options(*verb, common);
-  const auto run = [arguments, &common] {
-    arguments->device = common.device_or(arguments->device);
-    arguments->scenes = common.scenes;
-    return bench_rays(*arguments);
-  };
+  const auto run = runs(bench_rays, arguments, common);
   return {verb, run};
 }
 
@@ -41,7 +37,7 @@ Verb add_latency(CLI::App& parent, Common& common) {
   BenchLatencyArguments& a = *arguments;
   CLI::App* verb = parent.add_subcommand(
       "latency", "seconds until the window shows a usable picture after an edit (--latency is the same)");
-  verb->add_option("SCENES", a.scenes, "glTF scenes, or names of folders in scenes/")->required();
+  verb->add_option("SCENES", a.files, "glTF scenes, or names of folders in scenes/")->required();
   verb->add_option("--edits", a.edits,
                    "some of load, strength, move (of the brightest lamp), sky (rotation), material, undo, "
                    "camera, solver (switch); each on top of those before; orbit: pictures per second while "
@@ -76,11 +72,7 @@ Verb add_latency(CLI::App& parent, Common& common) {
   verb->add_option("--json", a.json, "file to write the figures to");
   verb->add_option("--device", a.device, k_device_help);
   add_scene_options(*verb, common);
-  const auto run = [arguments, &common] {
-    arguments->device = common.device_or(arguments->device);
-    arguments->load = common.scenes;
-    return bench_latency(*arguments);
-  };
+  const auto run = runs(bench_latency, arguments, common);
   return {verb, run};
 }
 
@@ -126,12 +118,8 @@ Verb add_photons(CLI::App& parent, Common& common) {
       ->check(CLI::Range(1u, 1000u))
       ->capture_default_str();
   verb->add_flag("--quiet", a.quiet, "no progress line");
-  verb->add_option("--device", o.device, k_device_help);
-  const auto run = [arguments, &common] {
-    arguments->options.device = common.device_or(arguments->options.device);
-    arguments->command = common.command();
-    return bench_photons(*arguments);
-  };
+  verb->add_option("--device", a.device, k_device_help);
+  const auto run = runs(bench_photons, arguments, common);
   return {verb, run};
 }
 
@@ -155,12 +143,7 @@ Verb add_matrices(CLI::App* verb, Common& common) {
       ->expected(2);
   verb->add_option("--page", a.page, "write report.html of a report folder again, without measuring");
   add_scene_options(*verb, common);
-  const auto run = [arguments, &common] {
-    arguments->device = common.device_or(arguments->device);
-    arguments->scenes = common.scenes;
-    arguments->command = common.command();
-    return bench_matrix(*arguments);
-  };
+  const auto run = runs(bench_matrix, arguments, common);
   return {verb, run, bench::k_matrix_help};
 }
 

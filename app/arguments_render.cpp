@@ -121,11 +121,7 @@ Verb add_render(CLI::App& app, Common& common) {
   verb->add_option("--device", a.device, k_device_help);
   verb->add_flag("--quiet", a.quiet, "no progress line");
   add_scene_options(*verb, common);
-  const auto run = [arguments, &common] {
-    arguments->device = common.device_or(arguments->device);
-    arguments->scenes = common.scenes;
-    return render(*arguments);
-  };
+  const auto run = runs(render, arguments, common);
   return {verb, run, settings_help()};
 }
 

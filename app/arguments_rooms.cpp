@@ -52,15 +52,6 @@ void add_rooms_options(CLI::App* verb, BenchInteriorsArguments& arguments, Commo
   add_scene_options(*verb, common);
 }
 
-Verb rooms_verb(CLI::App* verb, const std::shared_ptr<BenchInteriorsArguments>& arguments, Common& common) {
-  return {verb, [arguments, &common] {
-            arguments->device = common.device_or(arguments->device);
-            arguments->scenes = common.scenes;
-            arguments->command = common.command();
-            return bench_interiors(*arguments);
-          }};
-}
-
 Verb add_interiors(CLI::App& parent, Common& common) {
   const auto arguments = std::make_shared<BenchInteriorsArguments>();
   BenchInteriorsArguments& a = *arguments;
@@ -77,7 +68,7 @@ Verb add_interiors(CLI::App& parent, Common& common) {
   verb->add_flag(
       "--quick", o.quick,
       "three rooms in small pictures after 0.8 and 4 s: two to three minutes, plus their references once");
-  return rooms_verb(verb, arguments, common);
+  return {verb, runs(bench_interiors, arguments, common)};
 }
 
 Verb add_auto(CLI::App& parent, Common& common) {
@@ -90,7 +81,7 @@ Verb add_auto(CLI::App& parent, Common& common) {
   a.options.every_solver = true;
   a.report = "auto-report";
   add_rooms_options(verb, a, common);
-  return rooms_verb(verb, arguments, common);
+  return {verb, runs(bench_interiors, arguments, common)};
 }
 
 }  // namespace

@@ -25,11 +25,7 @@ Verb add_info(CLI::App& app, Common& common) {
   verb->add_option("--set", a.set, "--pilot, --cost: KEY=VALUE")->allow_extra_args(false);
   verb->add_option("--device", a.device, k_device_help);
   add_scene_options(*verb, common);
-  const auto run = [arguments, &common] {
-    arguments->device = common.device_or(arguments->device);
-    arguments->scenes = common.scenes;
-    return info(*arguments);
-  };
+  const auto run = runs(info, arguments, common);
   return {verb, run};
 }
 
@@ -42,10 +38,7 @@ Verb add_convert(CLI::App& app, Common& common) {
   verb->add_option("OUTPUT", a.output, "file to write: .gltf or .glb")->required()->check(named());
   verb->add_flag("--replace", a.replace, "write over the scene itself");
   add_scene_options(*verb, common);
-  const auto run = [arguments, &common] {
-    arguments->scenes = common.scenes;
-    return convert(*arguments);
-  };
+  const auto run = runs(convert, arguments, common);
   return {verb, run};
 }
 

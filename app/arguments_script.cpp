@@ -26,8 +26,7 @@ Verb add_script(CLI::App& app, Common& common) {
   verb->add_option("--device", a.device, k_device_help);
   add_scene_options(*verb, common);
   const auto run = [arguments, &common] {
-    arguments->device = common.device_or(arguments->device);
-    arguments->scenes = common.scenes;
+    common.complete(*arguments);
     arguments->typed = common.typed;
     return run_scripts(*arguments);
   };

@@ -43,7 +43,7 @@ std::vector<std::vector<bench::LatencyResult>> by_edit(const std::vector<bench::
 
 int bench_latency(const BenchLatencyArguments& a) {
   bench::LatencyOptions o;
-  for (const std::string& name : a.scenes) o.files.push_back(scene_file(name));
+  for (const std::string& name : a.files) o.files.push_back(scene_file(name));
   if (!a.solvers.empty()) o.solvers = a.solvers;
   for (const std::string& name : a.edits) o.edits.push_back(bench::edit_of(name));
   if (a.edits.empty())
@@ -52,7 +52,7 @@ int bench_latency(const BenchLatencyArguments& a) {
   o.reference_samples = a.reference_samples, o.reference_solver = a.reference_solver, o.seconds = a.seconds,
   o.settle.seconds = a.settle;
   o.repeats = a.repeats, o.seed = a.seed;
-  o.device = a.device, o.references = a.references, o.pictures = a.pictures, o.scenes = a.load;
+  o.device = a.device, o.references = a.references, o.pictures = a.pictures, o.scenes = a.scenes;
   for (const std::string& pair : a.set) {
     const size_t at = pair.find('=');
     if (at == std::string::npos) throw_error("--set", "'{}': expected KEY=VALUE", pair);

@@ -23,6 +23,7 @@ using Json = nlohmann::ordered_json;
 int bench_photons(const BenchPhotonsArguments& a) {
   const Timer timer;
   bench::PhotonBenchOptions options = a.options;
+  options.device = a.device;
   options.scenes = fs::path(LUCERNA_SOURCE_DIR) / "scenes";
   if (!std::has_single_bit(options.rounds))
     throw_error("--rounds", "'{}': expected a power of two, such as 256", options.rounds);

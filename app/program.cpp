@@ -44,8 +44,9 @@ int open_window(const WindowArguments& window, const Common& common) {
     if (options.script.empty()) options.script.emplace_back();  // an empty script ends too
     options.script_name = window.script;
   }
-  session::Session session(
+  const auto made = session::start_session(
       {.device = common.device, .validation = false, .shaders = {}, .scenes = common.scenes});
+  session::Session& session = *made;
   options.interrupted = [&] { return interrupt.signal() != 0; };
   const int status = ui::run_viewer(session, options);
   return interrupt.signal() ? interrupt.status() : status;

@@ -28,15 +28,15 @@ namespace {
 
 void print_progress(const session::Renderer& r, double seconds, double limit, bool last) {
   const double paths = double(r.stats().paths) / (double(r.film().width()) * r.film().height());
-  double done = std::max(double(r.samples()), paths) / r.max_samples();
-  if (const schedule::AdaptiveSchedule* s = r.adaptive())
+  double done = std::max(double(r.samples()), paths) / r.sampling().max_samples();
+  if (const schedule::AdaptiveSchedule* s = r.sampling().adaptive())
     done = double(s->count(schedule::TileState::done) + s->count(schedule::TileState::capped)) /
            double(s->sampled_tiles());
   // The nearer limit.
   if (limit > 0) done = std::max(done, std::min(1.0, seconds / limit));
   const double left = done > 0 ? seconds * (1 - done) / done : 0;
   std::fprintf(stderr, "\r%5.1f %%  %u/%u samples  %.2f Mray/s  %.2f samples/s  %s %.0f s left   %s",
-               100 * done, r.samples(), r.max_samples(),
+               100 * done, r.samples(), r.sampling().max_samples(),
                1e-6 * double(r.stats().rays) / std::max(seconds, 1e-9), paths / std::max(seconds, 1e-9),
                "about", left, last ? "\n" : "");
   std::fflush(stderr);
@@ -234,7 +234,7 @@ bool load(session::Renderer& r, const RenderArguments& a, const std::vector<sess
   r.expect_seconds(a.seconds);
   if (!a.camera.empty()) r.choose_camera(a.camera);
   set_lens(r, a);
-  if (!a.reference.empty()) r.set_reference(a.reference);
+  if (!a.reference.empty()) r.progress().set_reference(a.reference);
   for (const auto& [name, file] : a.solver_load)
     if (!file.empty()) r.solver_load(name, file);
   return true;
@@ -252,7 +252,7 @@ class Outputs {
     std::erase_if(work_, [&](const auto& entry) {
       const auto& [name, file] = entry;
       const bool ready = solvers::ready(*r.solver(name));
-      if (ready) attempt([&] { r.solver_save(name, file); });
+      if (ready) attempt([&] { r.solvers().save(name, file); });
       return ready;
     });
   }
@@ -282,7 +282,7 @@ void find_exposure(session::Renderer& r, const std::vector<session::SettingChang
     if (change.key == "film.ev") return;
   for (const auto& [key, value] : r.scene()->settings)
     if (key == "film.ev") return;
-  const std::optional<float> ev = r.measure(std::nullopt).ev;
+  const std::optional<float> ev = r.output().measure(std::nullopt).ev;
   if (!ev) return;
   r.settings().set("film.ev", fmt::format("{:.1f}", *ev));
   r.apply_settings();
@@ -303,7 +303,7 @@ class FilteredGoal {
   /// True once the error of the filtered picture is at or under the target.
   bool reached(session::Renderer& r) {
     if (target_ == 0 || r.samples() < next_ || r.preparing()) return false;
-    const double error = filtered_error(r, r.filter());
+    const double error = filtered_error(r, r.output().filter());
     if (error <= target_) return true;
     // Noise falls with the root of the number of samples at best.
     const double factor = std::clamp(std::pow(error / target_, 2), k_least_growth, k_most_growth);
@@ -335,7 +335,7 @@ double run(session::Renderer& r, const RenderArguments& a, const std::vector<ses
       may_prepare = true;
       if (r.preparing()) {
         log::info("half of the time is over: the picture is rendered with the data prepared so far");
-        r.finish_early();
+        r.solvers().finish_early();
       }
     }
     if (!r.step()) break;
@@ -343,7 +343,7 @@ double run(session::Renderer& r, const RenderArguments& a, const std::vector<ses
     if (tev && !tev->follow(r)) tev = nullptr;
     if (!covered && r.samples() > 0) log::info("every pixel has a sample after {:.2f} s", timer.seconds());
     // Tiles stop by the error as seen, which depends on the exposure.
-    if (!covered && r.samples() > 0 && r.adaptive()) find_exposure(r, changes);
+    if (!covered && r.samples() > 0 && r.sampling().adaptive()) find_exposure(r, changes);
     covered = r.samples() > 0;
     if (terminal && since_line.seconds() > 0.2)
       print_progress(r, timer.seconds(), limit, false), since_line.restart();
@@ -395,7 +395,7 @@ std::string advice(const session::Renderer& r) {
 void filter(session::Renderer& r, const std::optional<double>& target) {
   if (r.samples() < 2)
     log::warning("--filter: pixels with fewer than two samples stay unfiltered: their noise is unknown");
-  const session::Filtered& f = r.filtered() ? *r.filtered() : r.filter();
+  const session::Filtered& f = r.output().filtered() ? *r.output().filtered() : r.output().filter();
   log::info("filtered in {:.2f} s; estimated error {:.2g} %", 1e-3 * f.ms(), 100 * f.error.relative());
   for (const auto& [kernel, ms] : f.kernel_ms) log::debug("filter: {}: {:.1f} ms", kernel, ms);
   if (!target) return;
@@ -416,7 +416,8 @@ void record_paths(session::Renderer& r, const RenderArguments& a, const Interrup
   constexpr size_t k_part = 1 << 16;
   const Timer timer;
   const uint32_t width = r.film().width(), height = r.film().height();
-  const schedule::Rectangle sampled = r.region().value_or(schedule::Rectangle{0, 0, width, height});
+  const schedule::Rectangle sampled =
+      r.sampling().chosen_region().value_or(schedule::Rectangle{0, 0, width, height});
   session::PathSelection selection{.left = sampled.left,
                                    .top = sampled.top,
                                    .right = sampled.right,
@@ -432,7 +433,7 @@ void record_paths(session::Renderer& r, const RenderArguments& a, const Interrup
   }
   selection.every = uint32_t(a.record_every);
   session::PathChoices choices(selection, width, height);
-  const recording::Recording names = r.begin_recording();
+  const recording::Recording names = r.paths().begin();
   nlohmann::ordered_json about;
   about["settings"] = r.settings().changed_json();
   about["samples"] = selection.samples, about["every"] = selection.every, about["over"] = a.record_over;
@@ -441,7 +442,7 @@ void record_paths(session::Renderer& r, const RenderArguments& a, const Interrup
   uint64_t traced = 0, lost = 0;
   while (!choices.done() && !interrupt.signal()) {
     recording::Recording part = names;
-    r.record_paths(choices.take(k_part), part, [&] { return interrupt.signal() != 0; });
+    r.paths().record(choices.take(k_part), part, [&] { return interrupt.signal() != 0; });
     traced += part.paths.size();
     if (a.record_over > 0) recording::keep_over(part, a.record_over);
     lost += part.lost();
@@ -472,7 +473,7 @@ int render(const RenderArguments& a) {
   const Interrupt interrupt;
   const bool terminal = !a.quiet && isatty(2);
   if (!load(r, a, changes, interrupt, terminal)) return interrupt.status();
-  if (a.filter && r.region())
+  if (a.filter && r.sampling().chosen_region())
     throw Error("--filter", "a region is not filtered: its edges need the pixels around it");
   if (a.filter && !r.film().fits_storage_buffers())
     throw_error("--filter", "{}x{} exceeds the size that this device can filter", width, height);
@@ -496,21 +497,21 @@ int render(const RenderArguments& a) {
                    r.samples());
     else
       check_time(r, a);
-    if (makes_picture(a) && r.adaptive() && !interrupt.signal())
-      report_unreached(*r.adaptive(), advice(r)), report_unseen(r);
+    if (makes_picture(a) && r.sampling().adaptive() && !interrupt.signal())
+      report_unreached(*r.sampling().adaptive(), advice(r)), report_unseen(r);
     // All pictures of a turntable have the exposure of the first.
     if (makes_picture(a) && view == 0) outputs.attempt([&] { find_exposure(r, changes); });
     if (a.filter && makes_picture(a)) outputs.attempt([&] { filter(r, a.error); });
     for (const std::string& file : a.outputs)
-      outputs.attempt([&] { r.save(a.turntable > 0 ? numbered(file, view + 1) : file); });
+      outputs.attempt([&] { r.output().save(a.turntable > 0 ? numbered(file, view + 1) : file); });
     if (tev) outputs.attempt([&] { tev->finish(r); });
   }
   const bool interrupted = interrupt.signal() != 0;
-  if (!a.ledger.empty()) outputs.attempt([&] { write_file(a.ledger, r.ledger().csv()); });
+  if (!a.ledger.empty()) outputs.attempt([&] { write_file(a.ledger, r.progress().ledger().csv()); });
   if (!a.stats.empty())
     outputs.attempt([&] {
       nlohmann::ordered_json stats = make_stats(r, wall);
-      if (r.filtered() && a.error) {
+      if (r.output().filtered() && a.error) {
         nlohmann::ordered_json& filtered = stats["filtered"];
         filtered["target_error"] = *a.error;
         filtered["reached"] = filtered["of_mean"].get<double>() <= *a.error;

@@ -21,7 +21,7 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
   j["of_mean"] = error.relative_sum();
   j["rms"] = error_sum(error.rms[0], error.lookup_noise_rms, error.interpolation_rms);
   j["white"] = error.white, j["dark"] = error.dark;
-  const std::vector<film::TileError> tiles = r.tile_errors();
+  const std::vector<film::TileError> tiles = r.progress().tile_errors();
   const auto write_tiles = [](nlohmann::ordered_json& to, const film::TileSpread& spread) {
     to["tile_median"] = spread.median;
     to["tile_worst_decile"] = spread.worst_tenth;
@@ -39,14 +39,14 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
     write_tiles(j[name], film::tile_spread(tiles, of));
   };
   part("paths", error.seen(0), error.relative(0), error.rms[0], &film::TileError::relative);
-  if (r.looks_up() && !r.lookup_errors_known()) j["records"] = j["bias"] = nullptr;
-  if (r.looks_up() && r.lookup_errors_known()) {
+  if (r.looks_up() && !r.progress().lookup_errors_known()) j["records"] = j["bias"] = nullptr;
+  if (r.looks_up() && r.progress().lookup_errors_known()) {
     part("records", error.seen_lookup_noise, error.relative_lookup_noise(), error.lookup_noise_rms,
          &film::TileError::relative_lookup_noise);
     part("bias", error.seen_interpolation, error.relative_interpolation(), error.interpolation_rms,
          &film::TileError::relative_interpolation);
   }
-  if (!r.lookup_bias_estimated()) j["bias"] = nullptr;
+  if (!r.progress().lookup_bias_estimated()) j["bias"] = nullptr;
   for (int c = 0; c < paths::k_component_count; ++c) {
     auto& component = j["components"][paths::k_component_names[c]];
     component = {{"seen", error.seen(c + 1)},
@@ -54,7 +54,7 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
                  {"of_mean", error.relative(c + 1)},
                  {"rms", error.rms[c + 1]},
                  {"bias", nullptr}};
-    if (const auto bias = r.bias(size_t(c))) component["bias"] = *bias;
+    if (const auto bias = r.progress().bias(size_t(c))) component["bias"] = *bias;
   }
   return j;
 }
@@ -238,12 +238,13 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   j["peak_host_mb"] = session::peak_host_mb();
   j["peak_device_mb"] = double(r.device().peak_bytes()) / (1 << 20);
   j["error"] = make_error(r);
-  if (const session::Filtered* f = r.filtered()) j["filtered"] = make_filtered(r, *f);
-  if (const film::Reference* reference = r.reference()) j["truth"] = make_truth(*reference, r.ledger());
-  if (r.adaptive()) j["tiles"] = make_tiles(*r.adaptive());
-  j["ledger"] = make_ledger(r.ledger());
-  if (!r.adaptive()) j["forecast"] = make_forecast(r.ledger());
-  j.update(r.solver_statistics());
+  if (const session::Filtered* f = r.output().filtered()) j["filtered"] = make_filtered(r, *f);
+  if (const film::Reference* reference = r.progress().reference())
+    j["truth"] = make_truth(*reference, r.progress().ledger());
+  if (r.sampling().adaptive()) j["tiles"] = make_tiles(*r.sampling().adaptive());
+  j["ledger"] = make_ledger(r.progress().ledger());
+  if (!r.sampling().adaptive()) j["forecast"] = make_forecast(r.progress().ledger());
+  j.update(r.solvers().statistics());
   for (const auto& s : r.stats().stages)
     j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
   for (int c = 0; c < paths::k_component_count; ++c) {

@@ -12,6 +12,7 @@
 #include "base/file.h"
 #include "session/device_keeper.h"
 #include "ui/runner.h"
+#include "ui/state.h"
 #include "ui/viewer.h"
 
 namespace lucerna::app {
@@ -90,8 +91,9 @@ int run_all(const ScriptArguments& arguments, const Words& words, commands::Repo
     const ui::ViewerOptions options = options_of(file, words, report);
     commands::ScriptResult result;
     {
-      session::Session session(
+      const auto made = session::start_session(
           {.device = arguments.device, .validation = false, .shaders = {}, .scenes = arguments.scenes});
+      session::Session& session = *made;
       const int status =
           window ? ui::run_viewer(session, options, &result) : ui::run_headless(session, options, &result);
       failed = failed || status != 0 || !result.passed();
@@ -117,7 +119,9 @@ int run_scripts(const ScriptArguments& arguments) {
     words = sorted(arguments.words);
     report.emplace(arguments.report);
     // Every script is read before the first one runs.
-    session::Session idle({.device = "", .validation = false, .shaders = {}, .scenes = {}, .idle = true});
+    const auto made = session::start_session(
+        {.device = "", .validation = false, .shaders = {}, .scenes = {}, .idle = true});
+    session::Session& idle = *made;
     for (const std::string& file : words.files)
       needs_window = ui::needs_window(idle, options_of(file, words, *report)) || needs_window;
   } catch (const Error& error) {
@@ -136,10 +140,12 @@ int run_scripts(const ScriptArguments& arguments) {
 }
 
 int help(const std::string& topic) {
-  session::Session idle({.device = "", .validation = false, .shaders = {}, .scenes = {}, .idle = true});
+  const auto made =
+      session::start_session({.device = "", .validation = false, .shaders = {}, .scenes = {}, .idle = true});
+  session::Session& idle = *made;
   ui::Ui state(idle);
   commands::ReportFolder report;
-  const ui::Runner runner(state, report);
+  const ui::Runner runner(state.viewport, state.areas, state.log, state.requests, report);
   std::printf("%s\n", state.work.manual(topic).c_str());
   return 0;
 }

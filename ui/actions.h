@@ -29,6 +29,7 @@ class Actions {
   /// Reverts what the gesture of the held control has changed last, and forgets it.
   void cancel_gesture();
 
+  double now() const { return work_.now; }  ///< seconds since the window opened
   /// Lets the window draw this number of frames.
   void wake(int frames = 2) { wake_(frames); }
   /// Determines the held control; call once per frame.

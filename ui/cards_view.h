@@ -4,14 +4,24 @@
 #include <string>
 #include <vector>
 
+#include "actions.h"
+
 namespace lucerna::ui {
 
 struct CardsView {
+  explicit CardsView(Actions& a) : actions(a) {}
+
+  Actions& actions;
   /// A sentence over the picture that disappears by itself.
   struct {
     std::string text;
     double until = 0;
   } note;
+  /// Shows such a sentence.
+  void notice(const std::string& text, double seconds = 6) {
+    note.text = text, note.until = actions.now() + seconds;
+    actions.wake(3);
+  }
   std::vector<std::string> errors;  ///< the strip's, newest last
   bool welcome = false;             ///< the first steps are shown
   /// The command in progress and its start. Once a command is done and not shown yet, the first picture of it

@@ -1,4 +1,4 @@
-// The page of keys, the handling of keys, and the frame of every panel.
+// The page of keys, the frame of every panel, and the borders between panels.
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui_internal.h>
@@ -153,126 +153,10 @@ void begin_panel(const char* name, const Area& area, ImU32 background, bool scro
 }
 
 void draw_dialogs(Ui& ui) {
-  draw_file_dialog(ui.actions, ui.open, ui.recent, ui.picture_of, ui.dialog, ui.pressed(GLFW_KEY_ESCAPE));
+  draw_file_dialog(ui.actions, ui.open, ui.recent, ui.picture_of, ui.dialog,
+                   ui.keys.pressed(GLFW_KEY_ESCAPE));
   draw_leaving_dialog(ui);
   key_page(ui);
-}
-
-bool Ui::pressed(int key, int mods) const {
-  const int relevant = GLFW_MOD_CONTROL | GLFW_MOD_ALT | GLFW_MOD_SUPER;
-  return std::any_of(keys.begin(), keys.end(),
-                     [&](const auto& k) { return k.first == key && (k.second & relevant) == mods; });
-}
-
-namespace {
-
-/// Keys of views and commands of the solvers in use. If two share a key, the one whose panel is shown has it,
-/// otherwise the first. Keys of views that no solver in use has say so.
-void solver_keys(Ui& ui) {
-  std::vector<const solvers::SolverInfo*> used;
-  for (const solvers::SolverInfo* solver : solvers::registered())
-    if (ui.open.uses(*solver)) used.insert(ui.side == solver->name ? used.begin() : used.end(), solver);
-  std::set<char> taken;
-  const auto pressed = [&](char shortcut) {  // a letter is GLFW's name of its key
-    return shortcut && ui.pressed(shortcut) && taken.insert(shortcut).second;
-  };
-  for (const solvers::SolverInfo* solver : used) {
-    for (const solvers::ViewInfo& view : solver->views)
-      if (pressed(view.shortcut)) ui.controls.turn_view(view);
-    for (const solvers::CommandInfo& command : solver->commands)
-      if (pressed(command.shortcut)) ui.act(solver->name + "." + command.name);
-  }
-  if (!ui.open.scene) return;
-  for (const solvers::SolverInfo* solver : solvers::registered())
-    for (const solvers::ViewInfo& view : solver->views)
-      if (!ui.open.uses(*solver) && pressed(view.shortcut))
-        ui.notice(fmt::format("{}: no component is computed by {}. Choose it in the Light panel.", view.label,
-                              solver->title));
-}
-
-/// Holds the picture, and shows the panel of held results.
-void hold_picture(Ui& ui) {
-  ui.act("compare.hold");
-  ui.act("window.side", k_compare_side);
-}
-
-}  // namespace
-
-void handle_keys(Ui& ui) {
-  ui.compare.flipped = ImGui::GetIO().KeysDown[GLFW_KEY_Y] && !ImGui::GetIO().WantTextInput;
-  if (ui.compare.flipped) ui.wake(2);
-  const bool popup = ImGui::IsPopupOpen(nullptr, ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
-  if (ui.pressed(GLFW_KEY_F12)) ui.act("screenshot");
-  if (ui.pressed(GLFW_KEY_F5)) ui.act("shaders.reload");
-  if (ui.dialog.purpose != Dialog::Purpose::none) return;
-  if (ui.pressed(GLFW_KEY_O, GLFW_MOD_CONTROL)) ui.act("dialog.open");
-  for (const auto& [key, mods] : ui.keys)
-    if (key == GLFW_KEY_S && mods & GLFW_MOD_CONTROL && ui.has_picture())
-      ui.act(mods & GLFW_MOD_SHIFT ? "scene.save" : "dialog.save");
-  if (ui.pressed(GLFW_KEY_L, GLFW_MOD_CONTROL)) ui.act("log.type");
-  if (ui.pressed(GLFW_KEY_Q, GLFW_MOD_CONTROL)) ui.act("window.close");
-  if (popup && ui.pressed(GLFW_KEY_ESCAPE)) ImGui::ClosePopupToLevel(0, true);
-  if (ImGui::GetIO().WantTextInput || popup) return;
-  for (const auto& [key, mods] : ui.keys)
-    if (key == GLFW_KEY_Z && mods & GLFW_MOD_CONTROL) {
-      const bool again = mods & GLFW_MOD_SHIFT;
-      if (again ? ui.history.can_redo() : ui.history.can_undo()) ui.act(again ? "redo" : "undo");
-    }
-  if (ui.pressed(GLFW_KEY_F1)) ui.act("window.keys");
-  if (ui.pressed(GLFW_KEY_TAB)) ui.act("window.panels", !ui.layout.panels), ui.wake(3);
-  if (ui.pressed(GLFW_KEY_ESCAPE)) {
-    if (ui.drag.object)
-      ui.cancel_object_drag();
-    else if (ui.drag.lamp && ImGui::IsMouseDragging(0))
-      ui.cancel_lamp_drag();
-    else if (ui.cards.welcome)
-      ui.cards.welcome = false;
-    else if (ui.dropper)
-      ui.act("exposure.dropper", false);
-    else if (ui.scene_view.focusing)
-      ui.act("camera.focusing", false);
-    else if (ui.paths.pick != PathsView::Pick::none)
-      ui.act("paths.pick", "none");
-    else if (ui.region.picks)
-      ui.act("region.pick", false);
-    else if (ui.open.loading() || (ui.open.moving_objects() && !ui.open.snapshot->activity.empty()))
-      ui.act("scene.cancel");
-    else if (!ui.cards.errors.empty())
-      ui.act("dismiss");
-    else if (ui.camera.selection.kind != Kind::none)
-      ui.act("select.none");
-  }
-  if (!ui.open.snapshot) return;
-  if (ui.pressed(GLFW_KEY_F) && ui.camera.view) ui.act("camera.frame");
-  if (ui.pressed(GLFW_KEY_H) && ui.camera.view) ui.act("camera.walking", !ui.camera.walking);
-  if (ui.pressed(GLFW_KEY_B, GLFW_MOD_CONTROL) && ui.camera.view) keep_view(ui);
-  if (ui.pressed(GLFW_KEY_B) && ui.camera.view) ui.act("exposure.dropper", !ui.dropper);
-  if (ui.pressed(GLFW_KEY_R)) ui.act("render.restart");
-  if (ui.pressed(GLFW_KEY_R, GLFW_MOD_CONTROL) && ui.open.scene) ui.act("region.pick", !ui.region.picks);
-  if (ui.pressed(GLFW_KEY_I) && ui.open.scene) {
-    if (ui.held_pixel.reported && ui.work.pixel)
-      trace_pixel(ui, ui.work.pixel->at);
-    else
-      ui.act("paths.pick", ui.paths.pick == PathsView::Pick::pixel ? "none" : "pixel");
-  }
-  if (ui.pressed(GLFW_KEY_Z) && ui.camera.selection.kind == Kind::instance) {
-    const int next = ui.scene_view.gizmo == GizmoMode::size ? 1 : static_cast<int>(ui.scene_view.gizmo) + 1;
-    ui.act("view.gizmo", k_gizmo_names[static_cast<size_t>(next)]);
-  }
-  if (ui.pressed(GLFW_KEY_L)) ui.act("view.lamps", !ui.light_marks);
-  if (ui.pressed(GLFW_KEY_T)) ui.toggle("overlay.tiles");
-  if (ui.pressed(GLFW_KEY_H, GLFW_MOD_CONTROL) && ui.open.scene) hold_picture(ui);
-  if (ui.pressed(GLFW_KEY_Y) && !ui.work.compare.results.compared())
-    ui.notice("No held result is chosen. Ctrl+H holds the picture.");
-  if (ui.pressed(GLFW_KEY_U))
-    ui.act("set", "preview.filter", ui.open.setting("preview.filter") == "off" ? "auto" : "off");
-  solver_keys(ui);
-  if (ui.pressed(GLFW_KEY_K)) ui.act("window.side", ui.next_side());
-  if (ui.pressed(GLFW_KEY_SPACE)) ui.act(ui.open.snapshot->paused ? "render.resume" : "render.pause");
-  for (int n = 0; n < 9; ++n)
-    if (ui.pressed(GLFW_KEY_1 + n) && ui.open.scene && n < static_cast<int>(ui.open.scene->cameras.size()) &&
-        ui.camera.view)
-      ui.act("camera.select", n + 1);
 }
 
 void draw_splitters(Ui& ui, const Areas& areas) {

@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "runner.h"
 #include "setting_lines.h"
+#include "state.h"
 #include "viewer.h"
 
 namespace lucerna::ui {
@@ -14,7 +15,9 @@ namespace {
 class Headless {
  public:
   Headless(session::Session& session, const ViewerOptions& options)
-      : options_(options), ui_(session), runner_(ui_, options.report ? *options.report : report_) {
+      : options_(options),
+        ui_(session),
+        runner_(ui_.viewport, ui_.areas, ui_.log, ui_.requests, options.report ? *options.report : report_) {
     ui_.scripted = true;
     settings_ = setting_lines(ui_.work.registry, options.set);
     runner_.scripts.start(options.script, options.script_name, false, options.variables);
@@ -58,7 +61,7 @@ class Headless {
 
   void follow_size() {
     const auto divided = [this](uint32_t size) {
-      return std::max(1u, size / static_cast<uint32_t>(ui_.picture_divisor));
+      return std::max(1u, size / static_cast<uint32_t>(ui_.viewport.divisor));
     };
     const std::pair<uint32_t, uint32_t> size =
         ui_.picture_size.value_or(std::pair(divided(k_headless_size.first), divided(k_headless_size.second)));

@@ -93,8 +93,8 @@ bool project(const scene::Camera& camera, const Area& shown, const vec3& point, 
 }
 
 session::PickRay ray_through(const commands::Navigation& camera, const Area& shown, const ImVec2& at) {
-  return session::pick_ray(camera.view->camera, (at.x - shown.lo.x) / std::max(1.0f, shown.width()),
-                           (at.y - shown.lo.y) / std::max(1.0f, shown.height()), camera.aspect);
+  const vec2 place = shown.place_of(at);
+  return session::pick_ray(camera.view->camera, place.x, place.y, camera.aspect);
 }
 
 std::optional<session::Picked> surface_at(commands::Navigation& camera, const Area& shown, const ImVec2& at,

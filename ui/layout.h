@@ -2,7 +2,10 @@
 // Layout of the window's parts: a pure function, in window pixels.
 #include <imgui.h>
 
+#include <algorithm>
 #include <optional>
+
+#include "base/math.h"
 
 namespace lucerna::ui {
 
@@ -25,6 +28,14 @@ struct Area {
   ImVec2 lo, hi;
   float width() const { return hi.x - lo.x; }
   float height() const { return hi.y - lo.y; }
+  /// Where a point of the window is in it: 0..1 to the right and down; beyond that outside.
+  vec2 place_of(const ImVec2& at) const {
+    return {(at.x - lo.x) / std::max(1.0f, width()), (at.y - lo.y) / std::max(1.0f, height())};
+  }
+  bool contains(const ImVec2& at) const {
+    const vec2 place = place_of(at);
+    return place.x >= 0 && place.x <= 1 && place.y >= 0 && place.y <= 1;
+  }
 };
 
 /// Areas of the parts; hidden parts have none. They tile the window: bar on top; left, (toolbar over

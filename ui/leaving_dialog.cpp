@@ -57,7 +57,7 @@ void draw_leaving_dialog(Ui& ui) {
         ui.finish_leaving();
       } else {
         ImGui::SameLine(0, px(8));
-        if (button("##stay", "Cancel", false, w) || ui.pressed(GLFW_KEY_ESCAPE))
+        if (button("##stay", "Cancel", false, w) || ui.keys.pressed(GLFW_KEY_ESCAPE))
           ui.leaving = {};
         else
           done = false;

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "actions.h"
 #include "base/log.h"
 
 namespace lucerna::ui {
@@ -41,6 +42,15 @@ struct Console {
 };
 
 struct LogView {
+  explicit LogView(Actions& a) : actions(a) {}
+
+  Actions& actions;
+  /// Adds a line to the panel alone.
+  void print(log::Level level, const std::string& text) {
+    lines.push_back({level, actions.now(), text});
+    actions.wake();
+  }
+
   std::deque<LogLine> lines;
   bool follows = true;
   std::array<bool, 4> levels{false, true, true, true};  ///< shown ones

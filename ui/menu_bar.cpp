@@ -275,136 +275,140 @@ std::string title_of(const solvers::SolverInfo& solver) {
   return capitalised(title.starts_with("the ") ? title.substr(4) : title);
 }
 
-void view_menu(Ui& ui) {
+/// `layout`: as chosen. `shown`: as it fits. `side`: content of the right panel. `earlier`: the plot has
+/// earlier renders.
+void view_menu(Controls& controls, const Viewport& view, const Layout& layout, const Layout& shown,
+               const std::string& shown_side, bool earlier) {
   if (!begin_menu("View")) return;
-  if (entry("Panels", "Tab", "Shows or hides all panels.", ui.layout.panels))
-    ui.act("window.panels", !ui.layout.panels);
+  if (entry("Panels", "Tab", "Shows or hides all panels.", layout.panels))
+    controls.act("window.panels", !layout.panels);
   if (entry("Components and options", nullptr,
             "The panel on the left: the four components of light and the options of the render.",
-            ui.shown.left_open))
-    ui.act("window.fold", "left", ui.shown.left_open);
+            shown.left_open))
+    controls.act("window.fold", "left", shown.left_open);
   // Panels on the right; selecting the displayed one folds it.
   const auto side = [&](const std::string& name, const char* key, const std::string& help,
                         const std::string& what) {
-    const bool on = ui.shown.right_open && ui.side == what;
+    const bool on = shown.right_open && shown_side == what;
     ImGui::PushID(what.c_str());  // a solver may have the name of a panel
     const bool pressed = entry(name.c_str(), key, help.c_str(), on);
     ImGui::PopID();
     if (!pressed) return;
     if (on)
-      ui.act("window.fold", "right", true);
+      controls.act("window.fold", "right", true);
     else
-      ui.act("window.side", what);
+      controls.act("window.side", what);
   };
   side("Scene", nullptr, "Cameras, lights, environment, materials.", k_scene_side);
   side("Paths", nullptr, "Paths of a pixel, and what the noise comes from.", k_paths_side);
   side("Compare", nullptr, "Held results, and the picture against them.", k_compare_side);
-  const std::string next = ui.next_side();
+  const std::string next = next_side(controls.open, shown_side, shown.right_open);
   for (const solvers::SolverInfo* solver : solvers::registered())
     if (solver->has_panel())
-      side(title_of(*solver), next == solver->name || ui.side == solver->name ? "K" : nullptr,
+      side(title_of(*solver), next == solver->name || shown_side == solver->name ? "K" : nullptr,
            panel_help(*solver), solver->name);
-  if (entry("Accuracy, passes and log", nullptr, "The strip at the bottom.", ui.shown.bottom_open))
-    ui.act("window.fold", "bottom", ui.shown.bottom_open);
+  if (entry("Accuracy, passes and log", nullptr, "The strip at the bottom.", shown.bottom_open))
+    controls.act("window.fold", "bottom", shown.bottom_open);
   divide();
-  if (entry("Selection", nullptr, "Shows the box and the handles of the selected object.", ui.brackets))
-    ui.act("view.selection", !ui.brackets);
+  if (entry("Selection", nullptr, "Shows the box and the handles of the selected object.", view.brackets))
+    controls.act("view.selection", !view.brackets);
   if (entry(
           "Lights", "L",
           "Marks lamps and emissive surfaces in the picture. Click a mark to select, drag it to move a lamp.",
-          ui.light_marks))
-    ui.act("view.lamps", !ui.light_marks);
+          view.light_marks))
+    controls.act("view.lamps", !view.light_marks);
   if (entry("Histogram", nullptr, "Shows how many pixels have which display value, and how many are clipped.",
-            ui.histogram.on))
-    ui.act("view.histogram", !ui.histogram.on);
+            view.histogram.on))
+    controls.act("view.histogram", !view.histogram.on);
   if (entry("Camera frame", nullptr,
             "Shows a frame with the camera's aspect ratio in the picture (command view.frame for another "
             "ratio).",
-            ui.frame_guide.on))
-    ui.act("view.frame", !ui.frame_guide.on);
+            view.frame_guide.on))
+    controls.act("view.frame", !view.frame_guide.on);
   if (const OptionInfo* tiles = plan::find_option("overlay.tiles");
-      entry("Tiles", "T", tiles->help.c_str(), ui.open.setting_on(tiles->key)))
-    ui.toggle(tiles->key);
-  for (const solvers::ViewInfo& view : plan::views())
-    if (entry(view.label.c_str(), nullptr, plan::find_option(view.option)->help.c_str(),
-              ui.controls.view_on(view)))
-      ui.controls.turn_view(view);
-  if (const OptionInfo* former = plan::find_option("overlay.former");
-      entry("Light from before the edit", nullptr, former->help.c_str(), ui.open.setting_on(former->key)))
-    ui.toggle(former->key);
+      entry("Tiles", "T", tiles->help.c_str(), controls.open.setting_on(tiles->key)))
+    controls.actions.toggle(tiles->key);
+  for (const solvers::ViewInfo& drawn : plan::views())
+    if (entry(drawn.label.c_str(), nullptr, plan::find_option(drawn.option)->help.c_str(),
+              controls.view_on(drawn)))
+      controls.turn_view(drawn);
+  if (const OptionInfo* former = plan::find_option("overlay.former"); entry(
+          "Light from before the edit", nullptr, former->help.c_str(), controls.open.setting_on(former->key)))
+    controls.actions.toggle(former->key);
   if (entry("Unfiltered samples", "U",
             "Shows samples only: no filter for noise, and no light from before an edit.",
-            ui.open.setting("preview.filter") == "off"))
-    ui.act("set", "preview.filter", ui.open.setting("preview.filter") == "off" ? "auto" : "off");
+            controls.open.setting("preview.filter") == "off"))
+    controls.act("set", "preview.filter", controls.open.setting("preview.filter") == "off" ? "auto" : "off");
   for (const solvers::SolverInfo* solver : solvers::registered()) {
     if (solver->views.empty()) continue;
-    const bool used = ui.open.uses(*solver);
+    const bool used = controls.open.uses(*solver);
     ImGui::PushID(solver->name.c_str());
     if (begin_submenu((title_of(*solver) + ": views").c_str(),
                       fmt::format("No component is computed by {}.", solver->title).c_str(), used)) {
-      solver_views(ui.controls, *solver);
+      solver_views(controls, *solver);
       end_submenu();
     }
     ImGui::PopID();
   }
-  ocio_menu(ui.actions, ui.open);
+  ocio_menu(controls.actions, controls.open);
   if (entry("Clear earlier renders", nullptr, "Removes the lines of earlier renders from the Accuracy plot.",
-            false, !ui.accuracy.runs.earlier().empty()))
-    ui.act("accuracy.clear_runs");
+            false, earlier))
+    controls.act("accuracy.clear_runs");
   divide();
   if (begin_submenu("Resolution", "Pixels of the picture per pixel of the window.")) {
     for (const auto& [divisor, name] : {std::pair{1, "Full"}, {2, "Half"}, {4, "Quarter"}})
       if (entry(name, nullptr, "Pixels of the picture per pixel of the window; fewer converge faster.",
-                ui.picture_divisor == divisor))
-        ui.act("view.divisor", divisor);
+                view.divisor == divisor))
+        controls.act("view.divisor", divisor);
     end_submenu();
   }
   end_menu();
 }
 
-void camera_menu(Ui& ui) {
+void camera_menu(Actions& actions, const commands::OpenScene& open, const commands::Navigation& camera,
+                 const Viewport& viewport, CardsView& cards) {
   if (!begin_menu("Camera")) return;
-  const bool view = ui.camera.view.has_value();
+  const bool view = camera.view.has_value();
   if (entry("Frame selection", "F",
             "Moves the camera so that the selection, or otherwise the whole scene, fills the picture. The "
             "camera stays in front of walls.",
             false, view))
-    ui.act("camera.frame");
-  if (entry("Walk along the floor", "H", "W A S D walk at eye height instead of flying.", ui.camera.walking,
+    actions.act("camera.frame");
+  if (entry("Walk along the floor", "H", "W A S D walk at eye height instead of flying.", camera.walking,
             view))
-    ui.act("camera.walking", !ui.camera.walking);
-  const bool lens = view && ui.camera.view->camera.perspective();
+    actions.act("camera.walking", !camera.walking);
+  const bool lens = view && camera.view->camera.perspective();
   if (entry("Focus by a click", nullptr, "The next click in the picture puts the plane of focus there.",
-            ui.scene_view.focusing, lens))
-    ui.act("camera.focusing", !ui.scene_view.focusing);
-  if (entry(
-          "Turntable", nullptr,
-          ui.turntable > 0 ? "Stops the camera." : "Turns the camera about what it looks at, in 20 seconds.",
-          ui.turntable > 0, view))
-    ui.act("camera.turntable", ui.turntable > 0 ? 0 : 20);
+            viewport.scene_view.focusing, lens))
+    actions.act("camera.focusing", !viewport.scene_view.focusing);
+  if (entry("Turntable", nullptr,
+            viewport.moves.turntable() > 0 ? "Stops the camera."
+                                           : "Turns the camera about what it looks at, in 20 seconds.",
+            viewport.moves.turntable() > 0, view))
+    actions.act("camera.turntable", viewport.moves.turntable() > 0 ? 0 : 20);
   if (entry("Make upright", nullptr,
             "Levels the camera and shifts the lens so that the picture's middle stays: vertical lines become "
             "vertical.",
             false, lens))
-    ui.act("camera.upright");
+    actions.act("camera.upright");
   divide();
   if (entry("Bookmark this view", "Ctrl+B", "Saves the view for this scene, also for later runs.", false,
             view))
-    keep_view(ui);
+    keep_view(actions, open, camera, cards);
   int row = 0;
-  for (const auto& [name, line] : ui.camera.bookmarks_of(ui.open.scene.get())) {
+  for (const auto& [name, line] : camera.bookmarks_of(open.scene.get())) {
     ImGui::PushID(row++);
     if (entry(elided(name, px(180)).c_str(), nullptr, (name + ": restores this view.").c_str()))
-      ui.act("camera.go", name);
+      actions.act("camera.go", name);
     ImGui::PopID();
   }
   divide();
   if (entry("Find exposure", nullptr, "Sets the exposure for the picture as a whole.", false, view))
-    ui.act("exposure.find");
+    actions.act("exposure.find");
   if (entry("Pick middle grey", "B",
             "The next click in the picture sets the exposure so that the clicked point is middle grey.",
-            ui.dropper, view))
-    ui.act("exposure.dropper", !ui.dropper);
+            viewport.dropper, view))
+    actions.act("exposure.dropper", !viewport.dropper);
   end_menu();
 }
 
@@ -500,10 +504,10 @@ void draw_menu_bar(Ui& ui, const Area& area) {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(16), 0});
   float menus_end = area.lo.x;
   if (ImGui::BeginMenuBar()) {
-    file_menu(ui.actions, ui.open, ui.work.scene_file, ui.recent, ui.has_picture());
+    file_menu(ui.actions, ui.open, ui.work.scene_file, ui.recent, ui.viewport.has_picture());
     edit_menu(ui.actions, ui.history, ui.camera.selection);
-    view_menu(ui);
-    camera_menu(ui);
+    view_menu(ui.controls, ui.viewport, ui.layout, ui.shown, ui.side, !ui.accuracy.runs.earlier().empty());
+    camera_menu(ui.actions, ui.open, ui.camera, ui.viewport, ui.cards);
     render_menu(ui.actions, ui.open, ui.region.picks);
     help_menu(ui.actions, ui.log);
     menus_end = ImGui::GetCursorScreenPos().x;

@@ -14,26 +14,26 @@ constexpr float k_line = 16, k_pad = 10, k_edge = 12;
 
 }  // namespace
 
-bool inspect_while_held(Ui& ui, const Area& picture, bool active) {
+bool inspect_while_held(Viewport& view, const Area& picture, bool active) {
   const ImGuiIO& io = ImGui::GetIO();
-  HeldPixel& held = ui.held_pixel;
-  const bool pressed = active && io.MouseDown[0] && !ui.click_taken() && !ui.drag.lamp && !ui.drag.object;
+  HeldPixel& held = view.held_pixel;
+  const bool pressed =
+      active && io.MouseDown[0] && !view.click_taken() && !view.drag.lamp && !view.drag.object;
   if (!pressed) {
     held.since.reset();
     if (!std::exchange(held.reported, false)) return false;
-    ui.act("inspect.none");
+    view.controls.act("inspect.none");
     return true;
   }
-  if (!held.since) held.since = ui.work.now;
+  if (!held.since) held.since = view.work.now;
   const bool still = io.MouseDragMaxDistanceSqr[0] < px(k_still) * px(k_still);
-  if (held.reported || !still || ui.open.loading() || !ui.has_picture()) return false;
-  ui.wake(2);
-  if (ui.work.now - *held.since < k_hold) return false;
-  const float x = (io.MousePos.x - picture.lo.x) / std::max(1.0f, picture.width());
-  const float y = (io.MousePos.y - picture.lo.y) / std::max(1.0f, picture.height());
-  if (x < 0 || x > 1 || y < 0 || y > 1) return false;
+  if (held.reported || !still || view.work.open.loading() || !view.has_picture()) return false;
+  view.controls.actions.wake(2);
+  if (view.work.now - *held.since < k_hold) return false;
+  if (!picture.contains(io.MousePos)) return false;
+  const vec2 place = picture.place_of(io.MousePos);
   held.reported = true;
-  ui.act("inspect.pixel", x, y);
+  view.controls.act("inspect.pixel", place.x, place.y);
   return false;
 }
 

@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "film/io/image_file.h"
+#include "state.h"
 #include "window_expectations.h"
 
 namespace lucerna::ui {
@@ -66,19 +67,27 @@ int held_key_of(const std::string& name) {
 
 }  // namespace
 
-Runner::Runner(Ui& ui, commands::ReportFolder& report)
-    : scripts(ui.work, report,
-              {.wake = [&ui](int frames) { ui.wake(frames); },
-               .quit = [&ui](int status) { ui.requests.status = status; },
+Runner::Runner(Viewport& viewport, const Areas& areas, LogView& log, Requests& requests,
+               commands::ReportFolder& report)
+    : scripts(viewport.work, report,
+              {.wake = [&actions = viewport.controls.actions](int frames) { actions.wake(frames); },
+               .quit = [&requests](int status) { requests.status = status; },
                .waits =
-                   [&ui](const commands::Command& next) {
+                   [&work = viewport.work](const commands::Command& next) {
                      // The panels' own commands need no picture.
-                     return ui.camera.resizing && !next.name.starts_with("window.") &&
+                     return work.camera.resizing && !next.name.starts_with("window.") &&
                             !next.name.starts_with("view.");
                    },
                .patient = [this] { return measuring(); },
-               .add_kinds = [&ui](commands::Expectations& kinds) { add_window_expectations(ui, kinds); }}),
-      ui_(ui) {
+               .add_kinds =
+                   [&actions = viewport.controls.actions, &requests, &areas](commands::Expectations& kinds) {
+                     add_window_expectations(actions, requests, areas, kinds);
+                   }}),
+      work_(viewport.work),
+      actions_(viewport.controls.actions),
+      viewport_(viewport),
+      log_(log),
+      requests_(requests) {
   add_picture_commands();
   add_mouse_commands();
   add_key_commands();
@@ -89,7 +98,7 @@ bool always(const Arguments&) { return true; }
 }  // namespace
 
 void Runner::add_picture_commands() {
-  auto& registry = ui_.work.registry;
+  auto& registry = work_.registry;
   registry.add(
       {.name = "screenshot",
        .help = "Saves the window with its panels as PNG; without a name under an unused name in the working "
@@ -98,13 +107,13 @@ void Runner::add_picture_commands() {
            {{.name = "file", .type = Type::file, .choices = {".png"}, .optional = true, .writes = true}},
        .run =
            [this](const Arguments& a) {
-             ui_.requests.shot = {a.has("file") ? checked_target(a.text("file")) : free_name(), 3};
-             ui_.wake(4);
+             requests_.shot = {a.has("file") ? checked_target(a.text("file")) : free_name(), 3};
+             actions_.wake(4);
            },
        .done =
            [this](const Arguments&) {
-             if (ui_.requests.shot.failed) throw Error("", "nothing was written");
-             return ui_.requests.shot.file.empty();
+             if (requests_.shot.failed) throw Error("", "nothing was written");
+             return requests_.shot.file.empty();
            },
        .recorded = false,
        .needs_window = always});
@@ -119,15 +128,15 @@ void Runner::add_picture_commands() {
 }
 
 std::function<bool(const commands::Arguments&)> Runner::drawn() {
-  return [this](const Arguments&) { return ui_.wake(2), scripts.frames() >= 2; };
+  return [this](const Arguments&) { return actions_.wake(2), scripts.frames() >= 2; };
 }
 
 void Runner::add_mouse_commands() {
-  auto& registry = ui_.work.registry;
+  auto& registry = work_.registry;
   registry.add({.name = "drop",
                 .help = "Acts as if the file were dropped on the window.",
                 .parameters = {{.name = "file", .type = Type::file}},
-                .run = [this](const Arguments& a) { ui_.requests.drops.push_back(a.text("file")); },
+                .run = [this](const Arguments& a) { requests_.drops.push_back(a.text("file")); },
                 .done = drawn(),
                 .recorded = false,
                 .needs_window = always});
@@ -137,7 +146,7 @@ void Runner::add_mouse_commands() {
                                {.name = "y", .type = Type::real, .unit = "pixels"}},
                 .run =
                     [this](const Arguments& a) {
-                      ui_.requests.inputs.push_back({a.number("x"), a.number("y")});
+                      requests_.inputs.push_back({a.number("x"), a.number("y")});
                     },
                 .done = drawn(),
                 .recorded = false,
@@ -149,7 +158,7 @@ void Runner::add_mouse_commands() {
          .parameters = {{.name = "button", .type = Type::choice, .choices = k_buttons, .optional = true}},
          .run =
              [this, down](const Arguments& a) {
-               ui_.requests.inputs.push_back({.button = button_of(a), .down = down});
+               requests_.inputs.push_back({.button = button_of(a), .down = down});
              },
          .done = drawn(),
          .recorded = false,
@@ -157,20 +166,20 @@ void Runner::add_mouse_commands() {
   registry.add({.name = "mouse.wheel",
                 .help = "In a script: turns the wheel.",
                 .parameters = {{.name = "notches", .type = Type::real, .lo = -100, .hi = 100}},
-                .run = [this](const Arguments& a) { ui_.requests.wheel += a.number("notches"); },
+                .run = [this](const Arguments& a) { requests_.wheel += a.number("notches"); },
                 .done = drawn(),
                 .recorded = false,
                 .needs_window = always});
 }
 
 void Runner::add_key_commands() {
-  auto& registry = ui_.work.registry;
+  auto& registry = work_.registry;
   registry.add(
       {.name = "key",
        .help = "In a script: presses a key, such as f, f12, tab, ctrl+z.",
        .parameters = {{.name = "name"}},
        .check = [](const Arguments& a) { key_of(a.text("name")); },
-       .run = [this](const Arguments& a) { ui_.requests.key_strokes.push_back(key_of(a.text("name"))); },
+       .run = [this](const Arguments& a) { requests_.key_strokes.push_back(key_of(a.text("name"))); },
        .done = drawn(),
        .recorded = false,
        .needs_window = always});
@@ -180,7 +189,7 @@ void Runner::add_key_commands() {
                 .check = [](const Arguments& a) { held_key_of(a.text("name")); },
                 .run =
                     [this](const Arguments& a) {
-                      ui_.requests.key_holds.emplace_back(held_key_of(a.text("name")), a.boolean("down"));
+                      requests_.key_holds.emplace_back(held_key_of(a.text("name")), a.boolean("down"));
                     },
                 .done = drawn(),
                 .recorded = false,
@@ -188,60 +197,60 @@ void Runner::add_key_commands() {
   registry.add({.name = "type",
                 .help = "In a script: types a text.",
                 .parameters = {{.name = "text"}},
-                .run = [this](const Arguments& a) { ui_.requests.keyboard += a.text("text"); },
+                .run = [this](const Arguments& a) { requests_.keyboard += a.text("text"); },
                 .done = drawn(),
                 .recorded = false,
                 .needs_window = always});
 }
 
 void Runner::advance() {
-  for (const std::string& line : std::exchange(ui_.log.typed, {})) console(line);
-  if (!ui_.requests.status) scripts.advance();
+  for (const std::string& line : std::exchange(log_.typed, {})) console(line);
+  if (!requests_.status) scripts.advance();
 }
 
 /// A line at the console runs immediately; its failures are shown there, not in the error strip.
 void Runner::console(const std::string& line) {
-  ui_.print(log::Level::info, "\xE2\x80\xBA " + line);
+  log_.print(log::Level::info, "\xE2\x80\xBA " + line);
   try {
-    const commands::Line parsed = ui_.work.registry.parse(line);
+    const commands::Line parsed = work_.registry.parse(line);
     if (!parsed.command) return;
     if (parsed.command->answer)
-      ui_.print(log::Level::info, parsed.command->answer(parsed.arguments));
+      log_.print(log::Level::info, parsed.command->answer(parsed.arguments));
     else
-      ui_.work.run(line);
+      work_.run(line);
   } catch (const std::exception& error) {
-    ui_.print(log::Level::error, error.what());
+    log_.print(log::Level::error, error.what());
   }
 }
 
 void Runner::measure(double seconds) {
-  if (!ui_.camera.view) throw Error("", "there is no picture yet; wait_scene first");
+  if (!work_.camera.view) throw Error("", "there is no picture yet; wait_scene first");
   measure_.emplace();
-  measure_->start = ui_.work.now, measure_->end = ui_.work.now + seconds,
-  measure_->next_move = ui_.work.now + 0.5 * k_between_moves;
+  measure_->start = work_.now, measure_->end = work_.now + seconds,
+  measure_->next_move = work_.now + 0.5 * k_between_moves;
 }
 
 bool Runner::measured() {
   if (!measure_) return true;
   Measure& m = *measure_;
   const bool answered = m.moved_at < 0;
-  if (ui_.work.now >= m.next_move && answered && ui_.work.now < m.end) {
-    ui_.act("camera.orbit", m.moves % 2 ? -0.1 : 0.1, 0);
-    m.target = ui_.camera.view->camera;
-    m.moved_at = ui_.work.now;
-    m.next_move = ui_.work.now + k_between_moves;
+  if (work_.now >= m.next_move && answered && work_.now < m.end) {
+    actions_.act("camera.orbit", m.moves % 2 ? -0.1 : 0.1, 0);
+    m.target = work_.camera.view->camera;
+    m.moved_at = work_.now;
+    m.next_move = work_.now + k_between_moves;
     ++m.moves;
   }
   // Waits for the response to the last move, for a limited time.
-  if (ui_.work.now < m.end || (!answered && ui_.work.now < m.end + 10)) return false;
+  if (work_.now < m.end || (!answered && work_.now < m.end + 10)) return false;
   std::fputs(
       fmt::format("{{\"measure\": {{\"seconds\": {:.2f}, \"frames\": {}, \"frame_ms_p50\": {:.2f}, "
                   "\"frame_ms_p95\": {:.2f}, \"frame_ms_max\": {:.2f}, "
                   "\"coarse_ms_median\": {:.1f}, \"coarse_ms_max\": {:.1f}, \"moves\": {}, \"answered\": {}, "
                   "\"picture\": [{}, {}]}}}}\n",
-                  ui_.work.now - m.start, m.frames.size(), percentile(m.frames, 0.5),
-                  percentile(m.frames, 0.95), percentile(m.frames, 1), percentile(m.coarse, 0.5),
-                  percentile(m.coarse, 1), m.moves, m.coarse.size(), ui_.texture_width, ui_.texture_height)
+                  work_.now - m.start, m.frames.size(), percentile(m.frames, 0.5), percentile(m.frames, 0.95),
+                  percentile(m.frames, 1), percentile(m.coarse, 0.5), percentile(m.coarse, 1), m.moves,
+                  m.coarse.size(), viewport_.texture_width, viewport_.texture_height)
           .c_str(),
       stdout);
   std::fflush(stdout);
@@ -256,8 +265,8 @@ void Runner::presented(double interval_ms) {
   // Before the first frame the window may have slept without anything to draw.
   if (std::exchange(m.begun, true)) m.frames.push_back(interval_ms);
   // The first picture on the screen with the new camera.
-  if (m.moved_at >= 0 && ui_.open.snapshot && commands::same_view(ui_.open.snapshot->camera, m.target)) {
-    m.coarse.push_back(1e3 * (ui_.time() - m.moved_at));
+  if (m.moved_at >= 0 && work_.open.snapshot && commands::same_view(work_.open.snapshot->camera, m.target)) {
+    m.coarse.push_back(1e3 * (Ui::time() - m.moved_at));
     m.moved_at = -1;
   }
 }

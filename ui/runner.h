@@ -14,7 +14,9 @@
 #include <vector>
 
 #include "commands/script_runner.h"
-#include "state.h"
+#include "log_view.h"
+#include "requests.h"
+#include "viewport.h"
 
 namespace lucerna::ui {
 
@@ -26,8 +28,10 @@ double percentile(std::vector<double> values, double p);
 
 class Runner {
  public:
-  /// Registers the commands at the workspace, which refer to this object afterwards.
-  Runner(Ui& ui, commands::ReportFolder& report);
+  /// Registers the commands at the workspace, which refer to this object afterwards. `areas`: of the window's
+  /// parts. All must outlive it.
+  Runner(Viewport& viewport, const Areas& areas, LogView& log, Requests& requests,
+         commands::ReportFolder& report);
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
@@ -61,7 +65,11 @@ class Runner {
   /// For commands that are done after two drawn frames.
   std::function<bool(const commands::Arguments&)> drawn();
 
-  Ui& ui_;
+  commands::Workspace& work_;
+  Actions& actions_;
+  const Viewport& viewport_;
+  LogView& log_;
+  Requests& requests_;
   std::optional<Measure> measure_;
 };
 

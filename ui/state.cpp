@@ -9,7 +9,6 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "base/timer.h"
-#include "plan/views.h"
 #include "solvers/registry.h"
 
 namespace lucerna::ui {
@@ -46,45 +45,18 @@ commands::WorkspaceEvents Ui::events() {
       .scene_changed = [this] { scene_changed(); },
       .measured =
           [this](const std::string& text) {
-            notice(text + ". Ctrl+Z undoes it.", 8);
-            print(log::Level::info, text);
+            cards.notice(text + ". Ctrl+Z undoes it.", 8);
+            log.print(log::Level::info, text);
           },
       .size_refused =
           [this](uint32_t width, uint32_t height) {
             if (picture_size) picture_size.emplace(width, height);
           },
-      .written = [this](const std::string& name) { notice("Saved " + name, 6); },
+      .written = [this](const std::string& name) { cards.notice("Saved " + name, 6); },
       .set_with = [this](const std::string& key,
                          const std::string& value) { return accuracy.set_with(key, value); },
       .exposes_at_load = [this] { return !scripted; },
   };
-}
-
-void Ui::place(const Viewpoint& to) { act_line(commands::Navigation::place_line(to)); }
-
-void Ui::place_by_wheel(const Viewpoint& to) {
-  if (work.now - wheeled_ > 0.8) wheel_gesture_ = actions.new_gesture();
-  wheeled_ = work.now;
-  actions.act_in(wheel_gesture_, commands::Navigation::place_line(to));
-}
-
-void Ui::turn(const Viewpoint& to) { actions.act_in(turn_gesture_, commands::Navigation::place_line(to)); }
-
-void Ui::start_turntable(float seconds) {
-  turntable = seconds;
-  turn_gesture_ = actions.new_gesture();
-  wake(3);
-}
-
-void Ui::notice(const std::string& text, double seconds) {
-  cards.note.text = text, cards.note.until = work.now + seconds;
-  wake(3);
-}
-
-void Ui::say_blocked() {
-  if (work.now - blocked_said_ < 20) return;
-  blocked_said_ = work.now;
-  notice("A surface is in the way. Hold Alt to pass through it.", 4);
 }
 
 void Ui::follow_busy() {
@@ -104,7 +76,8 @@ void Ui::scene_changed() {
   cards.errors.clear();
   scene_view.to_top = true;
   if (!open.scene->unknown_extensions.empty())
-    notice(fmt::format("Not supported and ignored: {}", fmt::join(open.scene->unknown_extensions, ", ")), 12);
+    cards.notice(
+        fmt::format("Not supported and ignored: {}", fmt::join(open.scene->unknown_extensions, ", ")), 12);
   if (open.scene->file.empty()) return;
   const std::string file = absolute_path(open.scene->file).string();
   std::erase(recent, file);
@@ -112,7 +85,7 @@ void Ui::scene_changed() {
   if (recent.size() > k_recent_files) recent.resize(k_recent_files);
 }
 
-std::string Ui::next_side() const {
+std::string next_side(const commands::OpenScene& open, const std::string& side, bool shown) {
   std::vector<std::string> sides;
   for (const solvers::SolverInfo* solver : solvers::registered())
     if (solver->has_panel() && open.uses(*solver)) sides.push_back(solver->name);
@@ -121,18 +94,9 @@ std::string Ui::next_side() const {
     if (solver->has_panel() && sides.empty()) sides.push_back(solver->name);
   if (sides.empty()) return k_scene_side;
   if (side == k_scene_side) return sides.front();
-  if (!shown.right_open) return side;
+  if (!shown) return side;
   const auto at = std::find(sides.begin(), sides.end(), side);
   return at == sides.end() || at + 1 == sides.end() ? k_scene_side : *(at + 1);
-}
-
-bool Ui::inspects_pointer() const {
-  for (const solvers::ViewInfo& view : plan::views())
-    if (view.inspects_pointer && controls.view_on(view)) return true;
-  for (const solvers::SolverInfo* solver : solvers::registered())
-    for (const solvers::ViewInfo& view : solver->views)
-      if (view.inspects_pointer && controls.view_on(view) && open.uses(*solver)) return true;
-  return false;
 }
 
 std::string panel_help(const solvers::SolverInfo& solver) {
@@ -176,21 +140,10 @@ void Ui::drop(const std::string& file) {
         file);
 }
 
-void Ui::print(log::Level level, const std::string& text) {
-  log.lines.push_back({level, work.now, text});
-  wake();
-}
-
 void Ui::fail(const std::string& message) {
   if (cards.errors.empty() || cards.errors.back() != message) cards.errors.push_back(message);
   if (cards.errors.size() > 3) cards.errors.erase(cards.errors.begin());
   wake();
-}
-
-void Ui::take_click() {
-  dropper = scene_view.focusing = region.picks = false;
-  paths.pick = PathsView::Pick::none;
-  paths.marquee.reset(), region.marquee.reset();
 }
 
 }  // namespace lucerna::ui

@@ -5,25 +5,23 @@
 #include <functional>
 #include <map>
 #include <optional>
-#include <set>
 
 #include "accuracy_view.h"
 #include "actions.h"
+#include "camera_moves.h"
 #include "cards_view.h"
 #include "commands/workspace.h"
 #include "compare_panel.h"
 #include "controls.h"
-#include "frame_guide.h"
-#include "histogram.h"
-#include "lamp_handles.h"
+#include "keys.h"
 #include "layout.h"
 #include "log_view.h"
-#include "object_handles.h"
 #include "paths_panel.h"
 #include "region_view.h"
 #include "requests.h"
 #include "scene_view.h"
 #include "solvers/info.h"
+#include "viewport.h"
 
 namespace lucerna::ui {
 
@@ -54,12 +52,6 @@ struct Dialog {
 /// OpenGL name of an image file's picture, created on first use; 0 if it cannot be read.
 using PictureOf = std::function<unsigned(const std::string&)>;
 
-/// The left button held on the picture, for the pixel inspector.
-struct HeldPixel {
-  std::optional<double> since;  ///< when it was pressed; none: it is not
-  bool reported = false;        ///< its report was requested
-};
-
 /// The window's state over a workspace.
 struct Ui {
   explicit Ui(session::Session& session);
@@ -84,46 +76,12 @@ struct Ui {
   void act_line(const std::string& line) { actions.act_line(line); }
   void toggle(const std::string& key) { actions.toggle(key); }
 
-  std::set<int> chorded;  ///< GLFW keys whose last press was with Ctrl: they do not fly
-  /// Moves the camera to a view reached by a drag or a flight.
-  void place(const Viewpoint& view);
-  /// The same for the turntable: a turn is one step.
-  void turn(const Viewpoint& view);
-  /// The same for the wheel: turns in quick succession are one step.
-  void place_by_wheel(const Viewpoint& view);
-  /// Where a drag in the picture started.
-  struct {
-    std::optional<vec3> point;       ///< of the scene
-    float azimuth = 0;               ///< of what is turned by it, degrees
-    std::optional<LampHandle> lamp;  ///< as it was then
-    std::optional<ObjectDrag> object;
-    bool over = false;  ///< Esc has ended it while the button is held
-  } drag;
-  /// Ends a drag of an object; it goes back to where the drag began.
-  void cancel_object_drag();
-  /// Likewise of a lamp.
-  void cancel_lamp_drag();
-  RebuildTime rebuild;
-  bool dropper = false;  ///< the next click in the picture sets the exposure
-  /// True if the next click in the picture does not select: it sets the exposure or the plane of focus,
-  /// traces paths, or begins a rectangle.
-  bool click_taken() const {
-    return dropper || scene_view.focusing || paths.pick != PathsView::Pick::none || region.picks;
-  }
-  /// Makes the next click select again.
-  void take_click();
-  /// Turns the camera about what it looks at, once in that many seconds; 0: stops.
-  void start_turntable(float seconds);
   PathsView paths;
   RegionView region;
   CompareState compare{open};
 
-  HeldPixel held_pixel;
-
-  CardsView cards;
-  void notice(const std::string& text, double seconds = 6);
-  /// Reports that a wall is in the way, at most now and then.
-  void say_blocked();
+  CardsView cards{actions};
+  CameraMoves moves{actions, camera, flight, cards};
 
   /// Runs a script without a user: nothing is kept, nothing happens by itself.
   bool scripted = false;
@@ -138,7 +96,7 @@ struct Ui {
   std::map<std::string, bool> sections;  ///< open or not, by title
   Controls controls{actions, open, sections};
   SceneView scene_view;
-  LogView log;
+  LogView log{actions};
   Dialog dialog;
   bool help = false;
   /// The scene is to be left with edits that are not saved: a dialog asks what to do with them.
@@ -151,67 +109,37 @@ struct Ui {
   /// Leaves it, with or without edits, for leaving.opens.
   void finish_leaving();
   std::vector<std::string> recent;  ///< files, newest first, from the root
-  unsigned texture = 0;             ///< OpenGL name of the picture
-  uint32_t texture_width = 0, texture_height = 0;
-  PictureOf picture_of;     ///< null without a window
-  int picture_divisor = 1;  ///< window pixels per picture pixel
+  Viewport viewport{controls, work, moves, scene_view, paths, region, compare, cards};
+  PictureOf picture_of;  ///< null without a window
   /// Frames to draw until the picture's area reflects the commands so far.
   int frames_to_settle = 0;
   /// Size of the picture in pixels; none: as large as the window allows.
   std::optional<std::pair<uint32_t, uint32_t>> picture_size;
-  bool light_marks = false;  ///< lights are marked in the picture
-  MarkedScene marked() { return {open, camera, light_marks}; }
-  HistogramView histogram;
-  FrameGuide frame_guide;
-  /// Seconds for a turn of the camera around what it looks at; 0: it does not turn.
-  float turntable = 0;
-  bool brackets = true;  ///< the selected object is marked in the picture
-  Area picture;          ///< where the picture may be
-  bool picture_hovered = false;
-
   // Solvers.
   std::string side =
       k_scene_side;  ///< what the right panel shows: the scene, paths, held results, or that solver
-  /// The panel that K shows next: those of solvers in use, then the scene.
-  std::string next_side() const;
-  /// True if a view is on that inspects the place under the pointer.
-  bool inspects_pointer() const;
-  /// The last inspected place of a pointer at rest, as inspect.at takes it.
-  std::optional<vec2> inspected_place;
-  /// Number of inspections seen here, and whether a script has inspected a point since the pointer moved:
-  /// then the pointer inspects nothing.
-  uint64_t inspections_known = 0;
-  bool script_inspects = false;
-
   AccuracyView accuracy{open};
 
   // Keys, frames, and requests to the loop.
-  std::vector<std::pair<int, int>> keys;  ///< pressed since the last frame: GLFW key and modifiers
-  bool pressed(int key,
-               int mods = 0) const;  ///< among `keys`, with exactly these modifiers (Shift is not looked at)
-  int frames_wanted = 3;             ///< to draw even if nothing happens
-  bool moving = false;               ///< an animation is on screen
+  Keys keys;
+  int frames_wanted = 3;  ///< to draw even if nothing happens
   Requests requests;
   void wake(int frames = 2) { frames_wanted = frames_wanted < frames ? frames : frames_wanted; }
 
   /// A file was dropped on the window.
   void drop(const std::string& file);
   void start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver = nullptr);
-  void fail(const std::string& message);                  ///< to the strip
-  void print(log::Level level, const std::string& text);  ///< to the log panel alone
-  bool has_picture() const { return open.snapshot && !open.snapshot->rgba.empty(); }
+  void fail(const std::string& message);  ///< to the strip
 
  private:
   /// What the window does about changes of the workspace.
   commands::WorkspaceEvents events();
   void scene_changed();
-
-  double wheeled_ = -10, blocked_said_ = -60;
-  uint64_t wheel_gesture_ = 0, turn_gesture_ = 0;
 };
 
-/// Traces the paths of the pixel at that place, and shows their panel.
-void trace_pixel(Ui& ui, const vec2& at);
+/// The panel that K shows next: those of solvers in use, then the scene. `side`: the present one, which is
+/// `shown` or folded.
+std::string next_side(const commands::OpenScene& open, const std::string& side, bool shown);
 
 /// Handles pressed keys and draws all parts of the window; once per frame.
 void draw_parts(Ui& ui);
@@ -228,8 +156,6 @@ Area draw_side_tabs(Actions& actions, const std::string& side, bool paths, bool 
 void draw_scene_panel(Controls& controls, const commands::Navigation& camera, SceneView& view,
                       const std::function<void()>& keep_view, const Area& area);
 void draw_solver_panel(Controls& controls, const solvers::SolverInfo& solver, const Area& area);
-void draw_toolbar(Ui& ui, const Area& area);
-void draw_picture(Ui& ui, const Area& area);
 void draw_accuracy(Actions& actions, const commands::OpenScene& open, AccuracyView& view, bool expanded,
                    const Area& area);
 void draw_passes(const commands::OpenScene& open, bool expanded, const Area& area);
@@ -247,7 +173,8 @@ Area draw_legend(const commands::OpenScene& open, bool light_marks, const Area& 
 /// The result of inspect.at, in a card over the picture that does not cover `legend`; part of draw_picture.
 void draw_inspection(const session::Snapshot& picture, const Area& area, const Area& legend);
 /// Bookmarks the view under the next free name, with a notice.
-void keep_view(Ui& ui);
+void keep_view(Actions& actions, const commands::OpenScene& open, const commands::Navigation& camera,
+               CardsView& cards);
 void draw_splitters(Ui& ui, const Areas& areas);
 void draw_dialogs(Ui& ui);
 /// Part of draw_dialogs. `escape`: Esc was pressed.
@@ -255,7 +182,15 @@ void draw_file_dialog(Actions& actions, const commands::OpenScene& open,
                       const std::vector<std::string>& recent, const PictureOf& picture_of, Dialog& dialog,
                       bool escape);
 void draw_leaving_dialog(Ui& ui);  ///< part of draw_dialogs
-void handle_keys(Ui& ui);
+/// Keys of the window, whatever it shows. `panels`: they are shown; `dialog`: one is open. False if a dialog,
+/// a menu or a text field has the other keys.
+bool handle_window_keys(const Keys& keys, Actions& actions, const commands::History& history, bool panels,
+                        bool dialog, bool picture);
+/// Keys that act on the picture; of them Esc is for what is in progress.
+void handle_picture_keys(const Keys& keys, Viewport& viewport);
+/// Keys of views and commands of the solvers in use. If two share a key, the one whose panel is shown
+/// (`side`) has it, otherwise the first. Keys of views that no solver in use has say so.
+void handle_solver_keys(const Keys& keys, Controls& controls, CardsView& cards, const std::string& side);
 
 /// GLFW's key and modifiers of a name such as "ctrl+z". Throws Error if there is none.
 std::pair<int, int> key_of(const std::string& name);

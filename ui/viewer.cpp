@@ -29,7 +29,7 @@ class Viewer {
   Viewer(session::Session& session, const ViewerOptions& options)
       : options_(options),
         ui_(session),
-        runner_(ui_, options.report ? *options.report : report_),
+        runner_(ui_.viewport, ui_.areas, ui_.log, ui_.requests, options.report ? *options.report : report_),
         settings_(started(runner_, options)),  // before a window is opened
         window_(options.width, options.height, options.hidden, options.scale) {
     ui_.scripted = !options.script.empty();
@@ -125,7 +125,7 @@ class Viewer {
       ui_.cards.note.text.clear(), ui_.wake(2);
     // Tooltips and the text cursor need a frame after the pointer has stopped.
     if (ui_.work.now - hovering_since_ < 0.7 || ImGui::GetIO().WantTextInput) ui_.wake(1);
-    if (runner_.measuring() || ui_.moving) ui_.wake(1);
+    if (runner_.measuring() || ui_.moves.moving()) ui_.wake(1);
   }
 
   /// The scene's name, with an asterisk if there is something to save.
@@ -166,15 +166,16 @@ class Viewer {
 
   void draw() {
     if (std::exchange(fresh_picture_, false) && !ui_.open.snapshot->rgba.empty()) {
-      ui_.texture =
+      ui_.viewport.texture =
           window_.upload(ui_.open.snapshot->rgba, ui_.open.snapshot->scale * ui_.open.snapshot->width,
                          ui_.open.snapshot->scale * ui_.open.snapshot->height);
-      ui_.texture_width = ui_.open.snapshot->width, ui_.texture_height = ui_.open.snapshot->height;
+      ui_.viewport.texture_width = ui_.open.snapshot->width,
+      ui_.viewport.texture_height = ui_.open.snapshot->height;
     }
     --ui_.frames_wanted;
-    ui_.moving = false;
-    ui_.keys.clear();
-    for (const Window::Key& key : window_.pressed()) ui_.keys.emplace_back(key.key, key.mods);
+    ui_.moves.begin_frame();
+    ui_.keys.list.clear();
+    for (const Window::Key& key : window_.pressed()) ui_.keys.list.emplace_back(key.key, key.mods);
 
     window_.begin_frame();
     ShownLines::instance().begin_frame();
@@ -208,13 +209,13 @@ class Viewer {
   void send() {
     const ImVec2 ratio = ImGui::GetIO().DisplayFramebufferScale;
     const auto divided = [&](float units, float scale) {
-      return static_cast<uint32_t>(std::max(1.0f, units * scale / static_cast<float>(ui_.picture_divisor)));
+      return static_cast<uint32_t>(std::max(1.0f, units * scale / static_cast<float>(ui_.viewport.divisor)));
     };
-    const std::pair<uint32_t, uint32_t> room{divided(ui_.picture.width(), ratio.x),
-                                             divided(ui_.picture.height(), ratio.y)};
+    const std::pair<uint32_t, uint32_t> room{divided(ui_.viewport.area.width(), ratio.x),
+                                             divided(ui_.viewport.area.height(), ratio.y)};
     const std::pair<uint32_t, uint32_t> size = ui_.picture_size.value_or(room);
-    if (std::exchange(sent_scale_, ui_.picture_divisor) != ui_.picture_divisor)
-      ui_.work.session.set_window_scale(static_cast<uint32_t>(ui_.picture_divisor));
+    if (std::exchange(sent_scale_, ui_.viewport.divisor) != ui_.viewport.divisor)
+      ui_.work.session.set_window_scale(static_cast<uint32_t>(ui_.viewport.divisor));
     const bool first = wanted_size_.first == 0;
     if (size != wanted_size_) wanted_size_ = size, size_changed_at_ = ui_.work.now;
     if (size_changed_at_ >= 0 && (ui_.work.now - size_changed_at_ >= k_settle || first || ui_.picture_size)) {
@@ -276,6 +277,22 @@ class Viewer {
 
 }  // namespace
 
+namespace {
+
+void handle_keys(Ui& ui) {
+  ui.compare.flipped = ImGui::GetIO().KeysDown[GLFW_KEY_Y] && !ImGui::GetIO().WantTextInput;
+  if (ui.compare.flipped) ui.wake(2);
+  if (!handle_window_keys(ui.keys, ui.actions, ui.history, ui.layout.panels,
+                          ui.dialog.purpose != Dialog::Purpose::none, ui.viewport.has_picture()))
+    return;
+  handle_picture_keys(ui.keys, ui.viewport);
+  if (!ui.open.snapshot) return;
+  handle_solver_keys(ui.keys, ui.controls, ui.cards, ui.side);
+  if (ui.keys.pressed(GLFW_KEY_K)) ui.act("window.side", next_side(ui.open, ui.side, ui.shown.right_open));
+}
+
+}  // namespace
+
 void draw_parts(Ui& ui) {
   handle_keys(ui);
   const Areas areas = arrange(ui.layout, ImGui::GetIO().DisplaySize, theme().scale);
@@ -284,7 +301,7 @@ void draw_parts(Ui& ui) {
     draw_splitters(ui, areas);
     draw_menu_bar(ui, areas.bar);
     draw_light_panel(ui.controls, ui.shown.left_open, areas.left);
-    draw_toolbar(ui, areas.toolbar);
+    draw_toolbar(ui.actions, ui.open, ui.viewport.dropper, areas.toolbar);
     const Area side =
         draw_side_tabs(ui.actions, ui.side, ui.work.traced || ui.work.noise || ui.side == k_paths_side,
                        !ui.work.compare.results.list().empty() || ui.side == k_compare_side,
@@ -297,12 +314,13 @@ void draw_parts(Ui& ui) {
       draw_compare_panel(ui.controls, ui.work, ui.compare, side);
     else if (ui.shown.right_open)
       draw_scene_panel(
-          ui.controls, ui.camera, ui.scene_view, [&ui] { keep_view(ui); }, side);
+          ui.controls, ui.camera, ui.scene_view,
+          [&ui] { keep_view(ui.actions, ui.open, ui.camera, ui.cards); }, side);
     draw_accuracy(ui.actions, ui.open, ui.accuracy, ui.shown.bottom_open, areas.accuracy);
     draw_passes(ui.open, ui.shown.bottom_open, areas.passes);
     draw_log(ui.actions, ui.work.registry, ui.log, ui.shown.bottom_open, areas.log);
   }
-  draw_picture(ui, areas.picture);
+  draw_picture(ui.viewport, ui.keys, ui.recent, ui.side == k_paths_side, areas.picture);
   draw_dialogs(ui);
 }
 

@@ -157,17 +157,18 @@ void add_picture_commands(Ui& ui, const Add& add) {
       "exposure.dropper", "Makes the next click in the picture set the exposure from the clicked point.",
       {on()},
       [&ui](const Arguments& a) {
-        ui.take_click();
-        ui.dropper = a.boolean("on");
-        if (ui.dropper) ui.notice("Click a grey point to show it as middle grey. Esc cancels.");
+        ui.viewport.take_click();
+        ui.viewport.dropper = a.boolean("on");
+        if (ui.viewport.dropper)
+          ui.cards.notice("Click a grey point to show it as middle grey. Esc cancels.");
       },
       false);
   add(
       "camera.focusing", "Makes the next click in the picture focus on the clicked point.", {on()},
       [&ui](const Arguments& a) {
-        ui.take_click();
+        ui.viewport.take_click();
         ui.scene_view.focusing = a.boolean("on");
-        if (ui.scene_view.focusing) ui.notice("Click a surface to focus on it. Esc cancels.");
+        if (ui.scene_view.focusing) ui.cards.notice("Click a surface to focus on it. Esc cancels.");
       },
       false);
   add(
@@ -179,27 +180,27 @@ void add_picture_commands(Ui& ui, const Add& add) {
       [&ui](const Arguments& a) {
         using Pick = PathsView::Pick;
         const std::string& what = a.text("what");
-        ui.take_click();
+        ui.viewport.take_click();
         ui.paths.pick = what == "pixel" ? Pick::pixel : what == "area" ? Pick::area : Pick::none;
         if (ui.paths.pick == Pick::none) return;
         ui.side = k_paths_side;
         set_open(ui.layout, "right", true);
-        ui.notice(ui.paths.pick == Pick::pixel ? "Click a pixel to trace its paths. Esc cancels."
-                                               : "Drag a rectangle to explain its noise. Esc cancels.");
+        ui.cards.notice(ui.paths.pick == Pick::pixel ? "Click a pixel to trace its paths. Esc cancels."
+                                                     : "Drag a rectangle to explain its noise. Esc cancels.");
       },
       false);
   add(
       "region.pick", "Makes the next drag in the picture choose the region that gets all samples.", {on()},
       [&ui](const Arguments& a) {
-        ui.take_click();
+        ui.viewport.take_click();
         ui.region.picks = a.boolean("on");
-        if (ui.region.picks) ui.notice("Drag a rectangle: it gets all samples. Esc cancels.");
+        if (ui.region.picks) ui.cards.notice("Drag a rectangle: it gets all samples. Esc cancels.");
       },
       false);
   add("view.histogram",
       "Shows a histogram of the picture as displayed, with its overlays, and the shares of black and clipped "
       "pixels.",
-      {on()}, [&ui](const Arguments& a) { ui.histogram.on = a.boolean("on"); });
+      {on()}, [&ui](const Arguments& a) { ui.viewport.histogram.on = a.boolean("on"); });
   add("view.frame",
       "Shows a frame with the camera's aspect ratio, or another one, in the picture: what a picture of that "
       "ratio "
@@ -212,19 +213,19 @@ void add_picture_commands(Ui& ui, const Add& add) {
         .hi = 100,
         .optional = true}},
       [&ui](const Arguments& a) {
-        ui.frame_guide = {a.boolean("on"), a.has("aspect") ? a.number("aspect") : 0};
+        ui.viewport.frame_guide = {a.boolean("on"), a.has("aspect") ? a.number("aspect") : 0};
       });
   add(
       "camera.turntable", "Turns the camera about what it looks at, until it is moved by hand; 0: stops.",
       {{.name = "seconds", .type = Type::real, .help = "for a turn", .lo = 0, .hi = 3600, .unit = "s"}},
       [&ui](const Arguments& a) {
         if (a.number("seconds") > 0) ui.camera.needs_view();
-        ui.start_turntable(a.number("seconds"));
+        ui.moves.start_turntable(a.number("seconds"));
       },
       false);
   add("view.divisor", "Sets the pixels of the window per pixel of the picture, along a side.",
       {{.name = "divisor", .type = Type::choice, .choices = {"1", "2", "4"}}},
-      [&ui](const Arguments& a) { ui.picture_divisor = static_cast<int>(a.integer("divisor")); });
+      [&ui](const Arguments& a) { ui.viewport.divisor = static_cast<int>(a.integer("divisor")); });
   add("view.size",
       "Sets a fixed picture size, such as that of a reference; 0 0: as large as the window allows.",
       {{.name = "width", .type = Type::integer, .lo = 0, .hi = 16384, .unit = "pixels"},
@@ -237,7 +238,7 @@ void add_picture_commands(Ui& ui, const Add& add) {
         ui.camera.set_size(ui.picture_size->first, ui.picture_size->second);
       });
   add("view.selection", "Shows the box and the handles of the selected object in the picture.", {on()},
-      [&ui](const Arguments& a) { ui.brackets = a.boolean("on"); });
+      [&ui](const Arguments& a) { ui.viewport.brackets = a.boolean("on"); });
   add("view.gizmo", "Sets what the handles of the selected object do.",
       {{.name = "mode", .type = Type::choice, .choices = {k_gizmo_names.begin(), k_gizmo_names.end()}}},
       [&ui](const Arguments& a) {
@@ -245,7 +246,7 @@ void add_picture_commands(Ui& ui, const Add& add) {
             std::find(k_gizmo_names.begin(), k_gizmo_names.end(), a.text("mode")) - k_gizmo_names.begin());
       });
   add("view.lamps", "Marks lamps and emissive surfaces in the picture.", {on()},
-      [&ui](const Arguments& a) { ui.light_marks = a.boolean("on"); });
+      [&ui](const Arguments& a) { ui.viewport.light_marks = a.boolean("on"); });
 }
 
 void add_dialog_commands(Ui& ui, const Add& add) {

@@ -26,24 +26,24 @@ std::string read_part(WordReader& words, bool with_dialog) {
   words.refuse(fmt::format("one of {}", fmt::join(parts, ", ")));
 }
 
-void add_text(Ui& ui, commands::Expectations& expectations) {
+void add_text(Actions& actions, commands::Expectations& expectations) {
   expectations.add(
       {.name = "text",
        .usage = "text [not] TEXT [in PART]",
        .help = fmt::format("a text in the window, also if it is cut for lack of room; PART is one of {}",
                            fmt::join(k_parts, ", ")),
        .needs_window = true,
-       .read = [&ui](WordReader& words, const ExpectContext&) -> Check {
+       .read = [&actions](WordReader& words, const ExpectContext&) -> Check {
          const bool negated = words.take("not");
          const std::string text = words.text("a text");
          const std::string part = read_part(words, true);
          words.end("in PART");
-         return [&ui, negated, text, part,
+         return [&actions, negated, text, part,
                  since = std::optional<uint64_t>()]() mutable -> std::optional<Verdict> {
            ShownLines& shown = ShownLines::instance();
            shown.record(true);
            if (!since) since = shown.frames();
-           ui.wake(3);
+           actions.wake(3);
            // The first frame may be the one during which a change arrives.
            constexpr uint64_t k_frames = 3;
            if (shown.frames() < *since + k_frames) return std::nullopt;
@@ -99,13 +99,14 @@ Requests::Grab cut(const Requests::Grab& window, const Area& area) {
   return part;
 }
 
-void add_window(Ui& ui, commands::Expectations& expectations) {
+void add_window(Actions& actions, Requests& requests, const Areas& areas,
+                commands::Expectations& expectations) {
   expectations.add(
       {.name = "window",
        .usage = "window FILE.png [in PART] [within DIFFERENCE] [share SHARE]",
        .help = "the window with its panels, or a PART of it, as 'expect picture' compares the picture",
        .needs_window = true,
-       .read = [&ui](WordReader& words, const ExpectContext& context) -> Check {
+       .read = [&actions, &requests, &areas](WordReader& words, const ExpectContext& context) -> Check {
          const std::string file = words.text("a PNG file");
          const std::string part = read_part(words, false);
          double within = film::MatchOptions{}.within, share = film::MatchOptions{}.share;
@@ -116,17 +117,18 @@ void add_window(Ui& ui, commands::Expectations& expectations) {
              share = words.number("a share from 0 to 1", 0, 1);
            else
              words.refuse("in PART, within DIFFERENCE or share SHARE");
-         return [&ui, context, file, part, within, share, begun = false]() mutable -> std::optional<Verdict> {
+         return [&actions, &requests, &areas, context, file, part, within, share,
+                 begun = false]() mutable -> std::optional<Verdict> {
            if (!std::exchange(begun, true)) {
-             ui.requests.grab = Requests::Grab{};
-             ui.requests.shot.settle = 3;
+             requests.grab = Requests::Grab{};
+             requests.shot.settle = 3;
            }
-           ui.wake(4);
-           if (!ui.requests.grab || ui.requests.grab->rgba.empty()) return std::nullopt;
-           Requests::Grab grabbed = *ui.requests.grab;
-           ui.requests.grab.reset();
+           actions.wake(4);
+           if (!requests.grab || requests.grab->rgba.empty()) return std::nullopt;
+           Requests::Grab grabbed = *requests.grab;
+           requests.grab.reset();
            if (!part.empty()) {
-             const Area area = area_of(ui.areas, part);
+             const Area area = area_of(areas, part);
              if (area.width() < 1 || area.height() < 1) throw Error("", fmt::format("{} is not shown", part));
              grabbed = cut(grabbed, area);
            }
@@ -138,9 +140,10 @@ void add_window(Ui& ui, commands::Expectations& expectations) {
 
 }  // namespace
 
-void add_window_expectations(Ui& ui, commands::Expectations& expectations) {
-  add_text(ui, expectations);
-  add_window(ui, expectations);
+void add_window_expectations(Actions& actions, Requests& requests, const Areas& areas,
+                             commands::Expectations& expectations) {
+  add_text(actions, expectations);
+  add_window(actions, requests, areas, expectations);
 }
 
 }  // namespace lucerna::ui

@@ -115,7 +115,9 @@ class Latency {
   }
 
   void run_scene(const fs::path& file, const std::string& solver) {
-    session::Session s({.device = o_.device, .validation = false, .shaders = {}, .scenes = o_.scenes});
+    const auto made = session::start_session(
+        {.device = o_.device, .validation = false, .shaders = {}, .scenes = o_.scenes});
+    session::Session& s = *made;
     s.set_size(o_.width, o_.height);
     changes_.clear(), back_.reset(), done_edits_.clear();
     const Timer clock;
@@ -257,7 +259,7 @@ class Latency {
       check();
       r.step();
     }
-    film::FilmImage image = r.film_image();
+    film::FilmImage image = r.output().film_image();
     add_odd_half(image, r.image());
     image.metadata["bench.key"] = key;
     film::write_exr(kept, image);

@@ -129,7 +129,7 @@ class Bench {
     while (r.samples() < samples && !r.done()) {
       if (hooks_.interrupted()) throw Interrupted{};
       if (!r.step(hooks_.interrupted)) break;
-      report_progress(double(r.samples()) / double(r.max_samples()));
+      report_progress(double(r.samples()) / double(r.sampling().max_samples()));
     }
     if (hooks_.interrupted()) throw Interrupted{};
   }
@@ -351,16 +351,17 @@ Json Bench::timed_rounds(Renderer& r, uint32_t paths) {
   r.restart();
   render_to(r, 1);
   for (uint32_t i = 0; i < o_.repeats; ++i) {
-    const double before = cpu_seconds(), traced = r.figure("seconds of light paths"),
-                 sorted = r.figure("seconds of sorting photons"), stored = r.figure("photons");
+    const double before = cpu_seconds(), traced = r.solvers().figure("seconds of light paths"),
+                 sorted = r.solvers().figure("seconds of sorting photons"),
+                 stored = r.solvers().figure("photons");
     const Timer timer;
     render_to(r, i + 2);
     wall.push_back(timer.seconds()), cpu.push_back(cpu_seconds() - before);
-    trace.push_back(r.figure("seconds of light paths") - traced);
-    build.push_back(r.figure("seconds of sorting photons") - sorted);
-    photons = r.figure("photons") - stored;
+    trace.push_back(r.solvers().figure("seconds of light paths") - traced);
+    build.push_back(r.solvers().figure("seconds of sorting photons") - sorted);
+    photons = r.solvers().figure("photons") - stored;
   }
-  const Json statistics = r.solver_statistics().value("photons", Json::object());
+  const Json statistics = r.solvers().statistics().value("photons", Json::object());
   const Json rates = statistics.value("per_second", Json::object());
   const double t = median(trace), b = median(build), w = median(wall);
   return {{"paths", paths},
@@ -460,7 +461,7 @@ void Bench::plan_free() {
                                       {"path_cpu_s", median(plain)},
                                       {"rays", path->stats().rays},
                                       {"rays_with_photons", photons->stats().rays},
-                                      {"light_paths", photons->figure("light paths")}},
+                                      {"light_paths", photons->solvers().figure("light paths")}},
                                  1) +
                            "\n");
        }});

@@ -46,11 +46,11 @@ std::unique_ptr<Renderer> make_renderer(const SceneEntry& scene, const SettingVa
 /// Done part of a render, 0..1, by the nearer of its ends.
 double fraction_done(const Renderer& r, const Budget& budget, double seconds) {
   if (budget.kind == BudgetKind::seconds) return std::min(1.0, seconds / budget.value);
-  if (const schedule::AdaptiveSchedule* s = r.adaptive())
+  if (const schedule::AdaptiveSchedule* s = r.sampling().adaptive())
     return double(s->count(schedule::TileState::done) + s->count(schedule::TileState::capped)) /
            double(s->sampled_tiles());
   const double pixels = double(r.film().width()) * r.film().height();
-  return std::min(1.0, double(r.stats().paths) / pixels / r.max_samples());
+  return std::min(1.0, double(r.stats().paths) / pixels / r.sampling().max_samples());
 }
 
 std::vector<vec3> sum_of(const film::Image& image) {
@@ -194,7 +194,7 @@ ReferenceInfo Run::make_reference(const SceneEntry& scene, const std::string& ke
                      .samples = scene.reference_samples,
                      .seed = matrix_.reference_seed,
                      .seconds = timer.seconds()};
-  film::FilmImage image = r->film_image();
+  film::FilmImage image = r->output().film_image();
   describe_reference(image.metadata, info);
   add_odd_half(image, r->image());
   film::write_exr(info.file, image);
@@ -218,7 +218,7 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   const film::FilmImage truth = film::read_exr(reference.file);
   const film::ReferencePair halves = read_halves(truth, reference.file.string());
   const auto r = make_renderer(scene, values, options_);
-  r->set_reference(reference.file);
+  r->progress().set_reference(reference.file);
   // Warms up: the device compiles kernels on their first run, and clocks and caches settle.
   while (!warm(*r, setup.seconds()) && !r->done() && step(*r)) report_progress(0);
   r->image_error();
@@ -234,9 +234,9 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   r->restart();
 
   const auto out_of_time = [&] {
-    return budget.kind == BudgetKind::seconds && r->render_seconds() >= budget.value;
+    return budget.kind == BudgetKind::seconds && r->progress().render_seconds() >= budget.value;
   };
-  const auto& entries = r->ledger().entries();
+  const auto& entries = r->progress().ledger().entries();
   // Waits for a picture delayed by preparation; its time is recorded.
   while (!r->done() && (!out_of_time() || entries.empty())) {
     const size_t lines = entries.size();
@@ -244,7 +244,7 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
     // Without a sample in every pixel it is not comparable.
     if (entries.size() > lines && entries.back().has_error)
       result.curve.push_back(make_point(entries.back(), distances(*r, halves)));
-    report_progress(fraction_done(*r, budget, r->render_seconds()));
+    report_progress(fraction_done(*r, budget, r->progress().render_seconds()));
   }
   r->finish_ledger();
   const stats::Entry& last = entries.back();
@@ -258,22 +258,24 @@ Result Run::render(const Cell& cell, const ReferenceInfo& reference, const std::
   result.parts.records = last.of_mean.records, result.parts.interpolation = last.of_mean.interpolation;
   result.estimated = estimated_errors(last), result.truth = last.truth.value_or(Layers{});
   result.component_s = last.component_s;
-  const double rms = result.truth[0] * r->reference()->mean_luminance;
+  const double rms = result.truth[0] * r->progress().reference()->mean_luminance;
   result.mse = rms * rms;
   // The reference's noise is uncertain by a tenth or two; remainders below that are not significant.
   result.in_reference_noise = result.truth[0] < 0.7 * reference.noise[0];
   result.relmse = std::max(0.0, relative.trimmed), result.relmse_all = std::max(0.0, relative.all);
   result.seen = std::max(0.0, seen.trimmed), result.seen_all = std::max(0.0, seen.all);
-  const film::TileSpread tiles = film::tile_spread(r->tile_errors());
+  const film::TileSpread tiles = film::tile_spread(r->progress().tile_errors());
   result.tiles.median = tiles.median, result.tiles.decile = tiles.worst_tenth;
   result.tiles.worst = tiles.worst, result.tiles.heavy = tiles.heavy_tailed;
-  if (r->adaptive()) result.tiles.over = r->adaptive()->count(schedule::TileState::capped);
+  if (r->sampling().adaptive())
+    result.tiles.over = r->sampling().adaptive()->count(schedule::TileState::capped);
   result.dropped = r->stats().dropped;
-  result.records = uint32_t(r->figure("records")), result.record_rays = uint64_t(r->figure("rays"));
-  result.forecast = make_forecast(r->ledger(), r->adaptive() != nullptr);
+  result.records = uint32_t(r->solvers().figure("records")),
+  result.record_rays = uint64_t(r->solvers().figure("rays"));
+  result.forecast = make_forecast(r->progress().ledger(), r->sampling().adaptive() != nullptr);
   if (leaves_pictures(cell)) {
     film::write_png(picture_file(folder_, scene.name, setting.name), truth.width, truth.height,
-                    r->picture(false));
+                    r->output().picture(false));
     save_error_pictures(sum_of(r->image()), cell, truth, reference.file.string());
   }
   return result;

@@ -17,14 +17,28 @@ void take_back_list(std::vector<T>& values, const std::vector<T>& before, const 
   for (size_t i = 0; i < values.size(); ++i) take_back_value(values[i], before[i], after[i]);
 }
 
+template <class Map>
+void take_back_map(Map& values, const Map& before, const Map& after) {
+  const auto of = [](const Map& list, const auto& key) {
+    const auto found = list.find(key);
+    return found == list.end() ? std::nullopt : std::optional(found->second);
+  };
+  Map all = before;
+  all.insert(after.begin(), after.end());
+  for (const auto& [key, value] : all) {
+    const auto was = of(before, key), refused = of(after, key);
+    if (was == refused || of(values, key) != refused) continue;
+    if (was)
+      values[key] = *was;
+    else
+      values.erase(key);
+  }
+}
+
 }  // namespace
 
 void take_back(Document& d, const Document& before, const Document& after) {
-  for (auto& [key, value] : d.settings) {
-    const auto old = before.settings.find(key), refused = after.settings.find(key);
-    if (old != before.settings.end() && refused != after.settings.end())
-      take_back_value(value, old->second, refused->second);
-  }
+  take_back_map(d.settings, before.settings, after.settings);
   take_back_list(d.lights, before.lights, after.lights);
   take_back_list(d.materials, before.materials, after.materials);
   take_back(d.objects, before.objects, after.objects);
@@ -35,20 +49,7 @@ void take_back(Document& d, const Document& before, const Document& after) {
 }
 
 void take_back(Objects& values, const Objects& before, const Objects& after) {
-  const auto of = [](const Objects& list, uint32_t index) {
-    const auto found = list.find(index);
-    return found == list.end() ? std::nullopt : std::optional(found->second);
-  };
-  Objects all = before;
-  all.insert(after.begin(), after.end());
-  for (const auto& [index, place] : all) {
-    const std::optional<scene::ObjectPlace> was = of(before, index), refused = of(after, index);
-    if (was == refused || of(values, index) != refused) continue;
-    if (was)
-      values[index] = *was;
-    else
-      values.erase(index);
-  }
+  take_back_map(values, before, after);
 }
 
 }  // namespace lucerna::commands

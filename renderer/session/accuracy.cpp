@@ -96,20 +96,21 @@ std::optional<double> seconds_to_end(const Accuracy& a) {
   return last.wall_s + each * static_cast<double>(last.paths) * (a.max_samples / last.samples - 1);
 }
 
-std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {
+std::vector<TileStatus> tile_status(const Setup& setup, const Sampling& sampling,
+                                    const ImageProgress& progress, bool flags) {
   const std::vector<film::TileError> errors =
-      flags || !r.adaptive() ? r.tile_errors() : std::vector<film::TileError>();
-  std::vector<TileStatus> tiles(r.adaptive() ? r.adaptive()->tiles().size() : errors.size());
-  const double target = r.settings().real("sampling.target_error");
-  const auto side = r.tile_side();
-  const size_t across = (r.film().width() + side - 1) / side;
+      flags || !sampling.adaptive() ? progress.tile_errors() : std::vector<film::TileError>();
+  std::vector<TileStatus> tiles(sampling.adaptive() ? sampling.adaptive()->tiles().size() : errors.size());
+  const double target = setup.settings.real("sampling.target_error");
+  const auto side = setup.tile_side();
+  const size_t across = (setup.film->width() + side - 1) / side;
   for (size_t i = 0; i < tiles.size(); ++i) {
     TileStatus& t = tiles[i];
     const auto along = [&](size_t index, uint32_t whole) {
       return std::min(whole, (static_cast<uint32_t>(index) + 1) * side) - static_cast<uint32_t>(index) * side;
     };
-    t.pixels = along(i % across, r.film().width()) * along(i / across, r.film().height());
-    if (const schedule::AdaptiveSchedule* adaptive = r.adaptive()) {
+    t.pixels = along(i % across, setup.film->width()) * along(i / across, setup.film->height());
+    if (const schedule::AdaptiveSchedule* adaptive = sampling.adaptive()) {
       const schedule::Tile& known = adaptive->tiles()[i];
       t.samples = known.samples;
       if (known.samples >= 2) t.error = known.error;
@@ -118,13 +119,13 @@ std::vector<TileStatus> tile_status(const Renderer& r, bool flags) {
                                                             : static_cast<uint32_t>(known.state);
       t.earlier_error = known.earlier.error, t.earlier_samples = known.earlier.samples;
     } else {
-      t.samples = r.samples();
+      t.samples = sampling.samples();
       if (errors[i].pixels > 0) {
         t.error = static_cast<float>(errors[i].relative);
         t.records = static_cast<float>(errors[i].relative_lookup_noise);
         t.interpolation = static_cast<float>(errors[i].relative_interpolation);
         t.state = t.sum() <= target ? shared::k_tile_done
-                  : r.done()        ? shared::k_tile_capped
+                  : sampling.done() ? shared::k_tile_capped
                                     : shared::k_tile_active;
       }
     }
@@ -140,18 +141,18 @@ void AccuracyKeeper::follow(const Renderer& r, uint64_t scene_id) {
     const uint64_t run = now_.run + 1;
     now_ = {};
     now_.run = run;
-    passes_ = r.passes();
+    passes_ = r.sampling().passes();
     pass_ms_.clear(), pass_paths_ = 0;
     changed_ = true;
   }
   now_.scene_id = scene_id;
-  if (r.passes() != passes_) note_pass(r);
-  if (r.ledger().changes() == now_.ledger.changes()) return;
-  now_.ledger = r.ledger();
+  if (r.sampling().passes() != passes_) note_pass(r);
+  if (r.progress().ledger().changes() == now_.ledger.changes()) return;
+  now_.ledger = r.progress().ledger();
   const auto& lines = now_.ledger.entries();
   double hardest = 0;
-  if (r.adaptive())
-    for (const schedule::Tile& t : r.adaptive()->tiles())
+  if (r.sampling().adaptive())
+    for (const schedule::Tile& t : r.sampling().adaptive()->tiles())
       if (t.state != schedule::TileState::capped && t.state != schedule::TileState::resting && t.samples >= 2)
         hardest = std::max(hardest, double{t.sum()});
   now_.hardest.resize(lines.size(), hardest);
@@ -160,11 +161,11 @@ void AccuracyKeeper::follow(const Renderer& r, uint64_t scene_id) {
 }
 
 void AccuracyKeeper::note_pass(const Renderer& r) {
-  passes_ = r.passes();
+  passes_ = r.sampling().passes();
   const transport::TransportStats& stats = r.stats();
   PassStatus pass;
   if (pass_ms_.empty())
-    for (const transport::StageSum& s : r.prepared().stages) pass_ms_.push_back(s.ms);
+    for (const transport::StageSum& s : r.progress().prepared().stages) pass_ms_.push_back(s.ms);
   now_.stages.clear();
   for (size_t i = 0; i < stats.stages.size(); ++i) {
     now_.stages.push_back(stats.stages[i].name);
@@ -176,7 +177,7 @@ void AccuracyKeeper::note_pass(const Renderer& r) {
   }
   pass.paths = stats.paths - pass_paths_;
   pass_paths_ = stats.paths;
-  pass.samples = r.adaptive() ? r.adaptive()->most_samples() : r.samples();
+  pass.samples = r.sampling().adaptive() ? r.sampling().adaptive()->most_samples() : r.samples();
   now_.passes.push_back(std::move(pass));
   if (now_.passes.size() > k_passes) now_.passes.pop_front();
   changed_ = true;
@@ -186,20 +187,20 @@ std::shared_ptr<const Accuracy> AccuracyKeeper::publish(const Renderer& r, bool 
   if (published_ && !changed_ && !tiles) return published_;
   if (tiles || changed_) {
     now_.settings = r.settings().all();
-    now_.adaptive = r.adaptive() != nullptr;
+    now_.adaptive = r.sampling().adaptive() != nullptr;
     now_.finished = r.done();
     now_.target = r.settings().real("sampling.target_error");
-    now_.min_samples = r.adaptive() ? r.adaptive()->options().min_samples : 0;
-    now_.max_samples = r.max_samples();
-    now_.tile = r.tile_side();
+    now_.min_samples = r.sampling().adaptive() ? r.sampling().adaptive()->options().min_samples : 0;
+    now_.max_samples = r.sampling().max_samples();
+    now_.tile = r.setup().tile_side();
     now_.across = (r.film().width() + now_.tile - 1) / now_.tile;
     now_.pixels = double(r.film().width()) * r.film().height();
-    now_.reference = r.reference() ? r.reference()->file.filename().string() : "";
-    now_.reference_applies = r.reference_applies();
-    for (size_t c = 0; c < now_.bias.size(); ++c) now_.bias[c] = r.bias(c);
+    now_.reference = r.progress().reference() ? r.progress().reference()->file.filename().string() : "";
+    now_.reference_applies = r.progress().reference_applies();
+    for (size_t c = 0; c < now_.bias.size(); ++c) now_.bias[c] = r.progress().bias(c);
     now_.tiles.clear();
-    const bool shown = r.view().tiles > 0;
-    if (shown || now_.adaptive) now_.tiles = tile_status(r, shown);
+    const bool shown = r.output().view().tiles > 0;
+    if (shown || now_.adaptive) now_.tiles = tile_status(r.setup(), r.sampling(), r.progress(), shown);
   }
   now_.paths = double(r.stats().paths), now_.rays = double(r.stats().rays);
   if (now_.adaptive && (tiles || changed_)) now_.forecast = seconds_to(now_, now_.target);

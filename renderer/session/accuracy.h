@@ -18,7 +18,10 @@
 
 namespace lucerna::session {
 
+class ImageProgress;
 class Renderer;
+class Sampling;
+struct Setup;
 
 struct TileStatus {
   float error = -1;                      ///< relative error of the paths; negative: unknown
@@ -85,7 +88,8 @@ std::optional<double> seconds_to_end(const Accuracy& accuracy);
 
 /// Tiles of the current image with the latest error estimates. `flags`: mark heavy tails, which takes a pass
 /// over the film.
-std::vector<TileStatus> tile_status(const Renderer& renderer, bool flags);
+std::vector<TileStatus> tile_status(const Setup& setup, const Sampling& sampling,
+                                    const ImageProgress& progress, bool flags);
 
 /// Follows a renderer; not thread-safe.
 class AccuracyKeeper {

@@ -1,5 +1,5 @@
 #pragma once
-// Queue of commands to the renderer, carried out in order. No locks: the session guards it.
+// Queue of a session's commands, carried out in order. No locks: the session guards it.
 #include <cstdint>
 #include <deque>
 #include <functional>
@@ -8,15 +8,15 @@
 
 namespace lucerna::session {
 
-class Renderer;
-
 /// Number of a loaded scene, from 1 on; it grows with every load.
 using SceneId = uint64_t;
 /// For a command that acts on any current scene.
 inline constexpr SceneId k_any_scene = 0;
 
+/// `Target`: on which it acts, the renderer.
+template <class Target>
 struct Command {
-  std::function<void(Renderer&)> run;
+  std::function<void(Target&)> run;
   std::string subject;  ///< its target, for messages: "the camera"
   /// The scene it is for. If another one is loaded by its turn, it is skipped.
   SceneId scene = k_any_scene;
@@ -25,11 +25,12 @@ struct Command {
   uint64_t number = 0;  ///< from 1 on, in order; set by push()
 };
 
+template <class Target>
 class CommandQueue {
  public:
   /// Appends it. A camera replaces, and gets the number of, a camera for the same scene that is last in the
   /// queue.
-  void push(Command command) {
+  void push(Command<Target> command) {
     if (command.camera && !queue_.empty() && queue_.back().camera && queue_.back().scene == command.scene) {
       command.number = queue_.back().number;
       queue_.back() = std::move(command);
@@ -38,8 +39,8 @@ class CommandQueue {
     command.number = ++given_;
     queue_.push_back(std::move(command));
   }
-  Command pop() {
-    Command first = std::move(queue_.front());
+  Command<Target> pop() {
+    Command<Target> first = std::move(queue_.front());
     queue_.pop_front();
     return first;
   }
@@ -48,7 +49,7 @@ class CommandQueue {
   uint64_t given() const { return given_; }
 
  private:
-  std::deque<Command> queue_;
+  std::deque<Command<Target>> queue_;
   uint64_t given_ = 0;
 };
 

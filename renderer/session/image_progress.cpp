@@ -1,5 +1,6 @@
 #include "session/image_progress.h"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
@@ -38,6 +39,34 @@ film::ImageError ImageProgress::estimate_error() const {
   if (sampling_.whole()) return film::image_error(setup_.film->errors());
   return film::image_error(
       inside(setup_.film->errors(), sampling_.region(), setup_.film->blocks_across(), 1));
+}
+
+std::vector<film::TileError> ImageProgress::tile_errors() const {
+  const uint32_t side = setup_.tile_side();
+  std::vector<film::TileError> tiles = film::tile_errors(*setup_.film, side);
+  film::mark_heavy_tails(tiles, (setup_.film->width() + side - 1) / side, setup_.seen_range().floor);
+  return tiles;
+}
+
+bool ImageProgress::lookup_errors_known() const {
+  return setup_.engine && sampling_.samples() >= 2 && !setup_.engine->owing_errors(*setup_.film);
+}
+
+bool ImageProgress::lookup_bias_estimated() const {
+  if (!setup_.engine) return false;
+  return std::all_of(setup_.engine->solvers().begin(), setup_.engine->solvers().end(),
+                     [](const auto& solver) {
+                       const auto* bias = solvers::offered<solvers::LookupBias>(*solver);
+                       return !bias || bias->estimates_bias();
+                     });
+}
+
+std::optional<double> ImageProgress::bias(size_t component) const {
+  if (!setup_.engine) return std::nullopt;
+  // Paths compute all primary light if the scene has nothing of the part that another solver looks up.
+  if (component == 0 && setup_.engine->plan().solver[0] && !setup_.engine->looks_up_direct_light())
+    return 0.0;
+  return setup_.engine->plan().bias(component);
 }
 
 void ImageProgress::set_reference(const std::filesystem::path& file) {

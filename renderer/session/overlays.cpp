@@ -14,6 +14,18 @@ void Overlays::set_mode(const Mode& mode) {
     if (auto* views = solvers::offered<solvers::Views>(*solver)) views->look_at(mode.inspected);
 }
 
+void Overlays::inspect(std::optional<vec2> at) {
+  Mode mode = mode_;
+  mode.inspected = at;
+  set_mode(mode);
+}
+
+void Overlays::set_window_scale(uint32_t scale) {
+  Mode mode = mode_;
+  mode.scale = std::max(1u, scale);
+  set_mode(mode);
+}
+
 bool Overlays::are_on() const {
   if (!setup_.engine || !setup_.film) return false;
   const auto on = [&](const OptionInfo& option) {

@@ -29,6 +29,11 @@ class Overlays {
   const Mode& mode() const { return mode_; }
   /// Informs the solvers of the inspected place.
   void set_mode(const Mode& mode);
+  /// Session::inspect; shown in later pictures.
+  void inspect(std::optional<vec2> at);
+  /// Sets the pixels of the window per pixel of the picture, along a side: with overlays, pictures are larger
+  /// by scale(), at most this.
+  void set_window_scale(uint32_t scale);
 
   /// Recorded paths that are drawn.
   void show_paths(ShownPaths paths) { paths_shown_ = std::move(paths); }
@@ -37,7 +42,9 @@ class Overlays {
   /// The film's picture with the overlays, larger by scale(); in the given view, tiles are drawn too.
   std::vector<uint8_t> finish(const film::View& view, const std::function<bool()>& cancel);
   uint32_t scale() { return sheet().scale(); }
-  /// True if the surfaces of the window's pixels are needed, not traced yet, and can be traced.
+  /// True if the surfaces of the window's pixels are needed, not traced yet, and can be traced. Overlays then
+  /// use the picture's samples. In the window only trace() traces them, so that a moving camera does not
+  /// wait; the next picture shows them.
   bool waits();
   void trace(const std::function<bool()>& cancel);
   /// Calls f with each solver, the canvas for its overlays, and its view of the picture.

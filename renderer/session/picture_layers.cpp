@@ -51,8 +51,7 @@ void add_group_layers(film::FilmImage& out, const film::Film& film, const Religh
 
 }  // namespace
 
-film::FilmImage picture_layers(const Setup& setup) {
-  const film::Image image = setup.film->read();
+film::FilmImage picture_layers(const Setup& setup, const film::Image& image) {
   film::FilmImage out;
   out.width = image.width;
   out.height = image.height;
@@ -84,9 +83,8 @@ film::FilmImage picture_layers(const Setup& setup) {
   return out;
 }
 
-void add_noise_layers(film::FilmImage& out, const film::Film& film, bool looks_up) {
+void add_noise_layers(film::FilmImage& out, const film::Film& film, const film::Image& image, bool looks_up) {
   constexpr uint32_t k_tile = 16;
-  const film::Image image = film.read();
   std::vector<vec3> sum(image.samples.size(), vec3(0));
   for (const auto& component : image.odd_half)
     for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];

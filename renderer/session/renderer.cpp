@@ -1,7 +1,7 @@
 #include "session/renderer.h"
 
 #include <algorithm>
-#include <cmath>
+#include <fstream>
 #include <set>
 
 #include "base/log.h"
@@ -30,13 +30,14 @@ Renderer::Renderer(const RendererOptions& options)
       compiler_(std::make_unique<gpu::ShaderCompiler>(
           options.shaders.empty() ? gpu::ShaderCompiler::default_root() : options.shaders)),
       automaton_(paths::compile_components()),
-      context_{*device_, *compiler_, automaton_, options.defines, options.interactive} {}
+      context_{*device_, *compiler_, automaton_, options.defines, options.interactive},
+      sampling_(setup_, options.interactive) {}
 
 Renderer::~Renderer() = default;
 
 void Renderer::load(const std::filesystem::path& file, const Progress& progress,
                     const std::vector<SettingChange>& changes) {
-  rest();
+  progress_.rest();
   const Timer timer;
   auto scene = std::make_shared<scene::Scene>(scene::load(
       file, options_.scenes,
@@ -69,7 +70,7 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
   check_region(settings);
   std::shared_ptr<const OcioTable> ocio;
   try {
-    ocio = ocio_table(settings);
+    ocio = output_.ocio_for(settings);
   } catch (const Error& e) {
     for (const SettingChange& change : changes)
       if (change.key == "film.ocio") throw;
@@ -83,12 +84,12 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
   target.settings = std::move(settings);
   install(std::move(target), progress, scene::Change::shape);
   loaded_ = loaded;
-  ocio_ = std::move(ocio);
+  output_.set_ocio(std::move(ocio));
   overlays_.show_paths({});
 }
 
 void Renderer::install(Transaction::Target target, const Progress& progress, const scene::Changes& changes) {
-  rest();
+  progress_.rest();
   scene::check_range(target.camera);
   plan::SceneFacts facts = plan::facts_of(*plan::traced_scene(target.scene, target.settings));
   plan::Plan plan = plan::make_plan(facts, target.settings);
@@ -96,15 +97,10 @@ void Renderer::install(Transaction::Target target, const Progress& progress, con
   transaction.make_world(progress);
   report_progress(progress, 0.9f, "compiling kernels");
   transaction.build(changes);
-  std::unique_ptr<Display> display;
-  std::unique_ptr<WindowFilter> window_filter;
-  if (options_.interactive && !display_) {
-    display = std::make_unique<Display>(*device_, *compiler_);
-    window_filter = std::make_unique<WindowFilter>(*device_, *compiler_);
-  }
+  PictureOutput::WindowParts window_parts = output_.make_window_parts(false);
   commit(transaction);
   facts_ = std::move(facts), findings_.reset(), pilot_.reset();
-  if (display) display_ = std::move(display), window_filter_ = std::move(window_filter);
+  output_.adopt(std::move(window_parts));
   notify_settings_changed();
   restart(changes);
 }
@@ -116,46 +112,25 @@ const std::array<plan::Choice, paths::k_component_count>& Renderer::choices() co
 
 void Renderer::commit(Transaction& transaction) {
   const std::vector<std::string> messages = new_messages(transaction.relight(), setup_.relight);
-  if (transaction.has_films()) forget_filtered();
+  if (transaction.has_films()) output_.forget_filtered();
   transaction.commit();
   for (const std::string& message : messages) log::warning("{}", message);
 }
 
 void Renderer::remix() {
-  forget_filtered();
-  setup_.film->set_mix(setup_.relight.weights), setup_.coarse->set_mix(setup_.relight.weights);
-  if (display_) display_->mixed();
-  // Dragging a slider changes one group; dragging over presets gives a sequence of mixes.
-  constexpr double k_drag_seconds = 0.5;  // maximum time between these; the first is shown meanwhile
-  mixed_.resize(setup_.relight.weights.size(), vec3(1));
-  size_t groups = 0;
-  for (size_t g = 0; g < mixed_.size(); ++g)
-    groups += std::exchange(mixed_[g], setup_.relight.weights[g]) != setup_.relight.weights[g];
-  mix_dragged_ = groups <= 1 || since_mix_.seconds() < k_drag_seconds;
-  since_mix_.restart();
-  mix_pending_ = true;
-  if (!options_.interactive) settle_mix();
-}
-
-void Renderer::settle_mix() {
-  if (!std::exchange(mix_pending_, false) || stats().paths == 0) return;
-  setup_.engine->wavefront().uncounted([&] { setup_.engine->wavefront().mix(*setup_.film); });
-  progress_.forget_errors();
-  if (samples() == 0) return;
-  if (adaptive()) change_schedule();
-  progress_.note(true);
+  output_.mixed();
+  mix_.change();
+  if (!options_.interactive) mix_.settle();
 }
 
 void Renderer::reload_shaders() {
   if (!setup_.engine) return;
   Transaction transaction(context_, setup_, Transaction::Target(setup_), setup_.engine->plan());
   transaction.build(scene::Change::shaders, true);
-  std::unique_ptr<Display> display;
-  if (display_) display = std::make_unique<Display>(*device_, *compiler_);
+  PictureOutput::WindowParts window_parts = output_.make_window_parts(true);
   commit(transaction);
-  display_ = std::move(display), shown_ = {};
-  recording_.reset();
-  if (window_filter_) window_filter_->reset_kernels();
+  output_.adopt(std::move(window_parts));
+  paths_.reset_kernels();
   notify_settings_changed();
   restart(scene::Change::shaders);
 }
@@ -171,35 +146,24 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
   const std::optional<vec3> factor = factors ? scene::common_factor(*factors) : std::nullopt;
   const bool by_group = factors && !factor && setup_.film->groups() == factors->size();
   bool known = factor || keeps_light(changes);
-  if (display_ && samples() > 0) {
-    // Groups with different factors are a new mix of the present picture.
-    if (by_group) {
-      std::vector<vec3> weights = setup_.relight.weights;
-      for (size_t g = 0; g < weights.size(); ++g) weights[g] *= (*factors)[g];
-      setup_.film->set_mix(weights);
-      wavefront.mix(*setup_.film);
-    }
-    const Filtered* filtered = shown_.filtered && !by_group ? window_filter_->result() : nullptr;
-    // The root: of single pixels' bias about half is left in means over 3x3, as bench latency measures.
-    const bool taken = display_->take(wavefront.stream(), filtered ? *filtered->film : *setup_.film,
-                                      filtered ? std::sqrt(filtered->error.over_noise) : 1);
+  if (samples() > 0) {
+    const bool taken = output_.keep_former(by_group ? &*factors : nullptr);
     known = known || (by_group && taken);
   }
-  forget_filtered();
+  output_.forget_filtered();
   setup_.film->set_mix(setup_.relight.weights), setup_.coarse->set_mix(setup_.relight.weights);
   setup_.film->clear(wavefront.stream());
   setup_.coarse->clear(wavefront.stream());
   wavefront.reset_stats();
-  mix_pending_ = false;
-  start_schedule();
-  if (display_) display_->restart(changes, factor.value_or(vec3(1)), known);
+  mix_.restart();
+  sampling_.restart();
+  output_.restart(changes, factor.value_or(vec3(1)), known);
   if (changes.edits.contains(scene::Change::shape) || changes.edits.contains(scene::Change::shaders))
     overlays_.forget_surfaces();
   begun_lens_ = setup_.camera.lens;
-  draft_preparing_ = false;
-  if (!known) path_pace_.reset();
+  previews_.restart(known);
   ++restarts_;
-  weighed_at_ = 0;
+  lookups_.restart();
   progress_.restart();
   applied_ = setup_.settings.all();
 }
@@ -221,106 +185,14 @@ bool Renderer::keeps_light(const scene::Changes& changes) const {
          std::all_of(changes.settings.begin(), changes.settings.end(), kept);
 }
 
-std::optional<schedule::Rectangle> Renderer::region() const {
-  const auto region = schedule::parse_region(setup_.settings.text("sampling.region"), "sampling.region");
-  if (!region) return std::nullopt;
-  return schedule::pixels_of(*region, setup_.width, setup_.height);
-}
-
-schedule::Rectangle Renderer::scheduled_region() {
-  const std::optional<schedule::Rectangle> pixels = region();
-  region_waits_ = pixels && options_.interactive && samples() < k_around_region;
-  return pixels && !region_waits_ ? schedule::blocks_of(*pixels) : schedule::Rectangle{};
-}
-
-void Renderer::start_schedule() {
-  seen_ = setup_.seen_range();
-  sampling_ = {};
-  const schedule::Rectangle blocks = scheduled_region();
-  if (setup_.settings.text("sampling.mode") == "adaptive")
-    sampling_.start(schedule::AdaptiveSchedule(setup_.film->blocks_across(), setup_.film->blocks_down(),
-                                               adaptive_options(blocks)));
-  else
-    start_uniform(std::vector<uint32_t>(setup_.film->blocks(), 0), blocks);
-}
-
-void Renderer::start_uniform(std::vector<uint32_t> have, const schedule::Rectangle& region) {
-  const auto samples = uint32_t(setup_.settings.integer("samples"));
-  const uint32_t slots = setup_.engine->wavefront().slots();
-  const bool one = setup_.engine->in_rounds();
-  if (region == schedule::Rectangle{}) {
-    sampling_.start(schedule::UniformSchedule(std::move(have), samples, slots, one), region);
-    return;
-  }
-  std::vector<uint32_t> blocks =
-      schedule::indices_of(region, setup_.film->blocks_across(), setup_.film->blocks_down());
-  sampling_.start(schedule::UniformSchedule(std::move(have), std::move(blocks), samples, slots, one), region);
-}
-
-void Renderer::change_schedule() {
-  seen_ = setup_.seen_range();
-  std::vector<uint32_t> have = sampling_.counts();
-  const schedule::Rectangle blocks = scheduled_region();
-  if (setup_.settings.text("sampling.mode") == "adaptive") {
-    std::vector<schedule::TileErrors> errors;
-    image_error();
-    for (const film::TileError& t : film::tile_errors(*setup_.film, tile_side()))
-      errors.push_back({float(t.relative), float(t.relative_lookup_noise), float(t.relative_interpolation)});
-    sampling_.start(schedule::AdaptiveSchedule(setup_.film->blocks_across(), setup_.film->blocks_down(),
-                                               adaptive_options(blocks), have, errors));
-  } else {
-    start_uniform(std::move(have), blocks);
-  }
-}
-
-schedule::AdaptiveOptions Renderer::adaptive_options(const schedule::Rectangle& region) const {
-  return {
-      .tile = tile_side(),
-      .target_error = float(setup_.settings.real("sampling.target_error")),
-      .min_samples = uint32_t(setup_.settings.integer("sampling.min_samples")),
-      .max_samples = uint32_t(setup_.settings.integer("sampling.max_samples")),
-      .slots = setup_.engine->wavefront().slots(),
-      .one_sample = setup_.engine->in_rounds(),
-      .region = region,
-  };
-}
-
 film::ImageError Renderer::image_error() {
-  settle_mix();
+  mix_.settle();
   return progress_.estimate_error();
 }
 
 void Renderer::finish_ledger() {
-  if (samples() >= 2) settle_mix();
+  if (samples() >= 2) mix_.settle();
   progress_.note(true);
-}
-
-bool Renderer::lookup_errors_known() const {
-  return setup_.engine && samples() >= 2 && !setup_.engine->owing_errors(*setup_.film);
-}
-
-bool Renderer::lookup_bias_estimated() const {
-  if (!setup_.engine) return false;
-  return std::all_of(setup_.engine->solvers().begin(), setup_.engine->solvers().end(),
-                     [](const auto& solver) {
-                       const auto* bias = solvers::offered<solvers::LookupBias>(*solver);
-                       return !bias || bias->estimates_bias();
-                     });
-}
-
-std::optional<double> Renderer::bias(size_t component) const {
-  if (!setup_.engine) return std::nullopt;
-  // Paths compute all primary light if the scene has nothing of the part that another solver looks up.
-  if (component == 0 && setup_.engine->plan().solver[0] && !setup_.engine->looks_up_direct_light())
-    return 0.0;
-  return setup_.engine->plan().bias(component);
-}
-
-std::vector<film::TileError> Renderer::tile_errors() const {
-  const uint32_t side = tile_side();
-  std::vector<film::TileError> tiles = film::tile_errors(*setup_.film, side);
-  film::mark_heavy_tails(tiles, (setup_.film->width() + side - 1) / side, setup_.seen_range().floor);
-  return tiles;
 }
 
 void Renderer::notify_settings_changed() {
@@ -354,13 +226,14 @@ void Renderer::apply_settings() {
     return;
   }
   check_region(target.settings);
-  std::shared_ptr<const OcioTable> ocio = changed("film.ocio") ? ocio_table(target.settings) : ocio_;
+  const bool other_ocio = changed("film.ocio");
+  std::shared_ptr<const OcioTable> ocio = other_ocio ? output_.ocio_for(target.settings) : nullptr;
   bool again = false, retarget = false;
   for (const std::string& key : changes.settings) {
     // The current schedule can apply these.
     const bool goal = key == "sampling.target_error" || key == "sampling.min_samples" ||
                       key == "sampling.max_samples" ||
-                      (key == "sampling.tile" && (!adaptive() || changed("sampling.mode")));
+                      (key == "sampling.tile" && (!sampling_.adaptive() || changed("sampling.mode")));
     if (goal)
       retarget = true;
     else if (key != "samples")
@@ -376,24 +249,24 @@ void Renderer::apply_settings() {
       std::any_of(std::begin(plan::k_traced_scene_settings), std::end(plan::k_traced_scene_settings),
                   changed)) {
     install(std::move(target), {}, changes);
-    ocio_ = std::move(ocio);
+    if (other_ocio) output_.set_ocio(std::move(ocio));
     return;
   }
   again |= apply_plan(std::move(target), changes);
-  ocio_ = std::move(ocio);
+  if (other_ocio) output_.set_ocio(std::move(ocio));
   notify_settings_changed();
   setup_.kept.note(changes.edits);
-  if (changed("samples") && !again)
-    sampling_.uniform().set_samples(uint32_t(setup_.settings.integer("samples")));
+  if (changed("samples") && !again) sampling_.change_samples();
   if (changed("sampling.region") && !again) {
-    settle_mix();
-    change_schedule();
+    mix_.settle();
+    sampling_.change(progress_);
     progress_.forget_errors();  // of other pixels
     progress_.note(true);
   } else if (changed("sampling.mode") && !again) {
-    change_schedule();
-  } else if (retarget && !again && adaptive()) {
-    sampling_.adaptive()->retarget(adaptive_options(sampling_.region()));
+    if (setup_.settings.text("sampling.mode") == "adaptive") mix_.settle();
+    sampling_.change(progress_);
+  } else if (retarget && !again) {
+    sampling_.retarget();
   }
   if (again)
     restart(changes);
@@ -441,7 +314,7 @@ void Renderer::set_size(uint32_t width, uint32_t height) {
     setup_.width = width, setup_.height = height;
   }
   overlays_.retry();
-  if (window_filter_) window_filter_->retry();
+  output_.retry_filter();
   restart(scene::Change::size);
 }
 
@@ -453,6 +326,18 @@ void Renderer::set_camera(const scene::Camera& camera) {
 
 void Renderer::choose_camera(const std::string& name) {
   set_camera(scene::find_camera(*setup_.world.scene, name));
+}
+
+void Renderer::solver_load(const std::string& name, const std::filesystem::path& file) {
+  solvers_.load(name, file);
+  restart(scene::Changes{});
+}
+
+double peak_host_mb() {
+  std::ifstream status("/proc/self/status");
+  for (std::string line; std::getline(status, line);)
+    if (line.rfind("VmHWM:", 0) == 0) return std::stod(line.substr(6)) / 1024;
+  return 0;
 }
 
 }  // namespace lucerna::session

@@ -4,11 +4,11 @@
 
 #include "scene/io/environment_file.h"
 #include "scene/light_factor.h"
-#include "scene/object_place.h"
 #include "scene/range.h"
 #include "scene/sky_image.h"
 #include "session/found_portals.h"
 #include "session/renderer.h"
+#include "session/scene_edit.h"
 
 namespace lucerna::session {
 namespace {
@@ -25,10 +25,7 @@ bool same_light(const std::vector<scene::Light>& a, const std::vector<scene::Lig
 }  // namespace
 
 void Renderer::set_light_list(const std::vector<scene::Light>& lights) {
-  if (!setup_.world.scene) throw Error("light", "there is no scene");
-  for (const scene::Light& light : lights) scene::check_range(light);
-  auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
-  edited->lights = lights;
+  const EditedScene edited = with_light_list(setup_.world.scene, lights);
   Relight& relight = setup_.relight;
   if (same_light(setup_.world.scene->lights, lights) &&
       (!relight.groups ||
@@ -42,21 +39,12 @@ void Renderer::set_light_list(const std::vector<scene::Light>& lights) {
 }
 
 void Renderer::set_light(uint32_t index, const scene::Light& light) {
-  if (!setup_.world.scene || index >= setup_.world.scene->lights.size())
-    throw_error("light", "there is no light {}", index);
-  scene::check_range(light);
-  auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
-  edited->lights[index] = light;
-  edit(edited, scene::Change::lamp, false);
+  edit(with_light(setup_.world.scene, index, light), scene::Change::lamp, false);
 }
 
 void Renderer::set_environment(float scale, float rotation_degrees) {
   if (!setup_.world.scene) return;
-  auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
-  edited->environment.scale = scale;
-  edited->environment.rotation = rotation_degrees;
-  scene::check_range(edited->environment);
-  edit(edited, scene::Change::environment, false);
+  edit(with_environment(setup_.world.scene, scale, rotation_degrees), scene::Change::environment, false);
 }
 
 void Renderer::set_environment_file(const std::filesystem::path& file, std::optional<float> scale,
@@ -104,18 +92,8 @@ void Renderer::light_by(std::shared_ptr<scene::Scene> edited, const scene::Envir
 }
 
 void Renderer::set_material(uint32_t index, const scene::Material& material) {
-  if (!setup_.world.scene || index >= setup_.world.scene->materials.size())
-    throw_error("material", "there is no material {}", index);
-  scene::check_range(material);
-  auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
-  scene::Material& m = edited->materials[index];
-  const scene::Material before = std::exchange(m, material);
-  bool same = m.alpha_mode == before.alpha_mode && (m.transmission > 0) == (before.transmission > 0) &&
-              (m.thickness > 0) == (before.thickness > 0);
-  for (const auto& slot : scene::k_texture_slots) same &= m.*slot.use == before.*slot.use;
-  if (!same)
-    throw_error("material", "'{}': its textures, alpha mode, transmission and thickness cannot be changed",
-                before.name);
+  const EditedScene edited = with_material(setup_.world.scene, index, material);
+  const scene::Material& before = setup_.world.scene->materials[index];
   // A diffuse colour remains, and no other lobe appears: lookups stay at the same places.
   const auto diffuse = [](const scene::Material& x) {
     return luminance(vec3(x.base_color)) > 0 && x.metallic < 1;
@@ -128,20 +106,7 @@ void Renderer::set_material(uint32_t index, const scene::Material& material) {
 }
 
 void Renderer::set_lights(const LightsEdit& e) {
-  if (!setup_.world.scene) throw Error("light", "there is no scene");
-  auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
-  for (const auto& [index, light] : e.lights) {
-    if (index >= edited->lights.size()) throw_error("light", "there is no light {}", index);
-    scene::check_range(light);
-    edited->lights[index] = light;
-  }
-  for (const auto& [index, material] : e.materials) {
-    if (index >= edited->materials.size()) throw_error("material", "there is no material {}", index);
-    scene::check_range(material);
-    edited->materials[index].emission = material.emission;
-  }
-  if (e.environment_scale) edited->environment.scale = *e.environment_scale;
-  scene::check_range(edited->environment);
+  const EditedScene edited = with_strengths(setup_.world.scene, e);
   if (write_mix(setup_.relight, edited, *setup_.world.lit, setup_.settings, e.mix)) {
     setup_.world.scene = edited;
     setup_.settings.set("relight.mix", e.mix);
@@ -157,22 +122,15 @@ void Renderer::set_lights(const LightsEdit& e) {
 }
 
 void Renderer::set_instances(const std::vector<ObjectEdit>& edits, const Progress& progress) {
-  if (!setup_.world.scene) throw Error("object", "there is no scene");
-  auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
-  bool changed = false;
-  for (const ObjectEdit& e : edits) {
-    if (e.index >= edited->instances.size()) throw_error("object", "there is no object {}", e.index + 1);
-    scene::Instance& instance = edited->instances[e.index];
-    changed |= instance.to_world != e.to_world || instance.hidden != e.hidden;
-    instance.to_world = e.to_world, instance.hidden = e.hidden;
-    instance.flipped = glm::determinant(glm::dmat3(e.to_world)) < 0;
-    scene::check_range(instance, scene::box_of(std::as_const(edited->meshes).at(instance.mesh)));
-  }
-  if (!changed) return;
+  const EditedScene edited = with_objects(setup_.world.scene, edits);
+  const auto same_place = [](const scene::Instance& x, const scene::Instance& y) {
+    return x.to_world == y.to_world && x.hidden == y.hidden;
+  };
+  const std::vector<scene::Instance>& before = setup_.world.scene->instances;
+  if (std::equal(before.begin(), before.end(), edited->instances.begin(), same_place)) return;
   Transaction::Target target(setup_);
   // What stood in a window may be gone.
-  target.scene =
-      with_portals(std::move(edited), loaded_->portals, setup_.settings.text("lights.portals"), progress);
+  target.scene = with_portals(edited, loaded_->portals, setup_.settings.text("lights.portals"), progress);
   install(std::move(target), progress, scene::Change::shape);
   overlays_.show_paths({});
 }

@@ -1,5 +1,6 @@
 #pragma once
-// Uniform or adaptive sampling behind one interface: which pixels get samples next.
+// Which pixels of the picture get samples next: uniform or adaptive sampling behind one interface, by the
+// settings `samples` and sampling.*.
 #include <algorithm>
 #include <optional>
 #include <vector>
@@ -7,20 +8,40 @@
 #include "schedule/adaptive.h"
 #include "schedule/region.h"
 #include "schedule/uniform.h"
+#include "session/setup.h"
 
 namespace lucerna::session {
 
+class ImageProgress;
+
 class Sampling {
  public:
-  /// `region`: blocks that get samples.
-  void start(schedule::UniformSchedule schedule, const schedule::Rectangle& region) {
-    uniform_ = std::move(schedule), adaptive_.reset();
-    region_ = region;
+  /// `interactive`: in the window, where a picture with a region has samples everywhere. `setup` must outlive
+  /// it.
+  Sampling(const Setup& setup, bool interactive) : setup_(setup), interactive_(interactive) {}
+
+  /// Begins without samples.
+  void restart();
+  /// Continues from the present samples with another mode, region or tone curve. Adaptive sampling first
+  /// estimates errors (`progress`), in a pass over the film.
+  void change(const ImageProgress& progress);
+  /// Uniform sampling: the setting `samples` has changed.
+  void change_samples();
+  /// Adaptive sampling: target error or limits have changed.
+  void retarget();
+
+  /// The setting sampling.region: pixels; nullopt: the whole picture.
+  std::optional<schedule::Rectangle> chosen_region() const;
+  /// Likewise in batch; nullopt in the window, whose pictures have samples around the region too.
+  std::optional<schedule::Rectangle> only_region() const {
+    return interactive_ ? std::nullopt : chosen_region();
   }
-  void start(schedule::AdaptiveSchedule schedule) {
-    adaptive_.emplace(std::move(schedule));
-    region_ = adaptive_->options().region;
-  }
+  /// True if the region's own samples can begin: change() then begins them.
+  bool region_due() const;
+  /// True if another exposure or tone curve has changed errors as seen, by which tiles have stopped: then
+  /// call change().
+  bool judged_otherwise() const { return adaptive_ && seen_ != setup_.seen_range(); }
+
   /// Blocks that get samples; without bounds: all. The numbers of samples below are of their pixels.
   const schedule::Rectangle& region() const { return region_; }
   bool whole() const { return region_ == schedule::Rectangle{}; }
@@ -29,27 +50,37 @@ class Sampling {
   schedule::AdaptiveSchedule* adaptive() { return adaptive_ ? &*adaptive_ : nullptr; }
   schedule::UniformSchedule& uniform() { return uniform_; }
 
-  bool done() const { return adaptive_ ? adaptive_->done() : uniform_.done(); }
+  bool done() const { return (adaptive_ ? adaptive_->done() : uniform_.done()) && !judged_otherwise(); }
   /// Number of samples that every pixel has.
   uint32_t samples() const { return adaptive_ ? adaptive_->least_samples() : uniform_.complete(); }
   /// Number of samples that some pixel has.
-  uint32_t most_samples() const {
-    if (!adaptive_) return uniform_.complete();
-    if (!whole()) return adaptive_->most_samples();
-    const std::vector<uint32_t> all = counts();
-    return all.empty() ? 0 : *std::max_element(all.begin(), all.end());
-  }
+  uint32_t most_samples() const;
   /// Samples a pixel at which the image is finished; adaptive: maximum of any pixel.
   uint32_t max_samples() const { return adaptive_ ? adaptive_->options().max_samples : uniform_.samples(); }
   /// Complete passes over the picture, or over the active tiles.
   uint32_t passes() const { return adaptive_ ? adaptive_->rounds() : uniform_.passes(); }
-  /// Samples of every block of the picture, in raster order.
-  std::vector<uint32_t> counts() const { return adaptive_ ? adaptive_->counts() : uniform_.counts(); }
 
  private:
+  /// Samples of every block of the picture, in raster order.
+  std::vector<uint32_t> counts() const { return adaptive_ ? adaptive_->counts() : uniform_.counts(); }
+  /// Blocks that the next schedule gives samples to: all until every pixel has the window's first samples.
+  schedule::Rectangle scheduled_region();
+  void start(schedule::UniformSchedule schedule, const schedule::Rectangle& region);
+  void start(schedule::AdaptiveSchedule schedule);
+  void start_uniform(std::vector<uint32_t> have, const schedule::Rectangle& region);
+  schedule::AdaptiveOptions adaptive_options(const schedule::Rectangle& region) const;
+
+  /// Samples of every pixel of the window's picture before only a region gets more: one in each half of the
+  /// film, so that their noise is known.
+  static constexpr uint32_t k_around_region = 2;
+
+  const Setup& setup_;
+  bool interactive_;
   schedule::UniformSchedule uniform_;
   std::optional<schedule::AdaptiveSchedule> adaptive_;  ///< replaces the uniform one
   schedule::Rectangle region_;
+  bool region_waits_ = false;  ///< its schedule starts when every pixel has k_around_region samples
+  film::SeenRange seen_;       ///< seen_range() of the errors in the adaptive schedule
 };
 
 }  // namespace lucerna::session

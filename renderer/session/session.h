@@ -1,6 +1,7 @@
 #pragma once
-// Owns the device, the scene and the renderer, on a separate thread. Callers send commands and read
-// snapshots. Every method may be called from any thread and returns at once unless stated otherwise.
+// What window, command line and scripts see of rendering: they send commands and read snapshots.
+// start_session() makes a session with a device and a renderer. Every method may be called from any thread
+// and returns at once unless stated otherwise.
 #include <array>
 #include <filesystem>
 #include <functional>
@@ -101,7 +102,7 @@ struct Snapshot {
   std::string preparing;
   double preparing_done = -1;            ///< progress of that, 0..1; -1: unknown
   std::optional<double> preparing_left;  ///< remaining seconds of rendering, estimated (stats::WorkPace)
-  /// Pace of pure path tracing (Renderer::path_pace).
+  /// Pace of pure path tracing (PreviewSamples::path_pace).
   std::optional<stats::SamplePace> path_pace;
   /// Wall time since this image was begun, without pauses: the clock of the ledger's wall_s and of forecasts.
   double seconds = 0;
@@ -143,108 +144,115 @@ struct State {
 /// has also been logged.
 using Saved = std::shared_future<void>;
 
+/// Answer to a question about the picture; get() throws Error on failure. Nothing is logged.
+template <class T>
+using Answer = std::shared_future<T>;
+
 class Session {
  public:
-  explicit Session(const Options& options);
-  /// Stops the work in progress and joins. Pending saves are written first, with the present samples.
-  ~Session();
+  Session() = default;
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
+  /// Stops the work in progress. Pending saves are written first, with the present samples.
+  virtual ~Session() = default;
 
   // Commands: queued, carried out in order at the next work-item boundary. Failures are logged as errors
   // (log::add_listener) and listed in Snapshot::refused, and change nothing.
   //
   // `scene`: the scene that a command is for, by State::scene_id. If another one has been loaded by its turn,
   // the command is skipped with a warning.
-  void load(const std::filesystem::path& file);
-  void set(const std::string& key, const std::string& value, SceneId scene = k_any_scene);
+  virtual void load(const std::filesystem::path& file) = 0;
+  virtual void set(const std::string& key, const std::string& value, SceneId scene = k_any_scene) = 0;
   /// If several consecutive ones are in the queue, only the last is used; they share one number.
-  void set_camera(const scene::Camera& camera, SceneId scene = k_any_scene);
-  void set_size(uint32_t width, uint32_t height);
-  /// Renderer::set_window_scale.
-  void set_window_scale(uint32_t scale);
-  void set_light(uint32_t index, const scene::Light& light, SceneId scene = k_any_scene);
+  virtual void set_camera(const scene::Camera& camera, SceneId scene = k_any_scene) = 0;
+  virtual void set_size(uint32_t width, uint32_t height) = 0;
+  /// Overlays::set_window_scale.
+  virtual void set_window_scale(uint32_t scale) = 0;
+  virtual void set_light(uint32_t index, const scene::Light& light, SceneId scene = k_any_scene) = 0;
   /// Replaces the scene's lights: adds, removes, renames (Renderer::set_light_list).
-  void set_light_list(const std::vector<scene::Light>& lights, SceneId scene = k_any_scene);
-  void set_environment(float scale, float rotation_degrees, SceneId scene = k_any_scene);
+  virtual void set_light_list(const std::vector<scene::Light>& lights, SceneId scene = k_any_scene) = 0;
+  virtual void set_environment(float scale, float rotation_degrees, SceneId scene = k_any_scene) = 0;
   /// Renderer::set_environment_file
-  void set_environment_file(const std::filesystem::path& file, std::optional<float> scale = {},
-                            std::optional<float> rotation_degrees = {}, SceneId scene = k_any_scene);
+  virtual void set_environment_file(const std::filesystem::path& file, std::optional<float> scale = {},
+                                    std::optional<float> rotation_degrees = {},
+                                    SceneId scene = k_any_scene) = 0;
   /// Renderer::set_environment_sky
-  void set_environment_sky(const scene::SkyModel& sky, float scale, SceneId scene = k_any_scene);
+  virtual void set_environment_sky(const scene::SkyModel& sky, float scale, SceneId scene = k_any_scene) = 0;
   /// Renderer::set_material
-  void set_material(uint32_t index, const scene::Material& material, SceneId scene = k_any_scene);
-  void set_lights(const LightsEdit& edit, SceneId scene = k_any_scene);  ///< Renderer::set_lights
+  virtual void set_material(uint32_t index, const scene::Material& material, SceneId scene = k_any_scene) = 0;
+  virtual void set_lights(const LightsEdit& edit, SceneId scene = k_any_scene) = 0;  ///< Renderer::set_lights
   /// Renderer::set_instances, with progress in snapshots if it takes long; cancel() ends it too.
-  void set_instances(const std::vector<ObjectEdit>& edits, SceneId scene = k_any_scene);
-  void set_paused(bool paused);
-  void restart();         ///< discards all samples and restarts
-  void reload_shaders();  ///< compiles again; on error the old kernels stay and the message is logged
-  /// Compares the picture with this reference from now on (Renderer::set_reference).
-  void set_reference(const std::filesystem::path& file, SceneId scene = k_any_scene);
-  void clear_reference();
+  virtual void set_instances(const std::vector<ObjectEdit>& edits, SceneId scene = k_any_scene) = 0;
+  virtual void set_paused(bool paused) = 0;
+  virtual void restart() = 0;  ///< discards all samples and restarts
+  /// Compiles again; on error the old kernels stay and the message is logged.
+  virtual void reload_shaders() = 0;
+  /// Compares the picture with this reference from now on (ImageProgress::set_reference).
+  virtual void set_reference(const std::filesystem::path& file, SceneId scene = k_any_scene) = 0;
+  virtual void clear_reference() = 0;
   /// Inspects solver data at that place of the picture (0..1 to the right and down): reported in
   /// Snapshot::reports and drawn over the picture from now on; nullopt: ends it.
-  void inspect(std::optional<vec2> at, SceneId scene = k_any_scene);
-  /// Renderer::measure, as soon as there is an image; get() throws on failure. Nothing is logged.
-  std::shared_future<film::Brightness> measure(std::optional<vec2> at, SceneId scene = k_any_scene);
+  virtual void inspect(std::optional<vec2> at, SceneId scene = k_any_scene) = 0;
+  /// PictureOutput::measure, as soon as there is an image.
+  virtual Answer<film::Brightness> measure(std::optional<vec2> at, SceneId scene = k_any_scene) = 0;
   /// Measures what each effect of the scene costs and contributes (EffectMeasurement), while the picture
   /// waits. Errors are logged, as is the result, which snapshots contain from then on.
-  void measure_effects(SceneId scene = k_any_scene);
-  void stop_measuring_effects();
-  /// The layers of the present picture as floats (Renderer::film_image_with_halves); get() throws Error if it
-  /// has no sample. Nothing is logged.
-  std::shared_future<film::FilmImage> layers(SceneId scene = k_any_scene);
+  virtual void measure_effects(SceneId scene = k_any_scene) = 0;
+  virtual void stop_measuring_effects() = 0;
+  /// The layers of the present picture as floats (PictureOutput::film_image_with_halves); Error if it has no
+  /// sample.
+  virtual Answer<film::FilmImage> layers(SceneId scene = k_any_scene) = 0;
   /// Records the first `samples` paths of the pixel at that place, and draws them over the picture from then
-  /// on; as soon as there is a picture. get() throws on failure. Nothing is logged.
-  std::shared_future<std::shared_ptr<const recording::Recording>> trace_paths(const vec2& at,
-                                                                              uint32_t samples,
-                                                                              SceneId scene = k_any_scene);
+  /// on; as soon as there is a picture.
+  virtual Answer<std::shared_ptr<const recording::Recording>> trace_paths(const vec2& at, uint32_t samples,
+                                                                          SceneId scene = k_any_scene) = 0;
   /// Draws recorded paths over the picture; nullptr: none.
-  void show_paths(const ShownPaths& paths, SceneId scene = k_any_scene);
-  /// Explains the noise of a part of the picture (0..1 to the right and down): Renderer::explain_noise. As
-  /// soon as there is a picture; get() throws on failure. Nothing is logged.
-  std::shared_future<recording::NoiseReport> explain_noise(const vec2& lo, const vec2& hi,
-                                                           SceneId scene = k_any_scene);
-  /// Renderer::held_picture, as soon as there is a picture; get() throws on failure. Nothing is logged.
-  std::shared_future<std::shared_ptr<const HeldPicture>> held_picture(SceneId scene = k_any_scene);
+  virtual void show_paths(const ShownPaths& paths, SceneId scene = k_any_scene) = 0;
+  /// Explains the noise of a part of the picture (0..1 to the right and down): PathStudy::explain_noise. As
+  /// soon as there is a picture.
+  virtual Answer<recording::NoiseReport> explain_noise(const vec2& lo, const vec2& hi,
+                                                       SceneId scene = k_any_scene) = 0;
+  /// PictureOutput::held_picture, as soon as there is a picture.
+  virtual Answer<std::shared_ptr<const HeldPicture>> held_picture(SceneId scene = k_any_scene) = 0;
   /// Sends the layers of the picture to a viewer with tev's protocol from now on (TevLink), at this address
   /// (film::parse_tev_address); nullopt: ends it. A connection that fails ends it with a warning.
-  void send_to_tev(const std::optional<std::string>& address);
+  virtual void send_to_tev(const std::optional<std::string>& address) = 0;
   /// Writes EXR or PNG as soon as every pixel has a sample, or at once if rendering rests without.
   /// `as_shown`: a PNG includes the preview's filter, like the snapshots.
-  Saved save(const std::filesystem::path& file, bool as_shown = false);
+  virtual Saved save(const std::filesystem::path& file, bool as_shown = false) = 0;
   /// Writes the sum with what its noise is known by, for film::compare_stochastic(), when save() would.
-  Saved save_reference(const std::filesystem::path& file);
+  virtual Saved save_reference(const std::filesystem::path& file) = 0;
   /// Saves a solver's data (SolverInfo::file) as soon as it is complete; cancelled if another scene is
   /// loaded.
-  Saved solver_save(const std::string& solver, const std::filesystem::path& file,
-                    SceneId scene = k_any_scene);
-  void solver_load(const std::string& solver, const std::filesystem::path& file, SceneId scene = k_any_scene);
+  virtual Saved solver_save(const std::string& solver, const std::filesystem::path& file,
+                            SceneId scene = k_any_scene) = 0;
+  virtual void solver_load(const std::string& solver, const std::filesystem::path& file,
+                           SceneId scene = k_any_scene) = 0;
   /// Runs one of SolverInfo::commands. Resumes paused rendering.
-  void solver_command(const std::string& solver, const std::string& command, SceneId scene = k_any_scene);
-  void cancel();  ///< cancels all loads and set_instances() requested so far and not done
+  virtual void solver_command(const std::string& solver, const std::string& command,
+                              SceneId scene = k_any_scene) = 0;
+  virtual void cancel() = 0;  ///< cancels all loads and set_instances() requested so far and not done
 
   /// Number of the newest command, from 1 on. A snapshot with that count includes its effect.
-  uint64_t commands() const;
+  virtual uint64_t commands() const = 0;
   /// Number of commands carried out so far; the picture after the last one may still be missing. The next
   /// one, if any, is in progress.
-  uint64_t commands_done() const;
+  virtual uint64_t commands_done() const = 0;
 
   /// The newest picture; null before the first. Cheap.
-  std::shared_ptr<const Snapshot> snapshot() const;
+  virtual std::shared_ptr<const Snapshot> snapshot() const = 0;
   /// Replaced, never changed; at least as new as an earlier snapshot().
-  State state() const;
+  virtual State state() const = 0;
   /// Parts of it.
   std::shared_ptr<const scene::Scene> scene() const { return state().scene; }
   plan::Settings settings() const { return state().settings; }
   /// Called on the session thread after each publication (for glfwPostEmptyEvent). Set it before the first
   /// command.
-  void on_publish(std::function<void()> call);
-
- private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  virtual void on_publish(std::function<void()> call) = 0;
 };
+
+/// Makes the device and renders on a separate thread. If there is no device, an error is logged and every
+/// command is refused.
+std::unique_ptr<Session> start_session(const Options& options);
 
 }  // namespace lucerna::session

@@ -17,7 +17,22 @@ constexpr int k_nice = 10;                 // rendering yields to the window's t
 
 }  // namespace
 
-std::unique_ptr<Renderer> Session::Impl::make_renderer() {
+SessionThread::SessionThread(const Options& o) : options(o) {
+  if (!options.idle) thread = std::thread([this] { run(); });
+}
+
+SessionThread::~SessionThread() {
+  {
+    std::lock_guard lock(mutex);
+    quit = true;
+    given_up = loads.load();
+    pending = true;
+  }
+  wake.notify_one();
+  if (thread.joinable()) thread.join();
+}
+
+std::unique_ptr<Renderer> SessionThread::make_renderer() {
   try {
     RendererOptions made{options.device, options.validation, options.shaders, {}, true, options.scenes};
     if (!options.validation) made.on = kept_device(options.device);
@@ -32,7 +47,7 @@ std::unique_ptr<Renderer> Session::Impl::make_renderer() {
   }
 }
 
-void Session::Impl::carry_out_next(Renderer* renderer, std::unique_lock<std::mutex>& lock) {
+void SessionThread::carry_out_next(Renderer* renderer, std::unique_lock<std::mutex>& lock) {
   Command command = queue.pop();
   const uint64_t number = command.number;
   lock.unlock();
@@ -71,19 +86,19 @@ void Session::Impl::carry_out_next(Renderer* renderer, std::unique_lock<std::mut
   done = next.commands;
 }
 
-void Session::Impl::advance(Renderer& renderer, bool work) {
+void SessionThread::advance(Renderer& renderer, bool work) {
   // The former picture in the new view does not wait for new light.
-  if (std::exchange(recall_wanted, false) && renderer.remembers()) publish_picture(renderer, false);
+  if (std::exchange(recall_wanted, false) && renderer.output().remembers()) publish_picture(renderer, false);
   bool changed = dirty;
   // During edits faster than preview samples, some of them are still shown.
   const auto draft_cancelled = [&] {
     return quit || (pending && (!draft_given_up || since_given_up.seconds() < k_draft_seconds));
   };
-  if (!paused && !draft_cancelled() && renderer.draw_draft(draft_cancelled)) {
+  if (!paused && !draft_cancelled() && renderer.previews().draw(draft_cancelled)) {
     draft_given_up = false;
-    changed = changed || renderer.draft_news();
+    changed = changed || renderer.previews().news();
     // The first one, and the first of improved light, are shown at once; more of them at the usual rate.
-    if (renderer.has_draft())
+    if (renderer.previews().begun())
       changed = changed || std::exchange(coarse_wanted, false);
     else
       coarse_wanted = coarse_wanted || std::exchange(better_wanted, false);
@@ -93,22 +108,22 @@ void Session::Impl::advance(Renderer& renderer, bool work) {
     accuracy.follow(renderer, scene_id);
   }
   // The last entry of the ledger is that of the finished image.
-  if (renderer.done() && !renderer.ledger().entries().empty() &&
-      renderer.ledger().entries().back().paths != renderer.stats().paths)
+  if (renderer.done() && !renderer.progress().ledger().entries().empty() &&
+      renderer.progress().ledger().entries().back().paths != renderer.stats().paths)
     renderer.finish_ledger();
   if (!filled && renderer.samples() > 0) filled = changed = true;
-  changed = renderer.filter_news() || changed;
-  const bool over = (renderer.done() && !renderer.filter_due()) || renderer.waits();
+  changed = renderer.output().filter_news() || changed;
+  const bool over = (renderer.done() && !renderer.output().filter_due()) || renderer.waits();
   if (changed || since_publish.seconds() > publish_seconds || over)
-    publish_picture(renderer, renderer.samples() > 0 && !renderer.mix_pending() &&
+    publish_picture(renderer, renderer.samples() > 0 && !renderer.mix().pending() &&
                                   (since_numbers.seconds() > numbers_seconds || renderer.done() || paused));
-  if (!dirty && renderer.overlay_waits()) {
-    renderer.trace_overlay([&] { return pending.load() || quit; });
+  if (!dirty && renderer.overlays().waits()) {
+    renderer.overlays().trace([&] { return pending.load() || quit; });
     dirty = true;
   }
 }
 
-void Session::Impl::measure_effects() {
+void SessionThread::measure_effects() {
   effects->step([&] { return pending.load() || quit; });
   if (!effects->done()) {
     if (since_publish.seconds() < k_publish_seconds) return;
@@ -121,7 +136,7 @@ void Session::Impl::measure_effects() {
   end_effects(std::move(result));
 }
 
-void Session::Impl::end_effects(std::shared_ptr<const EffectCosts> result) {
+void SessionThread::end_effects(std::shared_ptr<const EffectCosts> result) {
   effects.reset();
   next.effect_costs = std::move(result);
   next.measures_effects = false;
@@ -130,7 +145,7 @@ void Session::Impl::end_effects(std::shared_ptr<const EffectCosts> result) {
 }
 
 /// `numbers`: including values read back from the film.
-void Session::Impl::publish_picture(Renderer& renderer, bool numbers) {
+void SessionThread::publish_picture(Renderer& renderer, bool numbers) {
   if (numbers) since_numbers.restart();
   fill_snapshot(renderer, numbers);
   publish();
@@ -138,7 +153,7 @@ void Session::Impl::publish_picture(Renderer& renderer, bool numbers) {
   dirty = false;
 }
 
-void Session::Impl::end(Renderer* renderer, std::unique_lock<std::mutex>& lock) {
+void SessionThread::end(Renderer* renderer, std::unique_lock<std::mutex>& lock) {
   while (!queue.empty())
     if (const Command command = queue.pop();
         command.saves && renderer && (command.scene == k_any_scene || command.scene == scene_id))
@@ -151,7 +166,7 @@ void Session::Impl::end(Renderer* renderer, std::unique_lock<std::mutex>& lock) 
   give_up_saves("the program ended");
 }
 
-void Session::Impl::run() {
+void SessionThread::run() {
   // Threads of the device inherit this, so the window has priority.
   setpriority(PRIO_PROCESS, id_t(syscall(SYS_gettid)), k_nice);
   const std::unique_ptr<Renderer> renderer = make_renderer();
@@ -161,13 +176,13 @@ void Session::Impl::run() {
     pending = false;
     // During a drag at a group's slider display comes first; the film's sums and more samples follow when it
     // pauses.
-    const bool mixing = renderer && renderer->mix_pending();
+    const bool mixing = renderer && renderer->mix().pending();
     if (mixing && !dirty && wake.wait_for(lock, std::chrono::duration<double>(k_mix_pause_seconds), [&] {
           return quit || !queue.empty();
         }))
       continue;
     const bool work = renderer && (effects || works(*renderer)) && !(mixing && dirty);
-    if (renderer && !work) renderer->rest();
+    if (renderer && !work) renderer->progress().rest();
     if (!work && !dirty && !mixing) {
       const auto woken = [&] { return quit || !queue.empty(); };
       if (!renderer || !tev || !tev->waits(*renderer)) {
@@ -184,7 +199,7 @@ void Session::Impl::run() {
       if (renderer && renderer->ready()) {
         if (mixing && !dirty) {
           // A drag has shown unfiltered samples, which may be few: filter before taking more.
-          renderer->settle_mix();
+          renderer->mix().settle();
           publish_picture(*renderer, false);
         }
         if (effects) measure_effects();

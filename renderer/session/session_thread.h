@@ -24,12 +24,18 @@ inline constexpr double k_numbers_seconds = 0.5;  // between read-backs of the f
 /// Thrown by a command that was cancelled as requested.
 struct Abandoned {};
 
-struct Session::Impl {
+struct SessionThread {
+  using Command = session::Command<Renderer>;
+
+  explicit SessionThread(const Options& options);
+  /// Ends the thread, with pending saves written.
+  ~SessionThread();
+
   Options options;
   std::thread thread;
   mutable std::mutex mutex;
   std::condition_variable wake;
-  CommandQueue queue;
+  CommandQueue<Renderer> queue;
   std::atomic<bool> quit{false}, pending{false};
   uint64_t done = 0;  // number of the last command carried out
   // Loads and edits of objects are numbered in order of request; those up to a number are cancelled.
@@ -66,7 +72,7 @@ struct Session::Impl {
   std::unique_ptr<TevLink> tev;                           // null: none
 
   bool works(Renderer& r) const {
-    return r.ready() && !paused && (!r.done() || r.filter_due()) && !r.waits();
+    return r.ready() && !paused && (!r.done() || r.output().filter_due()) && !r.waits();
   }
 
   /// True if the save can run now, or can never succeed (saving reports why).
@@ -83,11 +89,11 @@ struct Session::Impl {
   static void write(Renderer& r, const Save& save) {
     try {
       if (save.reference)
-        film::write_exr(save.file, film::stochastic_layers(r.film_image_with_halves(), ""));
+        film::write_exr(save.file, film::stochastic_layers(r.output().film_image_with_halves(), ""));
       else if (save.solver.empty())
-        r.save(save.file, save.as_shown);
+        r.output().save(save.file, save.as_shown);
       else
-        r.solver_save(save.solver, save.file);
+        r.solvers().save(save.solver, save.file);
       log::info("saved {}", save.file.string());
       save.promise->set_value();
     } catch (const std::exception& e) {
@@ -105,27 +111,22 @@ struct Session::Impl {
   }
 
   void measure_due(Renderer& r) {
-    if (r.samples() == 0 && !r.has_draft() && works(r)) return;
+    if (r.samples() == 0 && !r.previews().begun() && works(r)) return;
     for (const Measure& m : std::exchange(measures, {})) try {
-        r.settle_mix();
-        m.promise->set_value(r.measure(m.at));
+        r.mix().settle();
+        m.promise->set_value(r.output().measure(m.at));
       } catch (...) {
         m.promise->set_exception(std::current_exception());
       }
   }
 
   /// Answers with `answer(renderer)` as soon as the picture has a sample, or rendering rests without.
-  template <class Answer>
-  std::shared_future<Answer> when_pictured(std::function<Answer(Renderer&)> answer, const char* subject,
-                                           SceneId scene) {
-    auto promise = std::make_shared<std::promise<Answer>>();
-    auto result = promise->get_future().share();
-    const auto question = [this, promise, answer = std::move(answer)](Renderer& r) {
-      try {
-        promise->set_value(answer(r));
-      } catch (...) {
-        promise->set_exception(std::current_exception());
-      }
+  template <class T>
+  Answer<T> when_pictured(std::function<T(Renderer&)> answer, const char* subject, SceneId scene) {
+    auto task = std::make_shared<std::packaged_task<T(Renderer&)>>(std::move(answer));
+    Answer<T> result = task->get_future().share();
+    const auto question = [this, task](Renderer& r) {
+      (*task)(r);
       dirty = true;
     };
     post({.run = [this, question](Renderer&) { questions.push_back(question); },
@@ -245,41 +246,41 @@ struct Session::Impl {
     next.scene_id = scene_id;
     next.width = r.film().width();
     next.height = r.film().height();
-    if (dirty || next.rgba.empty() || !r.shows_the_same()) {
+    if (dirty || next.rgba.empty() || !r.output().shows_the_same()) {
       const Timer shown;
-      next.rgba = r.shown_picture(!filled, [&] { return pending.load() || quit; });
-      next.scale = r.shown_scale();
+      next.rgba = r.output().shown_picture(!filled, [&] { return pending.load() || quit; });
+      next.scale = r.overlays().scale();
       publish_seconds = std::max(k_publish_seconds, 4 * shown.seconds());
     }
-    const film::PreviewShares shares = r.preview_shares();
-    next.stale_is_preview = r.former_is_preview();
+    const film::PreviewShares shares = r.output().preview_shares();
+    next.stale_is_preview = r.output().former_is_preview();
     next.stale = shares.stale, next.filtered = shares.filtered, next.shown_error = shares.error;
-    const film::View view = r.view();
+    const film::View view = r.output().view();
     next.legend = {};
     if (view.layer >= shared::k_layer_albedo) next.legend = {.layer = view.layer, .hi = view.scale};
     if (view.layer >= shared::k_layer_samples)
       next.legend = {view.layer, view.heat.ramp, view.heat.logarithmic, view.heat.lo, view.heat.hi};
     next.tiles = view.tiles > 0;
     next.samples = r.samples();
-    next.max_samples = r.max_samples();
+    next.max_samples = r.sampling().max_samples();
     next.coarse = !filled;
     next.lights_together = r.relight().why_not;
     next.tev = tev ? tev->address() : "";
     next.paused = paused;
     next.finished = r.done();
-    next.resting = !works(r) && !effects && !r.overlay_waits() && !r.mix_pending();
-    next.seconds = r.seconds();
-    next.prepared_seconds = r.prepared_seconds();
-    next.reports = r.reports();
+    next.resting = !works(r) && !effects && !r.overlays().waits() && !r.mix().pending();
+    next.seconds = r.progress().seconds();
+    next.prepared_seconds = r.progress().prepared_seconds();
+    next.reports = r.solvers().reports();
     update_preparing();
-    next.path_pace = r.path_pace();
+    next.path_pace = r.previews().path_pace();
     next.camera = r.camera();
     next.tracer = r.tracer_name();
     next.device = r.device().info().name;
     next.device_mb = double(r.device().allocated_bytes()) / (1 << 20);
     const transport::TransportStats& stats = r.stats();
     next.rays = stats.rays;
-    const double tracing = r.render_seconds();
+    const double tracing = r.progress().render_seconds();
     next.mrays_per_second = tracing > 0 ? 1e-6 * double(stats.rays) / tracing : 0;
     next.dropped = stats.dropped;
     next.stages.clear();
@@ -287,7 +288,7 @@ struct Session::Impl {
     next.mean_samples = double(stats.paths) / (double(next.width) * next.height);
     accuracy.follow(r, scene_id);
     next.accuracy = accuracy.publish(r, numbers || dirty);
-    const auto ms = r.component_ms_a_sample();
+    const auto ms = r.progress().component_ms_a_sample();
     for (int c = 0; c < k_components; ++c) {
       next.components[c].solver = r.choices()[size_t(c)].solver;
       next.components[c].reason = r.choices()[size_t(c)].reason;

@@ -31,6 +31,7 @@ struct Setup {
   std::string view_text() const { return scene::view_text(camera); }
   film::SeenRange seen_range() const;
   uint32_t tile_side() const;  ///< sampling.tile [pixels]
+  std::string tracer_name() const { return world.host ? "host" : "compute-bvh"; }
 };
 
 }  // namespace lucerna::session

@@ -25,7 +25,7 @@ bool TevLink::follow(Renderer& r) {
   if (!other && paths == paths_) return true;
   const bool due = other || paths >= 2 * paths_;
   if (!r.done() && (!due || (begun_ && since_.seconds() < k_seconds))) return true;
-  sender_.send(r.film_image());
+  sender_.send(r.output().film_image());
   begun_ = true, restart_ = r.restarts(), paths_ = paths;
   since_.restart();
   return true;
@@ -41,7 +41,7 @@ bool TevLink::waits(const Renderer& r) const {
 
 void TevLink::finish(Renderer& r) {
   if (!report() || !r.ready() || r.stats().paths == 0) return;
-  if (!has(r)) sender_.send(r.film_image());
+  if (!has(r)) sender_.send(r.output().film_image());
   sender_.finish();
   report();
 }

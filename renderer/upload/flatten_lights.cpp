@@ -149,15 +149,9 @@ void flatten_emission(const scene::Scene& scene, FlatScene& flat) {
                                                                         << k_light_group_shift);
     e.lights.insert(e.lights.end(), texels.begin(), texels.end());
   }
-  if (profiles == flat.profiles_in_table)
-    e.profiles = flat.profiles;
-  else
-    e.profiles = profile_texels(profiles);
+  e.profiles = profiles == flat.profiles_in_table ? flat.profiles : profile_texels(profiles);
   e.profiles_in_table = std::move(profiles);
-  if (pictures == flat.pictures_in_table)
-    e.pictures = flat.pictures;
-  else
-    e.pictures = picture_texels(pictures);
+  e.pictures = pictures == flat.pictures_in_table ? flat.pictures : picture_texels(pictures);
   e.pictures_in_table = std::move(pictures);
   e.environment_rotation = scene.environment.rotation * k_pi / 180;
   if (flat.effects.environment_map) {

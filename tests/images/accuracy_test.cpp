@@ -49,7 +49,7 @@ TEST_CASE("no accuracy is reported while a cache is built, however often progres
     REQUIRE(bed.r.step());
     // Preview samples, as the window draws them while records are built: each is a sixteenth or a quarter of
     // a sample.
-    shown += bed.r.draw_draft();
+    shown += bed.r.previews().draw();
     keeper.follow(bed.r, 1);
     const auto reported = keeper.publish(bed.r, true);
     CHECK(reported->ledger.entries().empty());
@@ -66,17 +66,17 @@ TEST_CASE("no accuracy is reported while a cache is built, however often progres
     if (bed.r.samples() < 2) {
       for (const stats::Entry& e : reported->ledger.entries()) CHECK_FALSE(e.has_error);
       bed.r.finish_ledger();
-      CHECK_FALSE(bed.r.ledger().entries().back().has_error);
-      CHECK_FALSE(stats::seconds_to(bed.r.ledger(), 10).has_value());
+      CHECK_FALSE(bed.r.progress().ledger().entries().back().has_error);
+      CHECK_FALSE(stats::seconds_to(bed.r.progress().ledger(), 10).has_value());
     }
   }
   bed.r.finish_ledger();
-  for (const stats::Entry& e : bed.r.ledger().entries()) {
+  for (const stats::Entry& e : bed.r.progress().ledger().entries()) {
     if (!e.has_error) continue;
     CHECK(e.samples >= 2);
     CHECK(e.error[0] > 0);
   }
-  CHECK(bed.r.ledger().entries().back().samples == 16);
+  CHECK(bed.r.progress().ledger().entries().back().samples == 16);
   CHECK(double(bed.r.stats().paths) == 16 * pixels);
 }
 
@@ -85,12 +85,12 @@ TEST_CASE("the time per sample excludes preparation before the first sample") {
   while (!test::cache(bed.r)->ready()) bed.r.step();
   const double building = total_ms(bed.r.stats());
   REQUIRE(building > 0);
-  CHECK(bed.r.component_ms_a_sample() == std::array<double, shared::k_component_count>{});
+  CHECK(bed.r.progress().component_ms_a_sample() == std::array<double, shared::k_component_count>{});
   session::AccuracyKeeper keeper;
   keeper.follow(bed.r, 1);
   while (bed.r.step()) keeper.follow(bed.r, 1);
   double each = 0, passes = 0;
-  for (const double ms : bed.r.component_ms_a_sample()) each += ms;
+  for (const double ms : bed.r.progress().component_ms_a_sample()) each += ms;
   CHECK(16 * each == Approx(total_ms(bed.r.stats()) - building).epsilon(1e-6));
   // The times of the passes exclude it too.
   for (const session::PassStatus& pass : keeper.publish(bed.r, true)->passes)
@@ -104,7 +104,7 @@ TEST_CASE("the session clock counts the time between steps and stops while rende
   r.set_scene(std::make_shared<scene::Scene>(test::block_room(true)));
   test::set(r, {{"samples", "8"}});
   sleep_ms(20);
-  CHECK(r.seconds() == 0);  // no picture has been requested yet
+  CHECK(r.progress().seconds() == 0);  // no picture has been requested yet
   int steps = 0;
   while (r.samples() < 4) {
     REQUIRE(r.step());
@@ -112,32 +112,34 @@ TEST_CASE("the session clock counts the time between steps and stops while rende
     ++steps;
   }
   const double looked = 0.02 * steps;
-  CHECK(r.seconds() >= r.render_seconds() + looked);
+  CHECK(r.progress().seconds() >= r.progress().render_seconds() + looked);
   // The ledger entry was written before the last read of the clock.
-  const stats::Entry& line = r.ledger().entries().back();
+  const stats::Entry& line = r.progress().ledger().entries().back();
   CHECK(line.wall_s >= line.render_s + looked - 0.02);
-  CHECK(line.wall_s <= r.seconds());
-  r.rest();
-  const double paused = r.seconds();
+  CHECK(line.wall_s <= r.progress().seconds());
+  r.progress().rest();
+  const double paused = r.progress().seconds();
   sleep_ms(20);
-  CHECK(r.seconds() == paused);
+  CHECK(r.progress().seconds() == paused);
   while (r.step()) {
   }
   r.finish_ledger();
   // Once the picture is finished the clock stands still.
-  const double all = r.seconds();
+  const double all = r.progress().seconds();
   CHECK(all > paused);
   sleep_ms(20);
-  CHECK(r.seconds() == all);
-  CHECK(r.ledger().entries().back().wall_s == all);
-  CHECK(r.ledger().entries().back().render_s == r.render_seconds());
+  CHECK(r.progress().seconds() == all);
+  CHECK(r.progress().ledger().entries().back().wall_s == all);
+  CHECK(r.progress().ledger().entries().back().render_s == r.progress().render_seconds());
   r.restart();
-  CHECK(r.seconds() == 0);
+  CHECK(r.progress().seconds() == 0);
   CHECK(r.device().validation_messages() == 0);
 }
 
 TEST_CASE("every report of a session uses one clock, which stands still while rendering is paused") {
-  session::Session s({.device = test::device_name(), .validation = false, .shaders = {}});
+  const auto made =
+      session::start_session({.device = test::device_name(), .validation = false, .shaders = {}});
+  session::Session& s = *made;
   const auto wait = [&](const auto& until) {
     for (int i = 0; i < 6000; ++i, sleep_ms(5))
       if (const auto at = s.snapshot(); at && until(*at)) return at;

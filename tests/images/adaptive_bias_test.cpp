@@ -48,9 +48,9 @@ Bias measure(const std::string& scene, uint32_t width, uint32_t height, double t
   size_t stopped = 0, tiles = 0;
   for (uint32_t seed = 0; seed < seeds; ++seed) {
     const auto uniform = means(seed, "uniform"), adaptive = means(seed, "adaptive");
-    for (const schedule::Tile& tile : r.adaptive()->tiles()) {
+    for (const schedule::Tile& tile : r.sampling().adaptive()->tiles()) {
       ++tiles;
-      stopped += tile.samples == r.adaptive()->options().min_samples;
+      stopped += tile.samples == r.sampling().adaptive()->options().min_samples;
     }
     scale += uniform[0] / seeds;
     for (int k = 0; k < 5; ++k) {

@@ -171,16 +171,16 @@ TEST_CASE("a target that record errors prevent is not reported as reached and co
   test::finish(r);
   r.finish_ledger();
   size_t limited = 0;
-  const std::vector<film::TileError> estimated = r.tile_errors();
+  const std::vector<film::TileError> estimated = r.progress().tile_errors();
   for (size_t t = 0; t < estimated.size(); ++t) {
-    const schedule::Tile& tile = r.adaptive()->tiles()[t];
+    const schedule::Tile& tile = r.sampling().adaptive()->tiles()[t];
     limited += tile.limited(k_target);
     CHECK(tile.samples < 65536);
     if (tile.state == schedule::TileState::done) CHECK(estimated[t].relative_sum() < 1.01 * k_target);
     if (tile.limited(k_target)) CHECK(estimated[t].relative_sum() > k_target);
   }
   CHECK(limited > 0);
-  CHECK(r.ledger().entries().back().floor() > 0);
+  CHECK(r.progress().ledger().entries().back().floor() > 0);
   // The records' error falls with their noise as the number of rays grows.
   const double before = r.image_error().lookup_noise_rms;
   test::set(r, {{"cache.rays", "1024"}, {"cache.noise", "0.01"}});

@@ -44,7 +44,7 @@ TEST_CASE("a loaded cache gives the picture of the saved one, bit for bit, witho
   const fs::path file = folder.path / "a.cache", again = folder.path / "b.cache";
   Bed first;
   const film::Image picture = first.finish();
-  first.r.solver_save("cache", file);
+  first.r.solvers().save("cache", file);
   const irradiance_cache::RawRecords saved = first.records();
   const irradiance_cache::CacheStatus status = first.status();
   REQUIRE(saved.size() > 100);
@@ -60,9 +60,9 @@ TEST_CASE("a loaded cache gives the picture of the saved one, bit for bit, witho
   CHECK(second.status().loaded == saved.size());
   CHECK(second.status().rays == status.rays);
   CHECK(second.status().stop == status.stop);
-  CHECK(second.r.ledger().entries().back().prepared_rays == 0);
+  CHECK(second.r.progress().ledger().entries().back().prepared_rays == 0);
   // Saving it again gives the same file.
-  second.r.solver_save("cache", again);
+  second.r.solvers().save("cache", again);
   CHECK(read_file(again) == read_file(file));
 
   // Loading replaces a cache that is being built.
@@ -80,7 +80,7 @@ TEST_CASE("a loaded cache can be extended: another view adds records, and all sa
   const fs::path file = folder.path / "a.cache";
   Bed first;
   first.finish();
-  first.r.solver_save("cache", file);
+  first.r.solvers().save("cache", file);
   const irradiance_cache::RawRecords saved = first.records();
   const uint64_t rays = first.status().rays;
   first.r.choose_camera("above");
@@ -140,7 +140,7 @@ TEST_CASE("a loaded cache can be extended: another view adds records, and all sa
   Bed narrow;
   narrow.set({{"cache.max_records", "100"}});
   narrow.finish();
-  narrow.r.solver_save("cache", file);
+  narrow.r.solvers().save("cache", file);
   REQUIRE(narrow.status().stop == irradiance_cache::StopReason::records);
   narrow.r.solver_load("cache", file);
   CHECK(test::cache(narrow.r)->ready());
@@ -156,7 +156,7 @@ TEST_CASE("a file that does not fit is refused, and picture and records stay") {
   const fs::path file = folder.path / "a.cache", broken = folder.path / "broken.cache";
   Bed first;
   first.finish();
-  first.r.solver_save("cache", file);
+  first.r.solvers().save("cache", file);
   const std::string bytes = read_file(file);
 
   Bed bed;
@@ -186,7 +186,7 @@ TEST_CASE("a file that does not fit is refused, and picture and records stay") {
   CHECK(identical(picture, bed.finish()));
 
   // A failed save keeps the existing file.
-  CHECK_THROWS_WITH(bed.r.solver_save("cache", folder.path / "no" / "a.cache"),
+  CHECK_THROWS_WITH(bed.r.solvers().save("cache", folder.path / "no" / "a.cache"),
                     Contains("cannot be written"));
 
   // Tertiary light was gathered differently: from records instead of paths, or the reverse.
@@ -197,7 +197,7 @@ TEST_CASE("a file that does not fit is refused, and picture and records stay") {
             "components.tertiary cache");
   paths.finish();
   const fs::path other = folder.path / "paths.cache";
-  paths.r.solver_save("cache", other);
+  paths.r.solvers().save("cache", other);
   CHECK(paths.refusal(other).empty());
   CHECK_THAT(bed.refusal(other), Contains("was made with") || Contains("were made with"));
   CHECK_THAT(first.refusal(other), Contains("gathered by 'path', here it is by 'cache'"));
@@ -224,15 +224,15 @@ TEST_CASE("a cache belongs to its scene and lighting; without a built cache ther
   const test::Folder folder;
   const fs::path file = folder.path / "a.cache";
   session::Renderer empty(test::renderer_options(false));
-  CHECK_THROWS_WITH(empty.solver_save("cache", file), Contains("load a scene first"));
+  CHECK_THROWS_WITH(empty.solvers().save("cache", file), Contains("load a scene first"));
   CHECK_THROWS_WITH(empty.solver_load("cache", file), Contains("load the scene first"));
 
   Bed bed;
-  CHECK_THROWS_WITH(bed.r.solver_save("cache", file),
+  CHECK_THROWS_WITH(bed.r.solvers().save("cache", file),
                     Contains("still being built (pass 1, 0 records so far)"));
   CHECK_FALSE(fs::exists(file));
   bed.finish();
-  bed.r.solver_save("cache", file);
+  bed.r.solvers().save("cache", file);
   CHECK(bed.refusal(file).empty());
 
   // Light edits, and their undo.
@@ -259,7 +259,7 @@ TEST_CASE("a cache belongs to its scene and lighting; without a built cache ther
 
   Bed plain(Settings{});
   CHECK_THAT(plain.refusal(file), Contains("no component is computed by 'cache'"));
-  CHECK_THROWS_WITH(plain.r.solver_save("cache", file), Contains("no component is computed by 'cache'"));
+  CHECK_THROWS_WITH(plain.r.solvers().save("cache", file), Contains("no component is computed by 'cache'"));
 }
 
 TEST_CASE("the cache of a scene without diffuse surfaces can be saved and loaded") {
@@ -270,7 +270,7 @@ TEST_CASE("the cache of a scene without diffuse surfaces can be saved and loaded
   Bed first(k_cached, mirrors);
   const film::Image picture = first.finish();
   REQUIRE(test::cache(first.r)->records().size() == 0);
-  first.r.solver_save("cache", file);
+  first.r.solvers().save("cache", file);
   Bed second(k_cached, mirrors);
   second.r.solver_load("cache", file);
   CHECK(test::cache(second.r)->ready());

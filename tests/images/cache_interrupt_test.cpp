@@ -52,7 +52,7 @@ struct Bed {
     r.settings().set("path.batch", "4096");
     r.set_scene(std::make_shared<scene::Scene>(before));
     test::set(r, k_shown);
-    r.inspect(vec2(0.4f, 0.6f));
+    r.overlays().inspect(vec2(0.4f, 0.6f));
   }
   ~Bed() { CHECK(r.device().validation_messages() == 0); }
 
@@ -104,7 +104,7 @@ struct Bed {
 
   /// Reads picture and report as the window does: both are valid.
   void watch() {
-    REQUIRE(r.picture(false).size() == size_t{4} * r.film().width() * r.film().height());
+    REQUIRE(r.output().picture(false).size() == size_t{4} * r.film().width() * r.film().height());
     const auto report = test::cache_report(r);
     REQUIRE(report);
     const irradiance_cache::CacheStatus& s = report->status;
@@ -157,13 +157,13 @@ TEST_CASE("an edit at any stage of the build is followed by a valid build") {
       for (int stage = 0; stage < stages && !test::cache(r)->ready(); ++stage) {
         while (r.step()) {
         }
-        if (stage + 1 < stages) r.solver_command("cache", "step");
+        if (stage + 1 < stages) r.solvers().command("cache", "step");
       }
       INFO("a change of " << Bed::name(kind) << " after " << where(r));
       const bool complete = test::cache(r)->ready();
       bed.edit(kind, 5);
       bed.watch();
-      r.solver_command("cache", "step");
+      r.solvers().command("cache", "step");
       for (int piece = 0; piece < 3; ++piece) r.step();
       ++interrupted;
       if (complete) break;
@@ -213,17 +213,17 @@ TEST_CASE("a cache build can finish early at any time, and the picture is that o
     for (uint32_t i = 0; i <= stage; ++i) {
       while (r.step()) {
       }
-      if (i < stage) r.solver_command("cache", "step");
+      if (i < stage) r.solvers().command("cache", "step");
     }
     INFO("after " << where(r));
     ready = test::cache(r)->ready();
     const uint32_t before = test::cache(r)->status().records;
-    r.finish_early();
+    r.solvers().finish_early();
     REQUIRE(test::cache(r)->ready());
     const irradiance_cache::CacheStatus& s = test::cache(r)->status();
     CHECK((s.stop == irradiance_cache::StopReason::finished_early) == !ready);
     CHECK(s.records == before);
-    CHECK((r.solver_statistics().at("cache").at("stopped_by") == "finished early") == !ready);
+    CHECK((r.solvers().statistics().at("cache").at("stopped_by") == "finished early") == !ready);
     CHECK(test::cache(r)->records().size() == before);
     if (ready) break;
     ++(before == 0 ? none : some);
@@ -256,7 +256,7 @@ TEST_CASE("moving a lamp during the first pass discards only the work that used 
       for (int stage = 0; stage < stages; ++stage) {
         while (r.step()) {
         }
-        if (stage + 1 < stages) r.solver_command("cache", "step");
+        if (stage + 1 < stages) r.solvers().command("cache", "step");
       }
       // Also some steps into the next pass.
       test::set(r, {{"cache.pause", "off"}});

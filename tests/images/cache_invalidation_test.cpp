@@ -67,7 +67,7 @@ TEST_CASE("every kind of change invalidates what its row says, and nothing else"
   const auto file = folder.path / "base.cache";
   Bed bed({}, true);
   bed.finish();
-  bed.r.solver_save("cache", file);
+  bed.r.solvers().save("cache", file);
   const RawRecords base = bed.records();
   const uint64_t base_rays = bed.status().rays;
   REQUIRE(base.size() > 100);

@@ -54,12 +54,12 @@ struct Bed {
   /// Draws preview samples before the work continues; returns their number.
   int draw_drafts(int most = 6) {
     int drawn = 0;
-    while (drawn < most && r.draw_draft()) ++drawn;
+    while (drawn < most && r.previews().draw()) ++drawn;
     return drawn;
   }
   /// Mean of the displayed picture, 0..1, encoded.
   double shown() {
-    const std::vector<uint8_t> rgba = r.shown_picture(r.samples() == 0);
+    const std::vector<uint8_t> rgba = r.output().shown_picture(r.samples() == 0);
     double sum = 0;
     for (size_t i = 0; i < rgba.size(); i += 4) sum += rgba[i] + rgba[i + 1] + rgba[i + 2];
     return sum / (255.0 * 3 / 4 * double(rgba.size()));
@@ -79,7 +79,7 @@ TEST_CASE("the result of relighting does not depend on the preview, bit for bit"
       if (round != 1) CHECK(window.draw_drafts() >= 3);
       // In the second round the next edit comes during relighting.
       for (int step = 0; step < (round == 1 ? 40 : 0); ++step) {
-        window.r.draw_draft();
+        window.r.previews().draw();
         window.r.step();
         window.shown();
       }
@@ -104,10 +104,10 @@ TEST_CASE("after an edit the window shows the new light long before records are 
   REQUIRE(bed.cache().status().relighting.share == 0);
   // At first the previous picture is shown.
   CHECK(bed.shown() == Approx(before).epsilon(0.02));
-  CHECK(bed.r.preview_shares().stale > 0.95);
+  CHECK(bed.r.output().preview_shares().stale > 0.95);
   const uint64_t rays = bed.cache().status().rays;
   CHECK(bed.draw_drafts() >= 3);
-  for (int i = 0; i < 12; ++i) bed.r.draw_draft(), bed.r.step();
+  for (int i = 0; i < 12; ++i) bed.r.previews().draw(), bed.r.step();
   const double early = bed.shown();
   CHECK(bed.cache().status().relighting.share < 1);
   INFO("before " << before << ", early " << early << ", rays of relighting " << rays);
@@ -163,12 +163,12 @@ TEST_CASE("a lamp in its own group is dimmed and tinted in the preview immediate
   const double recalled = bed.shown();
   CHECK(bed.cache().previews_relighting());
   CHECK(bed.cache().status().relighting.share == 0);
-  for (int i = 0; i < 3; ++i) bed.r.draw_draft();
+  for (int i = 0; i < 3; ++i) bed.r.previews().draw();
   const double drafted = bed.shown();
   // Nothing is lost when the next edit comes before records are relit.
   bed.set_lamp(scene->lights[0].intensity * 0.5f, scene->lights[0].position);
   bed.set_lamp(scene->lights[0].intensity * vec3(0.1f, 0.3f, 0.2f), scene->lights[0].position);
-  for (int i = 0; i < 3; ++i) bed.r.draw_draft();
+  for (int i = 0; i < 3; ++i) bed.r.previews().draw();
   const double again = bed.shown();
   test::finish(bed.r);
   const double finally = bed.shown();
@@ -192,14 +192,14 @@ TEST_CASE("after a switch of solvers the preview starts from the previous pictur
     test::set(bed.r, {{key, value}});
     CHECK(bed.r.samples() == 0);
     for (int i = 0; i < 3; ++i) {
-      bed.r.draw_draft();
+      bed.r.previews().draw();
       CHECK(bed.shown() == Approx(before).epsilon(0.05));
-      CHECK(bed.r.preview_shares().stale > 0.5);
+      CHECK(bed.r.output().preview_shares().stale > 0.5);
     }
   }
   // Switching a component off is a different light.
   test::set(bed.r, {{"components.tertiary", "off"}});
-  for (int i = 0; i < 40 && bed.r.samples() == 0; ++i) bed.r.draw_draft(), bed.r.step();
+  for (int i = 0; i < 40 && bed.r.samples() == 0; ++i) bed.r.previews().draw(), bed.r.step();
   test::finish(bed.r);
   CHECK(bed.shown() < 0.9 * before);
 }
@@ -208,8 +208,8 @@ TEST_CASE("batch rendering has no preview samples and no preview light") {
   Bed batch(false, "hessian");
   batch.set_lamp(vec3(1), vec3(0, 1, 0));
   CHECK_FALSE(batch.cache().previews_relighting());
-  CHECK_FALSE(batch.r.draw_draft());
-  CHECK(batch.r.preview_shares().stale == 0);
+  CHECK_FALSE(batch.r.previews().draw());
+  CHECK(batch.r.output().preview_shares().stale == 0);
 }
 
 }  // namespace cache_relight_preview_tests

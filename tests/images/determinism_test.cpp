@@ -87,7 +87,7 @@ TEST_CASE("bit-identical for any time slices: work cancelled between bounces is 
   r.apply_settings();
   while (r.step()) {
   }
-  const film::FilmImage whole = r.film_image();
+  const film::FilmImage whole = r.output().film_image();
   r.restart();
   // Two attempts in three are cancelled, after 0 to 3 bounces.
   uint32_t attempts = 0, cancelled = 0;
@@ -97,7 +97,7 @@ TEST_CASE("bit-identical for any time slices: work cancelled between bounces is 
     REQUIRE(attempts < 10000);
   }
   CHECK(cancelled > 10);
-  CHECK(identical(whole, r.film_image()));
+  CHECK(identical(whole, r.output().film_image()));
 }
 
 TEST_CASE("memory of paths in flight does not grow with the picture") {

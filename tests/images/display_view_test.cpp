@@ -63,28 +63,28 @@ TEST_CASE("the shown picture is that of the view, within a level or two of 255")
   open(r, {{"film.ocio", "Screen: sRGB: Film"}});
   // A display's name may have a colon; its view follows the last one.
   while (r.samples() == 0) REQUIRE(r.step());
-  const std::vector<uint8_t> preview = r.shown_picture(true);
+  const std::vector<uint8_t> preview = r.output().shown_picture(true);
   test::finish(r);
   test::set(r, {{"preview.filter", "off"}});
   for (const char* view : {"Film", "Plain"}) {
     CAPTURE(view);
     test::set(r, {{"film.ocio", film::ocio_text("Screen: sRGB", view)}});
     const std::vector<uint8_t> wanted = exact(r, "Screen: sRGB", view);
-    const auto [mean, most] = difference(r.picture(false), wanted);
+    const auto [mean, most] = difference(r.output().picture(false), wanted);
     CAPTURE(mean, most);
     CHECK(mean < 0.5);
     CHECK(most <= 8);
-    CHECK(difference(r.shown_picture(false), r.picture(false)).second == 0);
+    CHECK(difference(r.output().shown_picture(false), r.output().picture(false)).second == 0);
   }
   // The preview filters noise, so it is only near.
   CHECK(difference(preview, exact(r, "Screen: sRGB", "Film")).first < 30);
   const film::FilmImage png = [&] {
-    r.save(f / "a.png");
+    r.output().save(f / "a.png");
     return film::read_exr(f / "a.png");
   }();
   CHECK_THAT(png.metadata.at("ocio"), Contains("config.ocio: Screen: sRGB: Plain"));
   test::set(r, {{"film.ocio", "Other"}});  // the display's default view
-  CHECK(difference(r.picture(false), exact(r, "Other", "Plain")).second <= 8);
+  CHECK(difference(r.output().picture(false), exact(r, "Other", "Plain")).second <= 8);
   CHECK(r.device().validation_messages() == 0);
 }
 
@@ -94,12 +94,12 @@ TEST_CASE("without a configuration, or with a bad choice, the picture keeps its 
   session::Renderer r(test::renderer_options(true));
   open(r);
   test::finish(r);
-  const std::vector<uint8_t> standard = r.picture(false);
+  const std::vector<uint8_t> standard = r.output().picture(false);
   const auto refused = [&](const char* value, const std::string& why) {
     r.settings().set("film.ocio", value);
     CHECK_THROWS_WITH(r.apply_settings(), Contains(why));
     CHECK(r.settings().text("film.ocio").empty());
-    CHECK(r.picture(false) == standard);
+    CHECK(r.output().picture(false) == standard);
   };
   refused("Other", "film.ocio: 'Other': the environment variable OCIO names no configuration");
   {
@@ -109,17 +109,17 @@ TEST_CASE("without a configuration, or with a bad choice, the picture keeps its 
   const test::OcioVariable variable(test::write_ocio(f.path).string());
   refused("None", "there is no display 'None'");
   refused("Other: None", "the display 'Other' has no view 'None'");
-  CHECK(r.picture(false) == standard);
+  CHECK(r.output().picture(false) == standard);
   const uint64_t begun = r.restarts();
   test::set(r, {{"film.ocio", "Other: Plain"}});
   CHECK(r.restarts() == begun);
-  CHECK(r.picture(false) != standard);
+  CHECK(r.output().picture(false) != standard);
   // It is a setting of the machine: another scene keeps it.
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/ring/ring.gltf");
   CHECK(r.settings().text("film.ocio") == "Other: Plain");
   open(r, {{"film.ocio", ""}});
   test::finish(r);
-  CHECK(r.picture(false) == standard);
+  CHECK(r.output().picture(false) == standard);
   // A choice that a command line makes is refused; one that a scene makes is reported.
   CHECK_THROWS_WITH(r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/ring/ring.gltf", {},
                            {{"film.ocio", "None", "--set"}}),

@@ -37,11 +37,11 @@ TEST_CASE("the view of the depth of field tints what is sharp") {
   r.set_scene(std::make_shared<scene::Scene>(s));
   test::set(r, {{"samples", "2"}});
   test::finish(r);
-  const std::vector<uint8_t> plain = r.picture(false);
+  const std::vector<uint8_t> plain = r.output().picture(false);
   test::set(r, {{"overlay.focus", "true"}});
-  const std::vector<uint8_t> shown = r.picture(false);
+  const std::vector<uint8_t> shown = r.output().picture(false);
   {
-    const auto reports = r.reports();
+    const auto reports = r.solvers().reports();
     const solvers::Report* report = of_focus(reports);
     REQUIRE(report);
     REQUIRE(report->legends.size() == 1);
@@ -72,10 +72,10 @@ TEST_CASE("the view of the depth of field tints what is sharp") {
   r.set_camera(camera);
   test::finish(r);
   test::set(r, {{"overlay.focus", "false"}});
-  const std::vector<uint8_t> pinhole = r.picture(false);
+  const std::vector<uint8_t> pinhole = r.output().picture(false);
   test::set(r, {{"overlay.focus", "true"}});
-  CHECK(r.picture(false) == pinhole);
-  const auto reports = r.reports();
+  CHECK(r.output().picture(false) == pinhole);
+  const auto reports = r.solvers().reports();
   REQUIRE(of_focus(reports));
   CHECK_THAT(of_focus(reports)->legends.at(0).note, Catch::Contains("pinhole"));
 }

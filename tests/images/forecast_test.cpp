@@ -32,7 +32,7 @@ stats::Band forecast(const Case& c, const char* seed) {
   while (r.step()) {
   }
   r.finish_ledger();
-  const auto& entries = r.ledger().entries();
+  const auto& entries = r.progress().ledger().entries();
   const double total = double(entries.back().rays);
   CHECK(entries.back().total_rays->middle == Approx(total).epsilon(1e-9));  // finished work needs no forecast
   for (const stats::Entry& e : entries) {
@@ -79,7 +79,8 @@ TEST_CASE("in uniform sampling the forecast band contains the actual value in ei
     }
     r.finish_ledger();
     stats::Ledger whole, so_far;
-    for (stats::Entry e : r.ledger().entries()) e.wall_s = e.samples, e.prepared_s = 0, whole.add(e);
+    for (stats::Entry e : r.progress().ledger().entries())
+      e.wall_s = e.samples, e.prepared_s = 0, whole.add(e);
     const double target = whole.entries().back().error[0] * 1.02;
     const auto truth = stats::seconds_to(whole, target);
     REQUIRE(truth);

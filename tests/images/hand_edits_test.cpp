@@ -56,8 +56,9 @@ TEST_CASE("automatic exposure measures the light that is shown") {
   for (const auto& component : image.components)
     for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
   const auto check = [&](const std::vector<vec3>& shown) {
-    CHECK(b.r.measure(at).ev == film::measure_point(shown, image.width, image.height, at).ev);
-    CHECK(b.r.measure(std::nullopt).ev == film::measure_picture(shown, image.width, image.height).ev);
+    CHECK(b.r.output().measure(at).ev == film::measure_point(shown, image.width, image.height, at).ev);
+    CHECK(b.r.output().measure(std::nullopt).ev ==
+          film::measure_picture(shown, image.width, image.height).ev);
   };
   const auto set = [&](const char* key, const char* value) {
     b.r.settings().set(key, value);
@@ -72,7 +73,7 @@ TEST_CASE("automatic exposure measures the light that is shown") {
   for (const char* hidden : {"show.primary", "show.secondary", "show.caustic"}) set(hidden, "false");
   check(image.components[2]);
   set("show.tertiary", "false");
-  CHECK_FALSE(b.r.measure(at).ev);
+  CHECK_FALSE(b.r.output().measure(at).ev);
 }
 
 TEST_CASE("a moved lamp and a surface made emissive light the scene as if built that way") {
@@ -169,14 +170,14 @@ TEST_CASE("a hidden background hides the directly visible environment only, not 
 
 TEST_CASE("the picture is measured as a whole and at a point, first on the coarse level") {
   Bench b(test::block_room(true), true);
-  CHECK_THROWS_WITH(b.r.measure(std::nullopt), Catch::Contains("no picture to measure yet"));
-  REQUIRE(b.r.draw_draft());
-  const auto coarse = b.r.measure(std::nullopt);
+  CHECK_THROWS_WITH(b.r.output().measure(std::nullopt), Catch::Contains("no picture to measure yet"));
+  REQUIRE(b.r.previews().draw());
+  const auto coarse = b.r.output().measure(std::nullopt);
   b.image();
-  const auto whole = b.r.measure(std::nullopt);
+  const auto whole = b.r.output().measure(std::nullopt);
   REQUIRE((coarse.ev && whole.ev));
   CHECK(std::abs(*coarse.ev - *whole.ev) < 1);
-  const auto sky = b.r.measure(vec2(0.5f, 0.02f)), floor = b.r.measure(vec2(0.5f, 0.95f));
+  const auto sky = b.r.output().measure(vec2(0.5f, 0.02f)), floor = b.r.output().measure(vec2(0.5f, 0.95f));
   REQUIRE((sky.ev && floor.ev));
   CHECK(luminance(sky.color) * std::exp2(*sky.ev) == Approx(0.18));
   CHECK(sky.color.z == Approx(1.5f * sky.color.x).epsilon(0.01));  // the environment's blue

@@ -244,7 +244,7 @@ TEST_CASE("learning takes bounded memory, and no records once it has finished") 
   const auto bytes = [&](const char* samples) {
     test::set(renderer, {{"samples", samples}, {"cache.max_records", test::k_room}});
     test::finish(renderer);
-    const nlohmann::ordered_json all = renderer.solver_statistics();
+    const nlohmann::ordered_json all = renderer.solvers().statistics();
     REQUIRE(all.contains("lights"));
     return all.at("lights").at("bytes").get<uint64_t>();
   };

@@ -126,7 +126,7 @@ TEST_CASE("the preview of a moved camera finds its surfaces through a shifted le
   r.set_scene(std::make_shared<scene::Scene>(s));
   test::set(r, {{"samples", "16"}, {"path.batch", "8192"}, {"film.tone_curve", "linear"}, {"film.ev", "0"}});
   const auto border = [&] {
-    const std::vector<uint8_t> shown = r.shown_picture(false);
+    const std::vector<uint8_t> shown = r.output().shown_picture(false);
     REQUIRE(shown.size() == size_t{4} * k_width * k_height);
     double mean = 0;
     for (uint32_t y = 8; y < k_height - 8; ++y)
@@ -134,7 +134,7 @@ TEST_CASE("the preview of a moved camera finds its surfaces through a shifted le
         mean += shown[4 * (size_t{y} * k_width + x)] < 150 ? 1.0 / (k_height - 16) : 0;
     return mean;
   };
-  for (int i = 0; i < 16; ++i) r.draw_draft();
+  for (int i = 0; i < 16; ++i) r.previews().draw();
   while (r.samples() < 4) r.step();
   CHECK(border() == Approx(k_width / 2).margin(0.6));
   camera.to_world[3].x += 8 * pixel;

@@ -119,7 +119,7 @@ TEST_CASE("a saved cache keeps its light groups and is relit for other groups") 
   const scene::Scene s = room();
   Bench b(s, cached({{"relight.mix", "spot: ev=3; sky: mute"}}));
   const film::Image image = b.image();
-  b.r.solver_save("cache", folder / "a.cache");
+  b.r.solvers().save("cache", folder / "a.cache");
   const uint64_t gathered = test::cache(b.r)->status().rays;
   for (const char* groups : {"", "spot=block; block=spot"}) {
     INFO(groups);
@@ -141,13 +141,13 @@ TEST_CASE("reported record errors are those of the mixed light") {
   const film::ImageError as_it_is = b.r.image_error();
   REQUIRE(as_it_is.lookup_noise_rms > 0);
   // The same factor for all light scales all errors and the blocks' sums of them.
-  const std::vector<film::TileError> before = b.r.tile_errors();
+  const std::vector<film::TileError> before = b.r.progress().tile_errors();
   b.mix("sky: ev=2; sun: ev=2; lamp: ev=2; spot: ev=2; block: ev=2");
   const film::ImageError brighter = b.r.image_error();
   CHECK(brighter.luminance[0] == Approx(4 * as_it_is.luminance[0]).epsilon(1e-3));
   CHECK(brighter.lookup_noise_rms == Approx(4 * as_it_is.lookup_noise_rms).epsilon(1e-3));
   CHECK(brighter.relative_lookup_noise() == Approx(as_it_is.relative_lookup_noise()).epsilon(1e-3));
-  const std::vector<film::TileError> after = b.r.tile_errors();
+  const std::vector<film::TileError> after = b.r.progress().tile_errors();
   for (size_t t = 0; t < before.size(); ++t)
     CHECK(after[t].lookups.noise == Approx(4 * before[t].lookups.noise).epsilon(1e-3));
   // Without light there is no error.

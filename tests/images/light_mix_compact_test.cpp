@@ -148,11 +148,11 @@ TEST_CASE("the picture shown immediately after a mix equals the one developed la
   REQUIRE(r.film().is_compact());
   REQUIRE(r.film().quick());
   r.settings().set("relight.mix", "lamp: ev=1 color=1,0.4,0.2; sun: mute");
-  const std::vector<uint8_t> before = r.shown_picture(false);
+  const std::vector<uint8_t> before = r.output().shown_picture(false);
   r.apply_settings();
-  const std::vector<uint8_t> at_once = r.shown_picture(false);
-  r.settle_mix();
-  const std::vector<uint8_t> settled = r.shown_picture(false);
+  const std::vector<uint8_t> at_once = r.output().shown_picture(false);
+  r.mix().settle();
+  const std::vector<uint8_t> settled = r.output().shown_picture(false);
   REQUIRE(at_once.size() == settled.size());
   CHECK(at_once != before);
   int worst = 0;
@@ -203,7 +203,7 @@ TEST_CASE("layers by group sum to the picture within 0.2 %") {
   Bench b(room(), compact({{"relight.layers", "true"},
                            {"relight.mix", "lamp: ev=1.3 color=1,0.8,0.3; sun: ev=-2; sky: mute"}}));
   b.image();
-  b.r.save(folder / "a.exr");
+  b.r.output().save(folder / "a.exr");
   const film::FilmImage file = film::read_exr(folder / "a.exr");
   for (int k = 0; k < 3; ++k) {
     const char channel = "RGB"[k];

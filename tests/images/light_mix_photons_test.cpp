@@ -62,7 +62,7 @@ TEST_CASE("a request for layers of untracked groups is reported") {
     b.image();
     std::string text;
     const int token = log::add_listener([&](log::Level, const std::string& line) { text += line + "\n"; });
-    const film::FilmImage image = b.r.film_image();
+    const film::FilmImage image = b.r.output().film_image();
     log::remove_listener(token);
     bool found = false;
     for (const auto& [name, values] : image.channels) found |= name.starts_with("light.");

@@ -234,8 +234,9 @@ TEST_CASE("noise is reported for the mixed picture, and adaptive sampling contin
     const double n = double(image.samples.size());
     CHECK(reported.luminance[0] == Approx(sum / n).epsilon(1e-4));
     CHECK(reported.rms[0] == Approx(std::sqrt(variance / n)).epsilon(1e-3));
-    CHECK(b.r.ledger().entries().back().error[0] == Approx(reported.seen(0)).epsilon(1e-6));
-    CHECK(b.r.ledger().entries().size() == (*text || b.r.ledger().entries().size() == 1 ? 1u : 0u));
+    CHECK(b.r.progress().ledger().entries().back().error[0] == Approx(reported.seen(0)).epsilon(1e-6));
+    CHECK(b.r.progress().ledger().entries().size() ==
+          (*text || b.r.progress().ledger().entries().size() == 1 ? 1u : 0u));
   }
 
   // Under the lamp alone the target is reached; the emissive block, which only metal paths hit, needs more.
@@ -288,7 +289,7 @@ TEST_CASE("layers by group and component sum to the picture within 0.2 %") {
   Bench b(room(), {{"relight.layers", "true"},
                    {"relight.mix", "lamp: ev=1.3 color=1,0.8,0.3; sun: ev=-2; sky: mute"}});
   b.image();
-  b.r.save(folder / "a.exr");
+  b.r.output().save(folder / "a.exr");
   const film::FilmImage file = film::read_exr(folder / "a.exr");
   CHECK_FALSE(file.find("light.sky.primary.R") == nullptr);
   for (int k = 0; k < 3; ++k) {

@@ -261,7 +261,7 @@ TEST_CASE("without surfaces that focus light no light paths are traced, and noth
   const film::Image image = test::finish(r);
   for (const size_t c : {0u, 1u, 2u, 3u})
     CHECK(test::identical(path.image.components[c], image.components[c]));
-  CHECK(r.figure("light paths") == 0);
+  CHECK(r.solvers().figure("light paths") == 0);
   CHECK(r.stats().rays == path.stats.rays);
 }
 
@@ -289,12 +289,12 @@ TEST_CASE("light tracing follows camera, lamp, size and choice of solver") {
   CHECK(test::identical(test::finish(r), fresh(moved, {{"components.caustic", "light+photons"}}, 32).image));
   test::set(r, {{"components.caustic", "light"}});
   CHECK(test::identical(test::finish(r), fresh(moved, {}, 32).image));
-  const auto reports = r.reports();
+  const auto reports = r.solvers().reports();
   REQUIRE(reports.size() == 1);
   CHECK(reports[0]->solver == "light");
   CHECK(reports[0]->figure("rounds") == 3);
   CHECK(reports[0]->figure("joined") > 100);
-  CHECK(r.solver_statistics().at("light").at("rounds") == 3);
+  CHECK(r.solvers().statistics().at("light").at("rounds") == 3);
 }
 
 TEST_CASE("light tracing with no lamp, an enclosed lamp or one path per pass gives defined results") {
@@ -317,14 +317,14 @@ TEST_CASE("drawing light paths and aim targets does not change the picture") {
   r.set_scene(std::make_shared<scene::Scene>(glass_room()));
   test::set(r, with(k_light, {{"samples", "2"}, {"light.per_round", "2000"}}));
   const film::Image image = test::finish(r);
-  const std::vector<uint8_t> plain = r.picture(false);
+  const std::vector<uint8_t> plain = r.output().picture(false);
   for (const char* view : {"overlay.light_paths", "overlay.light_aim"}) {
     INFO(view);
     test::set(r, {{view, "true"}});
-    CHECK(r.picture(false) != plain);
-    CHECK(r.reports()[0]->legends.size() == 1);
+    CHECK(r.output().picture(false) != plain);
+    CHECK(r.solvers().reports()[0]->legends.size() == 1);
     test::set(r, {{view, "false"}});
-    CHECK(r.picture(false) == plain);
+    CHECK(r.output().picture(false) == plain);
   }
   CHECK(test::identical(r.image(), image));
   CHECK(r.device().validation_messages() == 0);
@@ -343,7 +343,7 @@ TEST_CASE("light paths are drawn of all lights, or of one lamp") {
   std::vector<std::vector<uint8_t>> shown;
   for (const char* lamp : {"0", "1", "2"}) {
     test::set(r, {{"overlay.light_paths_of", lamp}});
-    shown.push_back(r.picture(false));
+    shown.push_back(r.output().picture(false));
   }
   CHECK(shown[0] != shown[1]);
   CHECK(shown[0] != shown[2]);

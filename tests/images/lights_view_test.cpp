@@ -31,22 +31,22 @@ TEST_CASE("arrows show a point's lights with their shares, and a map shows which
   r.set_scene(std::make_shared<scene::Scene>(window_room(sky(), false)));
   test::set(r, {{"samples", "8"}, {"lights.portals", "marked"}});
   const film::Image image = test::finish(r);
-  const std::vector<uint8_t> plain = r.picture(false);
-  CHECK(of_lights(r.reports()) == nullptr);
+  const std::vector<uint8_t> plain = r.output().picture(false);
+  CHECK(of_lights(r.solvers().reports()) == nullptr);
 
   test::set(r, {{"overlay.lights", "true"}});
-  CHECK(r.picture(false) == plain);  // no point is inspected
+  CHECK(r.output().picture(false) == plain);  // no point is inspected
   {
-    const auto reports = r.reports();
+    const auto reports = r.solvers().reports();
     const solvers::Report* report = of_lights(reports);
     REQUIRE(report);
     REQUIRE(report->legends.size() == 1);
     CHECK_FALSE(report->card);
   }
-  r.inspect(vec2(0.3f, 0.5f));
-  CHECK(different(r.picture(false), plain) > 20);
+  r.overlays().inspect(vec2(0.3f, 0.5f));
+  CHECK(different(r.output().picture(false), plain) > 20);
   {
-    const auto reports = r.reports();
+    const auto reports = r.solvers().reports();
     const solvers::Report* report = of_lights(reports);
     REQUIRE(report);
     REQUIRE(report->card);
@@ -64,11 +64,11 @@ TEST_CASE("arrows show a point's lights with their shares, and a map shows which
     CHECK(sum > 10);
     CHECK(sum <= 100.5);
   }
-  r.inspect(std::nullopt);
+  r.overlays().inspect(std::nullopt);
   test::set(r, {{"overlay.lights", "false"}, {"overlay.light_arrival", "true"}});
-  CHECK(different(r.picture(false), plain) > 48 * 48 / 2);
+  CHECK(different(r.output().picture(false), plain) > 48 * 48 / 2);
   {
-    const auto reports = r.reports();
+    const auto reports = r.solvers().reports();
     const solvers::Report* report = of_lights(reports);
     REQUIRE(report);
     REQUIRE(report->legends.size() == 1);
@@ -77,14 +77,14 @@ TEST_CASE("arrows show a point's lights with their shares, and a map shows which
     CHECK(report->figure("arrived") > 0.02);
   }
   test::set(r, {{"overlay.light_arrival", "false"}});
-  CHECK(r.picture(false) == plain);
-  CHECK(of_lights(r.reports()) == nullptr);
+  CHECK(r.output().picture(false) == plain);
+  CHECK(of_lights(r.solvers().reports()) == nullptr);
   CHECK(test::identical(r.image(), image));
   // With selection by power there is nothing to show, and the legend states this.
   test::set(r, {{"lights.sampling", "power"}, {"overlay.light_arrival", "true"}});
   test::finish(r);
-  r.picture(false);
-  const auto reports = r.reports();
+  r.output().picture(false);
+  const auto reports = r.solvers().reports();
   REQUIRE(of_lights(reports));
   CHECK(of_lights(reports)->legends.size() == 1);
   CHECK(r.device().validation_messages() == 0);

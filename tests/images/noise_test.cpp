@@ -42,7 +42,7 @@ TEST_CASE("noise is explained by component and way of light, and a setting is pr
                                      {"components.tertiary", "off"}},
                                     16);
   const film::Image before = test::finish(*renderer);
-  const recording::NoiseReport report = renderer->explain_noise({0, 0}, {1, 1});
+  const recording::NoiseReport report = renderer->paths().explain_noise({0, 0}, {1, 1});
   INFO(report.sentence);
   CHECK(report.pixels > 300);
   REQUIRE(!report.components.empty());
@@ -55,7 +55,7 @@ TEST_CASE("noise is explained by component and way of light, and a setting is pr
   REQUIRE(!report.cure.settings.empty());
   CHECK(report.cure.settings[0] == std::pair<std::string, std::string>("components.caustic", "photons"));
   // An own trial finds the same, and nothing has changed.
-  const recording::NoiseReport again = renderer->explain_noise({0, 0}, {1, 1});
+  const recording::NoiseReport again = renderer->paths().explain_noise({0, 0}, {1, 1});
   CHECK(again.sentence == report.sentence);
   CHECK(again.of_sample == report.of_sample);
   CHECK(test::identical(before, renderer->image()));
@@ -65,14 +65,14 @@ TEST_CASE("a rectangle has noise of its own; lights that are chosen by power are
   const auto renderer = renderer_of("cornell", {{"lights.sampling", "power"}}, 16);
   test::finish(*renderer);
   // The lamp itself, and the ceiling.
-  const recording::NoiseReport part = renderer->explain_noise({0.1f, 0.5f}, {0.3f, 0.9f});
+  const recording::NoiseReport part = renderer->paths().explain_noise({0.1f, 0.5f}, {0.3f, 0.9f});
   INFO(part.sentence);
   CHECK(part.pixels > 100);
   CHECK(part.of_sample > 0);
   CHECK(share(part.components, "caustic") < 0.5);
   CHECK(part.sentence.find("here") != std::string::npos);
   CHECK(!part.cure.reason.empty());
-  const recording::NoiseReport pixel = renderer->explain_noise({0.2f, 0.7f}, {0.2f, 0.7f});
+  const recording::NoiseReport pixel = renderer->paths().explain_noise({0.2f, 0.7f}, {0.2f, 0.7f});
   CHECK(pixel.pixels <= 1);
 }
 

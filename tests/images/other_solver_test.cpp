@@ -80,11 +80,11 @@ TEST_CASE("changes invalidate what its table says; other solvers' settings inval
   r.set_size(16, 16);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/furnace-closed/furnace-closed.gltf");
   test::set(r, {{"components.tertiary", "ambient"}});
-  const double first = r.figure("begun");
+  const double first = r.solvers().figure("begun");
   r.set_camera(r.camera());
-  CHECK(r.figure("begun") == first);
+  CHECK(r.solvers().figure("begun") == first);
   r.restart();
-  CHECK(r.figure("begun") == first + 1);
+  CHECK(r.solvers().figure("begun") == first + 1);
   CHECK_FALSE(solvers::invalidated_by_setting(lucerna::ambient::info(), "cache.rays").any());
   CHECK_FALSE(solvers::invalidated_by_setting(*solvers::find("cache"), "ambient.radiance").any());
   CHECK(solvers::invalidated_by_setting(lucerna::ambient::info(), "ambient.radiance") ==
@@ -92,9 +92,9 @@ TEST_CASE("changes invalidate what its table says; other solvers' settings inval
   // Another solver's setting restarts the picture but keeps this solver's work; its own setting restarts its
   // work.
   test::set(r, {{"cache.rays", "64"}});
-  CHECK(r.figure("begun") == first + 1);
+  CHECK(r.solvers().figure("begun") == first + 1);
   test::set(r, {{"ambient.radiance", "3"}});
-  CHECK(r.solver_statistics().at("ambient").at("radiance") == 3.0);
+  CHECK(r.solvers().statistics().at("ambient").at("radiance") == 3.0);
 }
 
 TEST_CASE("its view is drawn over the picture, and its report and figures are published") {
@@ -103,17 +103,17 @@ TEST_CASE("its view is drawn over the picture, and its report and figures are pu
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/furnace-closed/furnace-closed.gltf");
   test::set(r, {{"components.tertiary", "ambient"}, {"samples", "1"}});
   test::finish(r);
-  const std::vector<uint8_t> plain = r.picture(false);
+  const std::vector<uint8_t> plain = r.output().picture(false);
   test::set(r, {{"overlay.ambient", "small"}});
-  const std::vector<uint8_t> shown = r.picture(false);
+  const std::vector<uint8_t> shown = r.output().picture(false);
   const size_t middle = 4 * (16 * 32 + 16);
   CHECK(std::abs(int(shown[middle]) - 255) < 2);
   CHECK(std::abs(int(shown[middle + 1]) - 64) < 3);
   CHECK(std::equal(plain.begin(), plain.begin() + 4 * 32 * 8, shown.begin()));
-  const auto reports = r.reports();
+  const auto reports = r.solvers().reports();
   REQUIRE(reports.size() == 1);
   CHECK(reports[0]->solver == "ambient");
-  CHECK(r.solver_statistics().at("ambient").at("radiance") == 0.5);
+  CHECK(r.solvers().statistics().at("ambient").at("radiance") == 0.5);
 }
 
 TEST_CASE("its command and its file change its light; a file of another kind is refused") {
@@ -129,8 +129,8 @@ TEST_CASE("its command and its file change its light; a file of another kind is 
   const double once = light();
   CHECK(once > 0);
   const auto file = folder.path / "a.ambient", other = folder.path / "b.ambient";
-  r.solver_save("ambient", file);
-  r.solver_command("ambient", "double");
+  r.solvers().save("ambient", file);
+  r.solvers().command("ambient", "double");
   CHECK(light() == Approx(2 * once));
   r.solver_load("ambient", file);
   CHECK(light() == Approx(once));

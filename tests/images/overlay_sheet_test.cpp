@@ -33,7 +33,7 @@ std::unique_ptr<session::Renderer> prepared(uint32_t size, bool interactive = fa
                                    {"samples", "8"}})
     r->settings().set(key, value);
   r->apply_settings();
-  if (interactive) REQUIRE(r->draw_draft());
+  if (interactive) REQUIRE(r->previews().draw());
   while (r->preparing()) REQUIRE(r->step());
   REQUIRE(r->samples() == 0);
   return r;
@@ -47,11 +47,11 @@ void show(session::Renderer& r, const char* view, bool on) {
 /// How much each pixel of the records' view differs from the picture without it.
 std::vector<int> records_alone(session::Renderer& r) {
   show(r, "overlay.records", true);
-  r.picture(true);
-  r.trace_overlay({});
-  const std::vector<uint8_t> with = r.picture(true);
+  r.output().picture(true);
+  r.overlays().trace({});
+  const std::vector<uint8_t> with = r.output().picture(true);
   show(r, "overlay.records", false);
-  const std::vector<uint8_t> plain = r.picture(true);
+  const std::vector<uint8_t> plain = r.output().picture(true);
   const uint32_t scale = uint32_t(std::lround(std::sqrt(double(with.size()) / double(plain.size()))));
   const uint32_t across = r.film().width();
   std::vector<int> differ(with.size() / 4);
@@ -130,23 +130,23 @@ TEST_CASE("records over a picture that is shown enlarged are as thin as over a l
 TEST_CASE("in the window a moved camera does not wait for the surfaces of overlays; one at rest has them") {
   const auto r = prepared(k_size, true);
   show(*r, "overlay.records", true);
-  CHECK(r->overlay_waits());
-  const std::vector<uint8_t> at_once = r->shown_picture(true);
-  CHECK(r->overlay_waits());
-  r->trace_overlay([] { return true; });  // another command came
-  CHECK(r->overlay_waits());
-  r->trace_overlay({});
-  CHECK_FALSE(r->overlay_waits());
-  const std::vector<uint8_t> traced = r->shown_picture(true);
+  CHECK(r->overlays().waits());
+  const std::vector<uint8_t> at_once = r->output().shown_picture(true);
+  CHECK(r->overlays().waits());
+  r->overlays().trace([] { return true; });  // another command came
+  CHECK(r->overlays().waits());
+  r->overlays().trace({});
+  CHECK_FALSE(r->overlays().waits());
+  const std::vector<uint8_t> traced = r->output().shown_picture(true);
   CHECK(traced != at_once);
-  CHECK(r->shown_picture(true) == traced);
+  CHECK(r->output().shown_picture(true) == traced);
   scene::Camera camera = r->camera();
   camera.to_world[3] += vec4(0.05f, 0, 0, 0);
   r->set_camera(camera);
-  r->shown_picture(true);
-  CHECK(r->overlay_waits());
+  r->output().shown_picture(true);
+  CHECK(r->overlays().waits());
   show(*r, "overlay.records", false);
-  CHECK_FALSE(r->overlay_waits());
+  CHECK_FALSE(r->overlays().waits());
 }
 
 }  // namespace overlay_sheet_tests

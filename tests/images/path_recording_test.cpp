@@ -37,8 +37,8 @@ session::PathSelection all_paths(uint32_t samples = k_samples) {
 
 recording::Recording record(session::Renderer& renderer, const session::PathSelection& selection,
                             uint32_t events = transport::PathRecorder::k_events) {
-  recording::Recording all = renderer.begin_recording();
-  REQUIRE(renderer.record_paths(session::choices_of(selection, k_side, k_side), all, {}, events));
+  recording::Recording all = renderer.paths().begin();
+  REQUIRE(renderer.paths().record(session::choices_of(selection, k_side, k_side), all, {}, events));
   return all;
 }
 
@@ -151,17 +151,17 @@ TEST_CASE("recording while records are built changes none of them") {
 TEST_CASE("recorded paths are drawn with each colour, and a legend for it") {
   const auto r = renderer_of("ring", {});
   test::finish(*r);
-  const std::vector<uint8_t> plain = r->picture(false);
-  r->show_paths({.of = std::make_shared<recording::Recording>(
-                     record(*r, {.left = 8, .top = 8, .right = 12, .bottom = 12, .samples = 2}))});
+  const std::vector<uint8_t> plain = r->output().picture(false);
+  r->overlays().show_paths({.of = std::make_shared<recording::Recording>(
+                                record(*r, {.left = 8, .top = 8, .right = 12, .bottom = 12, .samples = 2}))});
   std::vector<std::vector<uint8_t>> shown;
   std::vector<std::string> notes;
   for (const char* color : {"event", "component", "contribution"}) {
     INFO(color);
     test::set(*r, {{"overlay.path_color", color}});
-    shown.push_back(r->picture(false));
+    shown.push_back(r->output().picture(false));
     CHECK(shown.back() != plain);
-    const auto reports = r->reports();
+    const auto reports = r->solvers().reports();
     const auto of_paths = std::find_if(reports.begin(), reports.end(),
                                        [](const auto& report) { return report->solver == "paths"; });
     REQUIRE(of_paths != reports.end());

@@ -38,7 +38,7 @@ Rendered render(const scene::Scene& scene, const test::Settings& settings, uint3
   out.image = test::finish(r);
   CHECK(r.device().validation_messages() == 0);
   CHECK(r.stats().dropped == 0);
-  for (const auto& report : r.reports())
+  for (const auto& report : r.solvers().reports())
     if (report->solver == "photons")
       out.casters = report->figure("casters"), out.entrances = report->figure("entrances"),
       out.unaimed = report->figure("unaimed"), out.photons = report->figure("photons");
@@ -243,7 +243,7 @@ TEST_CASE("behind records, too, entrances of light are found, with and without e
                 {"samples", "8"}});
   const auto entrances = [&] {
     double n = -1;
-    for (const auto& report : r.reports())
+    for (const auto& report : r.solvers().reports())
       if (report->solver == "photons") n = report->figure("entrances");
     return n;
   };

@@ -75,11 +75,12 @@ Reported render(const scene::Scene& scene, uint32_t samples, const test::Setting
   Reported reported;
   reported.image = test::finish(r);
   reported.error = r.image_error();
-  reported.tiles = r.tile_errors();
+  reported.tiles = r.progress().tile_errors();
   reported.bias = r.film().read_lookup_bias();
-  reported.bias_known = r.film().lookup_bias_known(), reported.errors_known = r.lookup_errors_known();
+  reported.bias_known = r.film().lookup_bias_known(),
+  reported.errors_known = r.progress().lookup_errors_known();
   r.finish_ledger();
-  reported.ledger_bias = r.ledger().entries().back().of_mean.interpolation;
+  reported.ledger_bias = r.progress().ledger().entries().back().of_mean.interpolation;
   CHECK(r.device().validation_messages() == 0);
   return reported;
 }
@@ -255,7 +256,7 @@ TEST_CASE("errors of records and photons in one picture are both reported") {
   const film::ImageError both = r.image_error();
   CHECK(r.film().lookup_errors_complete());
   CHECK(r.film().lookup_bias_known());
-  CHECK(r.lookup_errors_known());
+  CHECK(r.progress().lookup_errors_known());
   CHECK(both.lookup_noise_rms > 0);
   test::set(r, {{"components.caustic", "off"}});
   test::finish(r);
@@ -271,12 +272,12 @@ TEST_CASE("errors of records and photons in one picture are both reported") {
   test::finish(r);
   const film::ImageError photons = r.image_error();
   CHECK_FALSE(r.film().lookup_errors_complete());
-  CHECK(r.lookup_errors_known());
+  CHECK(r.progress().lookup_errors_known());
   CHECK(photons.lookup_noise_rms == 0);
   CHECK(photons.interpolation_rms > 0);
   CHECK(std::hypot(records.interpolation_rms, photons.interpolation_rms) ==
         Approx(both.interpolation_rms).epsilon(0.15));
-  for (const film::TileError& t : r.tile_errors()) CHECK(t.lookups.noise == 0);
+  for (const film::TileError& t : r.progress().tile_errors()) CHECK(t.lookups.noise == 0);
 }
 
 TEST_CASE("a target that blur prevents is not reported as reached, and costs few samples") {
@@ -296,7 +297,7 @@ TEST_CASE("a target that blur prevents is not reported as reached, and costs few
                   {"sampling.tile", "8"}});
     test::finish(r);
     size_t limited = 0, most = 0;
-    for (const schedule::Tile& t : r.adaptive()->tiles()) {
+    for (const schedule::Tile& t : r.sampling().adaptive()->tiles()) {
       limited += t.limited(0.1f), most = std::max<size_t>(most, t.samples);
       if (t.limited(0.1f)) CHECK(t.sum() > 0.1f);
       if (t.state == schedule::TileState::done) CHECK(t.sum() < 0.101f);

@@ -29,7 +29,7 @@ struct Shown {
   }
   ~Shown() { CHECK(r.device().validation_messages() == 0); }
   std::shared_ptr<const solvers::Report> report() {
-    for (const auto& report : r.reports())
+    for (const auto& report : r.solvers().reports())
       if (report->solver == "photons") return report;
     return nullptr;
   }
@@ -45,9 +45,9 @@ double mean(const std::vector<float>& values) {
 
 TEST_CASE("the density map equals the pass's photons per area, and irradiance equals the sun's") {
   Shown s;
-  const std::vector<uint8_t> plain = s.r.picture(false);
+  const std::vector<uint8_t> plain = s.r.output().picture(false);
   test::set(s.r, {{"overlay.photon_density", "photons"}});
-  const std::vector<uint8_t> shown = s.r.picture(false);
+  const std::vector<uint8_t> shown = s.r.output().picture(false);
   CHECK(plain != shown);
   // All photons of the pass are distributed evenly over the floor of four square metres.
   const double density = double(s.photons->map().figures().photons) / 4;
@@ -58,11 +58,11 @@ TEST_CASE("the density map equals the pass's photons per area, and irradiance eq
   CHECK(double(report->legends[0].range->hi) > density);
   CHECK(report->legends[0].range->lo < report->legends[0].range->hi);
   test::set(s.r, {{"overlay.photon_density", "irradiance"}});
-  CHECK(s.r.picture(false) != plain);
+  CHECK(s.r.output().picture(false) != plain);
   CHECK(mean(s.photons->inspector().densities()) == Approx(double(luminance(vec3(3, 4, 5)))).epsilon(0.03));
   CHECK(s.report()->legends[0].title.find("Irradiance") != std::string::npos);
   test::set(s.r, {{"overlay.photon_density", "off"}});
-  CHECK(s.r.picture(false) == plain);
+  CHECK(s.r.output().picture(false) == plain);
   CHECK(s.report()->legends.empty());
 }
 
@@ -82,11 +82,11 @@ TEST_CASE("through glass and in mirrors the irradiance of the surface behind is 
   for (const scene::Scene& scene : {glass, mirror}) {
     Shown s(scene);
     test::set(s.r, {{"overlay.photon_density", "irradiance"}});
-    s.r.picture(false);
+    s.r.output().picture(false);
     const std::vector<float> found = s.photons->inspector().densities();
     CHECK(mean(found) == Approx(double(luminance(vec3(3, 4, 5)))).epsilon(0.05));
     s.photons->look_at(vec2(0.5f, 0.5f));
-    s.r.picture(false);
+    s.r.output().picture(false);
     REQUIRE(s.photons->inspected());
     CHECK(std::abs(s.photons->inspected()->at.position.y) < 1e-3f);
     CHECK(s.photons->inspected()->at.normal.y > 0.999f);
@@ -95,7 +95,7 @@ TEST_CASE("through glass and in mirrors the irradiance of the surface behind is 
 
 TEST_CASE("rates of sending, storing, sorting and gathering photons are reported") {
   Shown s;
-  const auto own = s.r.solver_statistics().at("photons");
+  const auto own = s.r.solvers().statistics().at("photons");
   const auto& rates = own.at("per_second");
   for (const char* what : {"emitted", "stored", "sorted", "looked_up", "gathered"}) CHECK(rates.at(what) > 0);
   // The number of photons in a disc follows its area. The radius grows with the distance from the camera, 0.9
@@ -114,17 +114,17 @@ TEST_CASE("rates of sending, storing, sorting and gathering photons are reported
     if (const auto* row = std::get_if<solvers::ValueRow>(&item)) rows.insert(row->name);
   for (const char* name : {"Casters", "Aimed", "Tracing rate", "Storing rate", "Sorting rate", "Memory"})
     CHECK(rows.count(name) == 1);
-  CHECK(s.r.figure("seconds of light paths") > 0);
-  CHECK(s.r.figure("seconds of sorting photons") > 0);
+  CHECK(s.r.solvers().figure("seconds of light paths") > 0);
+  CHECK(s.r.solvers().figure("seconds of sorting photons") > 0);
 }
 
 TEST_CASE("the view at the pointer shows the disc and its photons, with their contributions") {
   Shown s;
   test::set(s.r, {{"overlay.photon_density", "irradiance"}});
-  const std::vector<uint8_t> without = s.r.picture(false);
+  const std::vector<uint8_t> without = s.r.output().picture(false);
   CHECK(!s.report()->card);
   s.photons->look_at(vec2(0.5f, 0.5f));
-  CHECK(s.r.picture(false) != without);
+  CHECK(s.r.output().picture(false) != without);
   REQUIRE(s.photons->inspected());
   const photons::Inspected& found = *s.photons->inspected();
   CHECK(glm::length(found.at.position) < 0.05f);
@@ -150,19 +150,19 @@ TEST_CASE("the view at the pointer shows the disc and its photons, with their co
   CHECK(report->card->lines.size() > 5);
   // Without a surface under the pointer nothing is drawn, and zero photons are not an error.
   s.photons->look_at(std::nullopt);
-  CHECK(s.r.picture(false) == without);
+  CHECK(s.r.output().picture(false) == without);
 }
 
 TEST_CASE("importance is shown where lookups take place, and is even where lookups are") {
   Shown s;
-  const std::vector<uint8_t> plain = s.r.picture(false);
+  const std::vector<uint8_t> plain = s.r.output().picture(false);
   // Without importons there is no importance.
   test::set(s.r, {{"overlay.photon_density", "importance"}});
-  s.r.picture(false);
+  s.r.output().picture(false);
   test::set(s.r, {{"photons.importons", "true"}});
   test::finish(s.r);
   s.photons = &dynamic_cast<photons::PhotonSolver&>(*s.r.solver("photons"));  // a new one
-  CHECK(s.r.picture(false) != plain);
+  CHECK(s.r.output().picture(false) != plain);
   // A camera that looks straight down sees a plane in even steps, so every cell has as many lookups, up to
   // noise of the pilot.
   const std::vector<float> found = s.photons->inspector().densities();
@@ -176,18 +176,18 @@ TEST_CASE("importance is shown where lookups take place, and is even where looku
 
 TEST_CASE("drawing photons' paths and aim targets does not change the picture") {
   Shown s;
-  const std::vector<uint8_t> plain = s.r.picture(false);
+  const std::vector<uint8_t> plain = s.r.output().picture(false);
   const uint64_t rays = s.r.stats().rays;
   test::set(s.r, {{"overlay.photon_paths", "true"}});
-  const std::vector<uint8_t> paths = s.r.picture(false);
+  const std::vector<uint8_t> paths = s.r.output().picture(false);
   CHECK(paths != plain);
-  CHECK(s.r.picture(false) == paths);  // the view does not change
+  CHECK(s.r.output().picture(false) == paths);  // the view does not change
   test::set(s.r, {{"overlay.photon_paths_of", "1"}});
-  CHECK(s.r.picture(false) != plain);
+  CHECK(s.r.output().picture(false) != plain);
   test::set(s.r, {{"overlay.photon_paths_of", "2"}});  // there is no such light
-  CHECK(s.r.picture(false) == plain);
+  CHECK(s.r.output().picture(false) == plain);
   test::set(s.r, {{"overlay.photon_paths", "false"}, {"overlay.photon_aim", "true"}});
-  CHECK(s.r.picture(false) != plain);
+  CHECK(s.r.output().picture(false) != plain);
   CHECK(s.report()->legends.size() == 1);
   size_t rows = 0;
   const std::shared_ptr<const solvers::Report> report = s.report();
@@ -198,7 +198,7 @@ TEST_CASE("drawing photons' paths and aim targets does not change the picture") 
     }
   CHECK(rows == 1);
   test::set(s.r, {{"overlay.photon_aim", "false"}});
-  CHECK(s.r.picture(false) == plain);
+  CHECK(s.r.output().picture(false) == plain);
   CHECK(s.r.stats().rays == rays);
   CHECK(s.r.samples() == 2);
 }

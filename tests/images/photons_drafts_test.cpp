@@ -42,7 +42,7 @@ struct Bed {
     return o;
   }
   double shown() {
-    const std::vector<uint8_t> rgba = r.shown_picture(r.samples() == 0);
+    const std::vector<uint8_t> rgba = r.output().shown_picture(r.samples() == 0);
     double sum = 0;
     for (size_t i = 0; i < rgba.size(); i += 4) sum += rgba[i] + rgba[i + 1] + rgba[i + 2];
     return sum / (255.0 * 3 / 4 * double(rgba.size()));
@@ -58,7 +58,7 @@ const Settings k_records{{"components.secondary", "cache"}, {"components.tertiar
 TEST_CASE("before photons exist preview samples show the same light") {
   for (const Settings& how : {k_all, k_gather, k_records}) {
     Bed bed(how, true);
-    for (int i = 0; i < 8; ++i) bed.r.draw_draft();
+    for (int i = 0; i < 8; ++i) bed.r.previews().draw();
     const auto& solver = dynamic_cast<photons::PhotonSolver&>(*bed.r.solver("photons"));
     REQUIRE(solver.map().figures().photons == 0);
     const double early = bed.shown();
@@ -77,7 +77,7 @@ TEST_CASE("the picture does not depend on preview samples, bit for bit") {
     const film::Image right = test::finish(batch.r);
     // Before any photons a few preview samples between any two steps, also while the pilot records.
     for (int i = 0; !window.r.done() && i < 100000; ++i) {
-      for (int k = 0; k < (window.r.samples() == 0 ? 6 : 0); ++k) window.r.draw_draft();
+      for (int k = 0; k < (window.r.samples() == 0 ? 6 : 0); ++k) window.r.previews().draw();
       window.r.step();
     }
     CHECK(test::identical(right, window.r.image()));

@@ -125,9 +125,9 @@ TEST_CASE("regions are shown, and depend on scene, view and settings only", "[ph
   settings["samples"] = "2";
   test::set(r, settings);
   const film::Image once = test::finish(r);
-  const std::vector<uint8_t> plain = r.picture(false);
+  const std::vector<uint8_t> plain = r.output().picture(false);
   test::set(r, {{"overlay.photon_density", "caustics"}});
-  CHECK(r.picture(false) != plain);
+  CHECK(r.output().picture(false) != plain);
   const auto& photons = dynamic_cast<photons::PhotonSolver&>(*r.solver("photons"));
   const std::vector<float> shown = photons.inspector().densities();
   const auto at = [&](uint32_t x) { return shown[(k_size / 2) * k_size + x]; };

@@ -26,7 +26,7 @@ Rendered render(const scene::Scene& scene, test::Settings settings, bool importo
   test::set(r, settings);
   Rendered out;
   out.image = test::finish(r);
-  for (const auto& report : r.reports())
+  for (const auto& report : r.solvers().reports())
     if (report->solver == "photons")
       out.photons = report->figure("photons"), out.spared = report->figure("spared");
   return out;

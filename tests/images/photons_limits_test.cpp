@@ -35,7 +35,7 @@ Rendered render(const test::Settings& settings, uint64_t most_storage_buffer) {
   test::set(r, all);
   Rendered made;
   made.image = test::finish(r);
-  r.visit_solvers(
+  r.overlays().visit_solvers(
       [&](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
         if (std::string(solver.info().name) == "photons")
           made.statistics = solvers::offered<solvers::Statistics>(solver)->statistics(canvas, picture);

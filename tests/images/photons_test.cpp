@@ -339,7 +339,7 @@ TEST_CASE("without surfaces that focus light no photons are traced for caustics,
   const film::Image image = test::finish(r);
   for (const size_t c : {0u, 1u, 2u, 3u})
     CHECK(test::identical(path.image.components[c], image.components[c]));
-  CHECK(r.figure("light paths") == 0);
+  CHECK(r.solvers().figure("light paths") == 0);
   CHECK(r.stats().rays <= path.stats.rays);
 }
 
@@ -350,7 +350,7 @@ TEST_CASE("while no round finds what only photons can find, rounds are short; fo
     r.set_scene(std::make_shared<scene::Scene>(scene));
     test::set(r, {{"components.caustic", "photons"}, {"photons.per_round", "16384"}, {"samples", "16"}});
     test::finish(r);
-    return r.figure("light paths");
+    return r.solvers().figure("light paths");
   };
   scene::Scene scene = test::turned_sun();
   CHECK(light_paths(scene) == 16 * 16384);
@@ -412,14 +412,14 @@ TEST_CASE("photons are drawn over the picture and reported") {
   r.set_scene(std::make_shared<scene::Scene>(glass_room()));
   test::set(r, with(k_all, {{"samples", "2"}}));
   test::finish(r);
-  const std::vector<uint8_t> plain = r.picture(false);
+  const std::vector<uint8_t> plain = r.output().picture(false);
   std::set<std::vector<uint8_t>> all{plain};
   for (const char* by : {"flux", "map", "light", "round", "bounce"}) {
     test::set(r, {{"overlay.photons", by}});
     CAPTURE(by);
-    CHECK(all.insert(r.picture(false)).second);
+    CHECK(all.insert(r.output().picture(false)).second);
   }
-  const auto reports = r.reports();
+  const auto reports = r.solvers().reports();
   REQUIRE(reports.size() == 1);
   CHECK(reports[0]->solver == "photons");
   CHECK(reports[0]->figure("rounds") == 2);
@@ -432,7 +432,7 @@ TEST_CASE("photons are drawn over the picture and reported") {
   CHECK(by_part == reports[0]->figure("last photons"));
   CHECK(reports[0]->figure("radius pixels") == Approx(1.5 * std::sqrt((1 + 0.6667) / 2)));
   CHECK(reports[0]->legends.size() == 1);
-  CHECK(r.solver_statistics().at("photons").at("rounds") == 2);
+  CHECK(r.solvers().statistics().at("photons").at("rounds") == 2);
   CHECK(r.samples() == 2);
 }
 

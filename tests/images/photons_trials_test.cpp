@@ -246,8 +246,8 @@ TEST_CASE("light without photons is unknown, and keeps the picture unfinished", 
                 8);
   blind.image();
   CHECK(blind.r.image_error().relative_sum() >= 1);
-  REQUIRE(blind.r.adaptive());
-  CHECK(blind.r.adaptive()->count(schedule::TileState::done) == 0);
+  REQUIRE(blind.r.sampling().adaptive());
+  CHECK(blind.r.sampling().adaptive()->count(schedule::TileState::done) == 0);
   // With paths the same darkness is known to be exact: the room is closed.
   Session paths(s, {}, 8);
   paths.image();

@@ -45,11 +45,11 @@ Columns columns(const scene::Scene& s) {
   r.set_size(k_size, k_size);
   r.set_scene(std::make_shared<scene::Scene>(s));
   test::set(r, {{"samples", "64"}, {"path.batch", "8192"}, {"film.tone_curve", "linear"}, {"film.ev", "0"}});
-  for (int i = 0; i < 16; ++i) r.draw_draft();
+  for (int i = 0; i < 16; ++i) r.previews().draw();
   while (r.samples() < 2) r.step();
-  const std::vector<uint8_t> shown = r.shown_picture(false);
+  const std::vector<uint8_t> shown = r.output().shown_picture(false);
   REQUIRE(shown.size() == size_t{4} * k_size * k_size);
-  CHECK(r.preview_shares().filtered > 0.5);
+  CHECK(r.output().preview_shares().filtered > 0.5);
   const auto column = [&](uint32_t x) {
     double sum = 0;
     for (uint32_t y = 16; y < 48; ++y) sum += shown[4 * (y * k_size + x)];

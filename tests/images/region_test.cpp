@@ -73,7 +73,7 @@ TEST_CASE("pixels of a region are bit for bit those of the whole picture, by eac
     const film::ImageError error = part.image_error();
     CHECK(error.pixels == double(k_blocks.right - k_blocks.left) * (k_blocks.bottom - k_blocks.top));
     CHECK(error.seen(0) > 0);
-    const film::FilmImage file = part.film_image();
+    const film::FilmImage file = part.output().film_image();
     REQUIRE(file.window);
     CHECK(file.window->left == 20);
     CHECK(file.window->bottom == 29);
@@ -144,7 +144,7 @@ TEST_CASE("in the window every pixel gets its first samples before the region ge
   CHECK(r.samples() == 8);
   for (uint32_t i = 0; i < image.samples.size(); ++i)
     REQUIRE(image.samples[i] == (k_blocks.contains(i % k_width, i / k_width) ? 8 : 2));
-  CHECK_FALSE(r.film_image().window);
+  CHECK_FALSE(r.output().film_image().window);
   // Another view begins like this one.
   scene::Camera moved = r.camera();
   moved.to_world[3][1] += 0.01f;

@@ -85,7 +85,7 @@ TEST_CASE("a new target continues an adaptive image; in uniform sampling it only
   CHECK(r.restarts() == begun);
   CHECK(r.stats().paths > paths);
   CHECK(r.samples() >= least);
-  for (const schedule::Tile& tile : r.adaptive()->tiles())
+  for (const schedule::Tile& tile : r.sampling().adaptive()->tiles())
     CHECK((tile.error <= 0.1f || tile.samples == 1024));
   set("sampling.tile", "16");  // other tiles are another image
   CHECK(r.restarts() == begun + 1);
@@ -206,8 +206,8 @@ TEST_CASE("the heat map of cost distributes the total device time over the pixel
   r.apply_settings();
   while (r.step()) {
   }
-  const film::HeatScale scale = r.view().heat;
-  const std::vector<uint8_t> shown = r.picture(false);
+  const film::HeatScale scale = r.output().view().heat;
+  const std::vector<uint8_t> shown = r.output().picture(false);
   double total = 0, stages = 0, least = 1e9, most = 0;
   for (size_t i = 0; i < shown.size(); i += 4) {
     // The place on the ramp.

@@ -37,7 +37,7 @@ struct Window {
   }
   ~Window() { CHECK(r.device().validation_messages() == 0); }
   std::optional<solvers::Report::Progress> progress() {
-    for (const auto& report : r.reports())
+    for (const auto& report : r.solvers().reports())
       if (report->progress) return report->progress;
     return std::nullopt;
   }
@@ -77,9 +77,9 @@ TEST_CASE("progress is reported while a cache is built or relit") {
 
 TEST_CASE("preview samples estimate the time of path tracing before any lookup is possible") {
   Window window(64);
-  CHECK_FALSE(window.r.path_pace());
-  for (int i = 0; i < 12 && !window.r.path_pace(); ++i) window.r.draw_draft();
-  const auto pace = window.r.path_pace();
+  CHECK_FALSE(window.r.previews().path_pace());
+  for (int i = 0; i < 12 && !window.r.previews().path_pace(); ++i) window.r.previews().draw();
+  const auto pace = window.r.previews().path_pace();
   REQUIRE(pace);
   CHECK(pace->seconds > 0);
   // The noise of one sample of a path-traced picture.
@@ -95,47 +95,47 @@ TEST_CASE("preview samples estimate the time of path tracing before any lookup i
   // A larger picture takes proportionally more. After a change of light there is no estimate, and records
   // have light by then.
   window.r.set_size(64, 128);
-  REQUIRE(window.r.path_pace());
-  CHECK(window.r.path_pace()->seconds == Approx(2 * pace->seconds));
+  REQUIRE(window.r.previews().path_pace());
+  CHECK(window.r.previews().path_pace()->seconds == Approx(2 * pace->seconds));
   while (window.r.preparing()) window.r.step();
   scene::Light lamp = window.r.scene()->lights[0];
   lamp.position.x += 0.2f;
   window.r.set_light(0, lamp);
-  for (int i = 0; i < 12; ++i) window.r.draw_draft();
-  CHECK_FALSE(window.r.path_pace());
+  for (int i = 0; i < 12; ++i) window.r.previews().draw();
+  CHECK_FALSE(window.r.previews().path_pace());
 }
 
 TEST_CASE("an unchanged preview is recognized as unchanged") {
   Window window(48);
-  CHECK_FALSE(window.r.shows_the_same());  // no preview was shown
-  window.r.draw_draft();
-  const auto shown = [&] { return window.r.shown_picture(true); };
+  CHECK_FALSE(window.r.output().shows_the_same());  // no preview was shown
+  window.r.previews().draw();
+  const auto shown = [&] { return window.r.output().shown_picture(true); };
   const std::vector<uint8_t> first = shown();
-  CHECK(window.r.shows_the_same());
+  CHECK(window.r.output().shows_the_same());
   window.r.step();  // builds records that no lookup has read yet
-  CHECK(window.r.shows_the_same());
+  CHECK(window.r.output().shows_the_same());
   CHECK(shown() == first);
-  while (!window.r.draw_draft()) window.r.step();
-  CHECK_FALSE(window.r.shows_the_same());
+  while (!window.r.previews().draw()) window.r.step();
+  CHECK_FALSE(window.r.output().shows_the_same());
   shown();
-  CHECK(window.r.shows_the_same());
+  CHECK(window.r.output().shows_the_same());
   // Overlays may change whenever records do.
   test::set(window.r, {{"overlay.records", "true"}});
   shown();
-  CHECK_FALSE(window.r.shows_the_same());
+  CHECK_FALSE(window.r.output().shows_the_same());
   test::set(window.r, {{"overlay.records", "false"}});
   shown();
-  CHECK(window.r.shows_the_same());
-  window.r.inspect(vec2(0.5f));
-  CHECK_FALSE(window.r.shows_the_same());
-  window.r.inspect({});
+  CHECK(window.r.output().shows_the_same());
+  window.r.overlays().inspect(vec2(0.5f));
+  CHECK_FALSE(window.r.output().shows_the_same());
+  window.r.overlays().inspect({});
   // New samples change it; the finished picture is filtered once, and then stays.
   for (int i = 0; i < 10000 && window.r.samples() == 0; ++i) window.r.step();
-  CHECK_FALSE(window.r.shows_the_same());
+  CHECK_FALSE(window.r.output().shows_the_same());
   test::finish(window.r);
-  CHECK_FALSE(window.r.shows_the_same());
+  CHECK_FALSE(window.r.output().shows_the_same());
   shown();
-  CHECK(window.r.shows_the_same());
+  CHECK(window.r.output().shows_the_same());
 }
 
 }  // namespace session_progress_tests

@@ -52,7 +52,8 @@ void settle(const Session& session) {
 
 TEST_CASE("a cancelled load stays cancelled, whatever is loaded after it") {
   Heard heard;
-  Session session({.device = test::device_name()});
+  const auto made = session::start_session({.device = test::device_name()});
+  Session& session = *made;
   session.set_size(32, 24);
   // The first load is running or still queued; the second does not undo its cancellation.
   for (int round = 0; round < 3; ++round) {
@@ -71,7 +72,8 @@ TEST_CASE("a cancelled load stays cancelled, whatever is loaded after it") {
 
 TEST_CASE("commands for a replaced scene are skipped, and refusals are listed") {
   Heard heard;
-  Session session({.device = test::device_name()});
+  const auto made = session::start_session({.device = test::device_name()});
+  Session& session = *made;
   session.set_size(32, 24);
   session.load(gltf("cornell"));
   settle(session);
@@ -111,7 +113,8 @@ TEST_CASE("commands for a replaced scene are skipped, and refusals are listed") 
 }
 
 TEST_CASE("a picture names the scene that it shows, also while another scene is loading") {
-  Session session({.device = test::device_name()});
+  const auto made = session::start_session({.device = test::device_name()});
+  Session& session = *made;
   session.set_size(32, 24);
   session.load(gltf("cornell"));
   settle(session);
@@ -139,7 +142,8 @@ TEST_CASE("requested files are written, also when the session ends immediately")
   const auto file = [&](const char* name) { return folder.path / name; };
   session::Saved picture, last, nowhere, cache;
   {
-    Session session({.device = test::device_name()});
+    const auto made = session::start_session({.device = test::device_name()});
+    Session& session = *made;
     session.set_size(32, 24);
     session.load(gltf("cornell"));
     picture = session.save(file("a.exr"));
@@ -159,7 +163,8 @@ TEST_CASE("requested files are written, also when the session ends immediately")
 
 TEST_CASE("a picture is measured as soon as it exists, also directly after an edit") {
   Heard heard;
-  Session session({.device = test::device_name()});
+  const auto made = session::start_session({.device = test::device_name()});
+  Session& session = *made;
   session.set_size(32, 24);
   session.load(gltf("cornell"));
   for (int round = 0; round < 4; ++round) {
@@ -171,7 +176,8 @@ TEST_CASE("a picture is measured as soon as it exists, also directly after an ed
 }
 
 TEST_CASE("a session without a device reports failure to callers that wait for files") {
-  Session session({.device = "no such device"});
+  const auto made = session::start_session({.device = "no such device"});
+  Session& session = *made;
   CHECK_THROWS(session.save("/tmp/lucerna-never.exr").get());
 }
 
@@ -181,7 +187,8 @@ TEST_CASE("edits from another thread at any time, concurrent reads of pictures, 
   const auto below = [&](int n) { return std::uniform_int_distribution<int>(0, n - 1)(random); };
   std::atomic<uint64_t> published{0}, seen{0};
   for (int round = 0; round < 2; ++round) {
-    Session session({.device = test::device_name()});
+    const auto made = session::start_session({.device = test::device_name()});
+    Session& session = *made;
     session.on_publish([&] { ++published; });
     session.set_size(32, 24);
     session.load(gltf("cornell"));

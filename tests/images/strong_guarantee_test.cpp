@@ -137,7 +137,7 @@ TEST_CASE("if memory runs out at any point the state is unchanged") {
       CHECK(test::cache(r)->ready());
       CHECK(bed.shown.status().records == records);
       // Reading the picture does not fail either.
-      CHECK(r.picture(false).size() == 16 * 16 * 4);
+      CHECK(r.output().picture(false).size() == 16 * 16 * 4);
     }
     CHECK_FALSE(failed);
     CHECK(failures > 0);
@@ -209,10 +209,10 @@ TEST_CASE("shaders that do not compile leave the kernels in use") {
     const std::string text = read_file(file);
     std::ofstream(file) << text << "\nvoid broken() { nonsense; }\n";
     CHECK_THROWS_WITH(r.reload_shaders(), Catch::Contains("nonsense"));
-    CHECK(r.shown_picture(true).size() == 16 * 16 * 4);
+    CHECK(r.output().shown_picture(true).size() == 16 * 16 * 4);
     std::ofstream(file) << text;
     CHECK_NOTHROW(r.reload_shaders());
-    CHECK(r.shown_picture(true).size() == 16 * 16 * 4);
+    CHECK(r.output().shown_picture(true).size() == 16 * 16 * 4);
   }
   {
     // So does the first scene; without it, no film is left behind.
@@ -230,7 +230,7 @@ TEST_CASE("shaders that do not compile leave the kernels in use") {
     std::ofstream(file) << text;
     r.set_size(24, 24);
     r.set_scene(scene);
-    CHECK(r.picture(true).size() == 24 * 24 * 4);
+    CHECK(r.output().picture(true).size() == 24 * 24 * 4);
   }
   const film::Image wanted = render(nullptr);
   for (const char* broken : {"transport/shade.comp", "irradiance_cache/radius.comp", "film/tonemap.comp"}) {

@@ -61,7 +61,7 @@ TEST_CASE("the viewer ends with the layers of the finished picture, by its sampl
   session::TevLink link(film::parse_tev_address(viewer.address(), ""), "cornell");
   while (r.step()) CHECK(link.follow(r));
   link.finish(r);
-  const film::FilmImage image = r.film_image();
+  const film::FilmImage image = r.output().film_image();
   REQUIRE(soon([&] {
     const auto images = viewer.images();
     const auto at = images.find("Lucerna: cornell");
@@ -83,7 +83,8 @@ TEST_CASE("in the window a viewer is followed; one that hangs up or never reads 
     CAPTURE(int(manner));
     const Warnings warnings;
     TevReceiver viewer(manner);
-    session::Session s({.device = "cpu"});
+    const auto made = session::start_session({.device = "cpu"});
+    session::Session& s = *made;
     // Large enough to fill the buffers of the connection.
     s.set_size(400, 300);
     s.load(k_cornell);
@@ -117,7 +118,8 @@ TEST_CASE("in the window a viewer is followed; one that hangs up or never reads 
 
 TEST_CASE("a bad address is an error of the command; a missing viewer a warning") {
   const Warnings warnings;
-  session::Session s({.device = "cpu"});
+  const auto made = session::start_session({.device = "cpu"});
+  session::Session& s = *made;
   s.set_size(16, 16);
   s.load(k_cornell);
   s.set("samples", "2");

@@ -74,7 +74,7 @@ session::Renderer& bed() {
     r->apply_settings();
     return r;
   }();
-  renderer->inspect({});
+  renderer->overlays().inspect({});
   for (const char* key : {"overlay.records", "overlay.normals", "overlay.overlap"})
     renderer->settings().set(key, "false");
   renderer->apply_settings();
@@ -84,8 +84,8 @@ session::Renderer& bed() {
 }
 
 Inspection inspect_pixel(session::Renderer& r, uint32_t x, uint32_t y) {
-  r.inspect(vec2((float(x) + 0.5f) / k_size, (float(y) + 0.5f) / k_size));
-  r.picture(false);
+  r.overlays().inspect(vec2((float(x) + 0.5f) / k_size, (float(y) + 0.5f) / k_size));
+  r.output().picture(false);
   return test::cache_report(r)->inspection;
 }
 
@@ -106,13 +106,13 @@ TEST_CASE("an unused cache has no report, and an inspection before the first sam
   CHECK(test::cache_report(r) == nullptr);
   r.set_size(32, 32);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
-  r.inspect(vec2(0.5f, 0.5f));
-  r.picture(false);
+  r.overlays().inspect(vec2(0.5f, 0.5f));
+  r.output().picture(false);
   CHECK(test::cache_report(r) == nullptr);
   r.settings().set("components.tertiary", "cache");
   r.settings().set("overlay.normals", "true");
   r.apply_settings();
-  r.picture(false);
+  r.output().picture(false);
   const auto report = test::cache_report(r);
   REQUIRE(report);
   CHECK(report->looked_at == vec2(0.5f, 0.5f));
@@ -121,7 +121,7 @@ TEST_CASE("an unused cache has no report, and an inspection before the first sam
   CHECK(report->status.passes.empty());
 
   // During the build the coarse film provides the surfaces.
-  REQUIRE(r.draw_draft());
+  REQUIRE(r.previews().draw());
   while (test::cache(r)->status().records == 0) REQUIRE(r.step());
   REQUIRE_FALSE(test::cache(r)->ready());
   REQUIRE(r.samples() == 0);
@@ -129,8 +129,8 @@ TEST_CASE("an unused cache has no report, and an inspection before the first sam
   const std::vector<Record> all = test::cache(r)->records().read();
   for (const float down : {0.1f, 0.2f, 0.3f, 0.45f, 0.6f, 0.7f, 0.8f, 0.9f})
     for (const float right : {0.1f, 0.2f, 0.4f, 0.5f, 0.6f, 0.8f, 0.9f}) {
-      r.inspect(vec2(right, down));
-      r.picture(true);
+      r.overlays().inspect(vec2(right, down));
+      r.output().picture(true);
       const Inspection found = test::cache_report(r)->inspection;
       if (!found.solid) continue;
       uint32_t expected = 0;
@@ -214,7 +214,7 @@ TEST_CASE("the inspected records of a pixel are those with a weight computed on 
 
 TEST_CASE("the reported overlap of the picture equals that of its pixels, counted on the host") {
   session::Renderer& r = bed();
-  r.picture(false);
+  r.output().picture(false);
   const auto report = test::cache_report(r);
   REQUIRE(report->overlap);
   const irradiance_cache::Overlap& reported = *report->overlap;
@@ -267,8 +267,8 @@ TEST_CASE("on a normal map inspection reports lookups on the smooth surface, and
     size_t in_vain = 0, inspected = 0;
     for (const float x : {0.13f, 0.31f, 0.44f, 0.58f, 0.71f, 0.9f})
       for (const float y : {0.11f, 0.27f, 0.4f, 0.63f, 0.77f, 0.92f}) {
-        r.inspect(vec2(x, y));
-        r.picture(false);
+        r.overlays().inspect(vec2(x, y));
+        r.output().picture(false);
         const Inspection found = test::cache_report(r)->inspection;
         REQUIRE(found.solid);
         CHECK(found.lookup != shared::k_lookup_none);
@@ -286,8 +286,8 @@ TEST_CASE("on a normal map inspection reports lookups on the smooth surface, and
     metal.metallic = 1;
     r.set_material(2, metal);
     test::finish(r);
-    r.inspect(vec2(0.5f, 0.5f));
-    r.picture(false);
+    r.overlays().inspect(vec2(0.5f, 0.5f));
+    r.output().picture(false);
     CHECK(test::cache_report(r)->inspection.lookup == shared::k_lookup_none);
     CHECK(test::cache_report(r)->inspection.count == 0);
     CHECK(test::cache_report(r)->overlap->pixels == 0);
@@ -309,7 +309,7 @@ TEST_CASE(
   // A loaded cache measures the picture on request, without a build pass.
   const auto file =
       std::filesystem::temp_directory_path() / fmt::format("lucerna-overlap-{}.cache", getpid());
-  r.solver_save("cache", file);
+  r.solvers().save("cache", file);
   r.restart();
   r.solver_load("cache", file);
   std::filesystem::remove(file);
@@ -322,7 +322,7 @@ TEST_CASE(
 
 TEST_CASE("lines lead from the pixel to the records that it reads, and nowhere else") {
   session::Renderer& r = bed();
-  const std::vector<uint8_t> plain = r.picture(false);
+  const std::vector<uint8_t> plain = r.output().picture(false);
   // Distance of a point from the line to a record, in pixels.
   const auto from_line = [](const vec2& p, const vec2& a, const vec2& b) {
     const vec2 along = b - a;
@@ -350,18 +350,18 @@ TEST_CASE("lines lead from the pixel to the records that it reads, and nowhere e
       }
     }
   REQUIRE(centre != vec2(0));
-  const std::vector<uint8_t> lined = r.picture(false);
-  CHECK(r.picture(false) == lined);
+  const std::vector<uint8_t> lined = r.output().picture(false);
+  CHECK(r.output().picture(false) == lined);
   // Inspection is not saved in a file, and saving does not end it.
   const auto png = std::filesystem::temp_directory_path() / fmt::format("lucerna-inspect-{}.png", getpid());
-  r.save(png);
+  r.output().save(png);
   const film::FilmImage kept = film::read_exr(png);
   std::filesystem::remove(png);
   size_t other = 0;
   for (uint32_t p = 0; p < k_size * k_size; ++p)
     other += std::abs(kept.channels[0].second[p] - float(plain[4 * p]) / 255) > 0.004f;
   CHECK(other == 0);
-  CHECK(r.picture(false) == lined);
+  CHECK(r.output().picture(false) == lined);
   const auto off = [&](const vec2& p) {  // pixels from the nearest line
     float nearest = length(p - here);
     for (const auto& s : found.serving) nearest = std::min(nearest, from_line(p, here, s.at));
@@ -381,8 +381,8 @@ TEST_CASE("lines lead from the pixel to the records that it reads, and nowhere e
     INFO("at " << t << ": pixel " << at.x << " " << at.y);
     CHECK(std::find(list.begin(), list.end(), p) != list.end());
   }
-  r.inspect({});
-  CHECK(r.picture(false) == plain);
+  r.overlays().inspect({});
+  CHECK(r.output().picture(false) == plain);
   CHECK_FALSE(test::cache_report(r)->looked_at.has_value());
 }
 
@@ -395,11 +395,11 @@ TEST_CASE("normals are drawn as short lines at the centres of visible records") 
   r.set_camera(moved);
   while (r.step()) {
   }
-  const std::vector<uint8_t> plain = r.picture(false);
+  const std::vector<uint8_t> plain = r.output().picture(false);
   r.settings().set("overlay.normals", "true");
   r.apply_settings();
-  const std::vector<uint8_t> ticked = r.picture(false);
-  CHECK(r.picture(false) == ticked);
+  const std::vector<uint8_t> ticked = r.output().picture(false);
+  CHECK(r.output().picture(false) == ticked);
   CHECK(test::cache(r)->ready());
   const std::vector<uint32_t> list = changed(plain, ticked);
   CHECK(list.size() > 100);
@@ -510,12 +510,12 @@ TEST_CASE("detail of the geometry is dark on walls and bright at edges, and wide
   session::Renderer& r = bed();
   r.settings().set("overlay.discontinuity", "off");
   r.apply_settings();
-  const std::vector<uint8_t> plain = r.picture(false);
+  const std::vector<uint8_t> plain = r.output().picture(false);
   const auto bright_share = [&](const char* of, const char* level) {
     r.settings().set("overlay.discontinuity", of);
     r.settings().set("overlay.discontinuity_level", level);
     r.apply_settings();
-    const std::vector<uint8_t> seen = r.picture(false);
+    const std::vector<uint8_t> seen = r.output().picture(false);
     CHECK(seen != plain);
     uint32_t bright = 0;
     for (uint32_t p = 0; p < k_size * k_size; ++p) bright += seen[4 * p] > 150;
@@ -530,7 +530,7 @@ TEST_CASE("detail of the geometry is dark on walls and bright at edges, and wide
   CHECK(light < fine);
   r.settings().set("overlay.discontinuity", "off");
   r.apply_settings();
-  CHECK(r.picture(false) == plain);
+  CHECK(r.output().picture(false) == plain);
 }
 
 TEST_CASE("the candidates chosen in a pass can be read until the next pass") {

@@ -66,10 +66,10 @@ const irradiance_cache::CacheStatus& status(session::Renderer& r) { return test:
 void build_to(session::Renderer& r, BuildStage stage) {
   set(r, "cache.pause", "stage");
   r.restart();
-  REQUIRE(r.draw_draft());
+  REQUIRE(r.previews().draw());
   for (work(r); !status(r).last || status(r).last->stage != stage; work(r)) {
     REQUIRE(r.waits());
-    r.solver_command("cache", "step");
+    r.solvers().command("cache", "step");
   }
 }
 
@@ -138,7 +138,7 @@ TEST_CASE("building waits after each stage and gives the same cache, bit for bit
   REQUIRE(r.done());
   const auto count = test::cache(r)->records().size();
   const irradiance_cache::RawRecords all = test::cache(r)->records().raw(count);
-  const std::vector<uint8_t> picture = r.picture(false);
+  const std::vector<uint8_t> picture = r.output().picture(false);
   REQUIRE(count > 100);
 
   set(r, "cache.pause", "stage");
@@ -163,7 +163,7 @@ TEST_CASE("building waits after each stage and gives the same cache, bit for bit
     if (last.stage == BuildStage::measure) CHECK(last.rays == 64 * pass.tried);
     if (last.stage == BuildStage::evaluate) CHECK(last.rays > 0);
     CHECK(last.ms >= 0);
-    r.solver_command("cache", "step");
+    r.solvers().command("cache", "step");
   }
   REQUIRE(test::cache(r)->ready());
   // Every stage of both passes in order, with one evaluation per level; the last end is no pause, because the
@@ -192,7 +192,7 @@ TEST_CASE("building waits after each stage and gives the same cache, bit for bit
   CHECK(r.done());
   REQUIRE(test::cache(r)->records().size() == count);
   CHECK(test::identical(test::cache(r)->records().raw(count), all));
-  CHECK(r.picture(false) == picture);
+  CHECK(r.output().picture(false) == picture);
 
   // After a pass only; then on to the end.
   set(r, "cache.pause", "pass");
@@ -201,16 +201,16 @@ TEST_CASE("building waits after each stage and gives the same cache, bit for bit
   REQUIRE(r.waits());
   CHECK(status(r).pass == 1);
   CHECK(test::cache(r)->placement().kept.size() == status(r).passes[0].records);
-  r.solver_command("cache", "run");
+  r.solvers().command("cache", "run");
   work(r);
   CHECK(r.done());
   CHECK(test::identical(test::cache(r)->records().raw(count), all));
 
   // A step without a pause setting; and a change of the setting ends a pause.
   set(r, "cache.pause", "off");
-  r.solver_command("cache", "step");  // complete: nothing to wait for
+  r.solvers().command("cache", "step");  // complete: nothing to wait for
   r.restart();
-  r.solver_command("cache", "step");
+  r.solvers().command("cache", "step");
   work(r);
   REQUIRE(r.waits());
   CHECK(status(r).last->stage == BuildStage::probe);
@@ -244,11 +244,11 @@ TEST_CASE("candidates on visible surfaces are drawn at their positions") {
   session::Renderer& r = bed();
   build_to(r, BuildStage::probe);
   set(r, "overlay.placement", "off");
-  const std::vector<uint8_t> plain = r.picture(true);
+  const std::vector<uint8_t> plain = r.output().picture(true);
   CHECK(test::cache_report(r)->placement == PlacementShow::off);
   set(r, "overlay.placement", "stage");
-  const std::vector<uint8_t> drawn = r.picture(true);
-  CHECK(r.picture(true) == drawn);
+  const std::vector<uint8_t> drawn = r.output().picture(true);
+  CHECK(r.output().picture(true) == drawn);
   CHECK(test::cache_report(r)->placement == PlacementShow::candidates);
   REQUIRE(r.waits());
   const std::vector<bool> list = coloured(drawn);
@@ -263,7 +263,7 @@ TEST_CASE("candidates on visible surfaces are drawn at their positions") {
   // At edges, where the coarse film shows another surface than the candidate's, it may be hidden.
   CHECK(unmarked < seen / 50);
   set(r, "overlay.placement", "off");
-  CHECK(r.picture(true) == plain);
+  CHECK(r.output().picture(true) == plain);
 }
 
 TEST_CASE("the inspected point stays while building waits, also after a camera move") {
@@ -271,7 +271,7 @@ TEST_CASE("the inspected point stays while building waits, also after a camera m
   build_to(r, BuildStage::thin);
   set(r, "overlay.placement", "chosen");
   const auto ink = [&] {
-    const std::vector<bool> list = coloured(r.picture(true));
+    const std::vector<bool> list = coloured(r.output().picture(true));
     return std::count(list.begin(), list.end(), true);
   };
   const auto before = ink();
@@ -281,13 +281,13 @@ TEST_CASE("the inspected point stays while building waits, also after a camera m
   scene::Camera moved = camera;
   moved.to_world[3] += vec4(-2, 1.2f, 0, 0);
   r.set_camera(moved);
-  REQUIRE(r.draw_draft());
+  REQUIRE(r.previews().draw());
   CHECK(r.waits());
   CHECK(r.step() == false);
   CHECK(test::cache(r)->placement().kept.size() == kept);
   CHECK(ink() > before / 4);
   // Continuing finishes that pass, and adds the records missing from here.
-  r.solver_command("cache", "run");
+  r.solvers().command("cache", "run");
   work(r);
   CHECK(r.done());
   CHECK(status(r).passes.size() > 1);
@@ -307,9 +307,9 @@ TEST_CASE("chosen candidates are drawn with their radius, and hidden by nearer s
   work(r);
   REQUIRE(r.done());
   set(r, "overlay.placement", "off");
-  const std::vector<uint8_t> plain = r.picture(false);
+  const std::vector<uint8_t> plain = r.output().picture(false);
   set(r, "overlay.placement", "stage");
-  const std::vector<uint8_t> drawn = r.picture(false);
+  const std::vector<uint8_t> drawn = r.output().picture(false);
   CHECK(test::cache_report(r)->placement == PlacementShow::chosen);
   const std::vector<bool> list = marked(plain, drawn);
 
@@ -389,7 +389,8 @@ TEST_CASE("chosen candidates are drawn with their radius, and hidden by nearer s
 }
 
 TEST_CASE("a session with a paused cache is idle, responds, and continues on command") {
-  session::Session session({.device = test::device_name()});
+  const auto made = session::start_session({.device = test::device_name()});
+  session::Session& session = *made;
   session.set_size(48, 48);
   session.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
   for (const auto& [key, value] : {std::pair{"components.secondary", "cache"},

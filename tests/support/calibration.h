@@ -13,7 +13,7 @@ struct Shot {
 
 inline Shot shot_of(session::Renderer& renderer) {
   finish(renderer);
-  Shot shot{renderer.image_error(), renderer.tile_errors(), {}};
+  Shot shot{renderer.image_error(), renderer.progress().tile_errors(), {}};
   const film::Image image = renderer.image();
   for (size_t i = 0; i < image.samples.size(); ++i)
     shot.luminance.push_back(lucerna::luminance(sum_at(image, i)));

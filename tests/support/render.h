@@ -89,11 +89,11 @@ inline Result render(const Render& r, const scene::Scene* made = nullptr) {
   result.error = renderer.image_error();
   renderer.finish_ledger();
   result.stats = renderer.stats();
-  result.prepared_rays = renderer.ledger().entries().back().prepared_rays;
+  result.prepared_rays = renderer.progress().ledger().entries().back().prepared_rays;
   result.validation_messages = renderer.device().validation_messages();
   result.tracer = renderer.tracer_name();
   if (test::cache(renderer)) result.cache = test::cache(renderer)->status();
-  for (size_t c = 0; c < 4; ++c) result.bias_known[c] = renderer.bias(c).has_value();
+  for (size_t c = 0; c < 4; ++c) result.bias_known[c] = renderer.progress().bias(c).has_value();
   return result;
 }
 

@@ -20,7 +20,7 @@ inline const irradiance_cache::Cache* cache(const session::Renderer& r) {
 /// The data of its report; null if no cache is in use.
 inline std::shared_ptr<const irradiance_cache::CacheReport> cache_report(session::Renderer& r) {
   std::shared_ptr<const irradiance_cache::CacheReport> report;
-  r.visit_solvers(
+  r.overlays().visit_solvers(
       [&](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
         if (auto* cached = dynamic_cast<irradiance_cache::CacheSolver*>(&solver))
           report = std::make_shared<const irradiance_cache::CacheReport>(

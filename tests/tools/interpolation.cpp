@@ -28,7 +28,7 @@ const std::array<Way, 2> k_ways{{{"as they were placed", "0"}, {"thinned", "0.6"
 
 /// Looks light up in the cache at every sampled pixel and discards it.
 void look_up_picture(session::Renderer& r) {
-  r.visit_solvers(
+  r.overlays().visit_solvers(
       [](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {
         if (auto* cached = dynamic_cast<irradiance_cache::CacheSolver*>(&solver))
           cached->look_up_picture(canvas, picture);
@@ -43,7 +43,7 @@ struct Candidate {
 
 Json figures(const Candidate& c, const Timing& t) {
   session::Renderer& r = *c.renderer;
-  const Json statistics = r.solver_statistics().at("cache"), &overlap = statistics.at("overlap");
+  const Json statistics = r.solvers().statistics().at("cache"), &overlap = statistics.at("overlap");
   Json j{{"way", c.way.name},
          {"records", statistics.at("records")},
          {"rays", statistics.at("rays")},
@@ -52,8 +52,8 @@ Json figures(const Candidate& c, const Timing& t) {
          {"listed", overlap.at("listed")},
          {"lookups_per_s", overlap.at("pixels").get<double>() / t.median},
          {"lookups_s", {{"median", t.median}, {"low", t.low}, {"high", t.high}}}};
-  if (!r.ledger().entries().empty() && r.ledger().entries().back().truth)
-    j["relative_error"] = (*r.ledger().entries().back().truth)[0];
+  if (!r.progress().ledger().entries().empty() && r.progress().ledger().entries().back().truth)
+    j["relative_error"] = (*r.progress().ledger().entries().back().truth)[0];
   return j;
 }
 
@@ -75,7 +75,7 @@ int measure_interpolation(const InterpolationArguments& a) {
     changes.push_back({"components.tertiary", "cache", way.name});
     changes.push_back({"cache.thinning", way.thinning, way.name});
     r->load(a.scene, {}, changes);
-    if (!a.reference.empty()) r->set_reference(a.reference);
+    if (!a.reference.empty()) r->progress().set_reference(a.reference);
     while (!r->done() && r->step()) {
     }
     session::Renderer* const renderer = r.get();

@@ -74,9 +74,9 @@ Timing drag_session(session::Session& s, const std::vector<std::string>& groups,
 }
 
 /// A session that renders the scene, with samples in all pixels.
-std::unique_ptr<session::Session> start_session(const MixArguments& a) {
-  auto s = std::make_unique<session::Session>(
-      session::Options{.device = a.device, .validation = false, .shaders = {}, .scenes = a.scenes});
+std::unique_ptr<session::Session> render_in_session(const MixArguments& a) {
+  auto s =
+      session::start_session({.device = a.device, .validation = false, .shaders = {}, .scenes = a.scenes});
   s->set_size(a.width, a.height);
   s->load(a.scene);
   for (const std::string& text : a.set) {
@@ -127,14 +127,14 @@ int measure_mix(const MixArguments& a) {
   const auto drag = [&] {
     r.settings().set("relight.mix", mix_of(names, step++));
     r.apply_settings();
-    r.shown_picture(false);
+    r.output().shown_picture(false);
   };
   const double cpu_before = cpu_seconds();
   const Timing shown = take_turns({{{}, drag}}, 4 * a.repeats)[0];
   const double shown_cpu = (cpu_seconds() - cpu_before) / (4 * a.repeats + 1);
-  const Timing settled = take_turns({{drag, [&] { r.settle_mix(); }}}, a.repeats)[0];
+  const Timing settled = take_turns({{drag, [&] { r.mix().settle(); }}}, a.repeats)[0];
   if (r.stats().rays != rays) throw_error(a.scene, "a mix traced rays");
-  const std::unique_ptr<session::Session> s = start_session(a);
+  const std::unique_ptr<session::Session> s = render_in_session(a);
   const Timing begun = drag_session(*s, names, 2 * a.repeats, 0.5),
                dragged = drag_session(*s, names, 8 * a.repeats, 0);
 

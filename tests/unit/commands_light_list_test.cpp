@@ -73,13 +73,13 @@ TEST_CASE("a selected light stays selected when others come and go") {
 TEST_CASE("an edit of a light that is still on its way is kept") {
   WorkspaceBench b;
   b.open();
-  session::fake::busy_ms = 50;
+  b.fake.busy_ms = 50;
   b.run("light.add point name=A position=0,1,0 intensity=1");
   b.run("light.set A intensity=2");
   b.run("light.add point name=B position=0,1,1 intensity=3");
   b.run("light.rename A C");
   CHECK(names(b) == std::vector<std::string>{"Sun", "Brass lamp", names(b)[2], "C", "B"});
-  session::fake::busy_ms = 0;
+  b.fake.busy_ms = 0;
   REQUIRE(b.settled());
   CHECK(b.session.scene()->lights[3].intensity.x == 2);
   CHECK(b.session.scene()->lights[3].name == "C");

@@ -25,7 +25,7 @@ TEST_CASE("a camera and a size reach the session before the next command") {
   b.open();
   REQUIRE(quiet(b));
   const uint64_t before = b.session.commands();
-  session::fake::busy_ms = 50;
+  b.fake.busy_ms = 50;
   b.work.run("camera.select Detail");
   CHECK(b.session.commands() == before + 1);
   b.work.run("film.ev 1");
@@ -33,7 +33,7 @@ TEST_CASE("a camera and a size reach the session before the next command") {
   CHECK(b.work.camera.aspect == Approx(1.6));
   CHECK(b.session.commands() == before + 3);
   CHECK_FALSE(b.work.open.up_to_date());
-  session::fake::busy_ms = 0;
+  b.fake.busy_ms = 0;
   REQUIRE(quiet(b));
   CHECK(same_view(b.work.open.snapshot->camera, b.work.open.scene->cameras[2]));
   CHECK(b.work.open.snapshot->width == 80);
@@ -49,11 +49,11 @@ TEST_CASE("of several queued cameras only the last is rendered") {
   b.open();
   REQUIRE(quiet(b));
   const uint64_t before = b.session.commands();
-  session::fake::busy_ms = 200;
+  b.fake.busy_ms = 200;
   b.work.run("film.ev 1");  // keeps the session busy
   for (int i = 0; i < 20; ++i) b.work.run("camera.orbit 0.01 0");
   CHECK(b.session.commands() <= before + 3);
-  session::fake::busy_ms = 0;
+  b.fake.busy_ms = 0;
   REQUIRE(quiet(b));
   CHECK(same_view(b.work.open.snapshot->camera, b.work.camera.view->camera));
 }

@@ -129,7 +129,7 @@ TEST_CASE("a quoted word is a value, whatever its content") {
 }
 
 TEST_CASE("every command of the workspace round-trips through its text") {
-  session::Session session({});
+  session::FakeSession session;
   Workspace work(session);
   CHECK(test::round_trip(work.registry) > 150);
   for (const auto& [name, command] : work.registry.all()) {
@@ -142,7 +142,7 @@ TEST_CASE("every command of the workspace round-trips through its text") {
 }
 
 TEST_CASE("settings are commands, with the option table's messages") {
-  session::Session session({});
+  session::FakeSession session;
   Workspace work(session);
   CHECK(work.registry.print(work.registry.parse("film.ev=1.50")) == "set film.ev 1.50");
   CHECK(work.registry.print(work.registry.parse("set film.ev=2")) == "set film.ev 2");
@@ -162,7 +162,7 @@ TEST_CASE("partial input is completed") {
       std::filesystem::temp_directory_path() / ("lucerna-complete-" + std::to_string(getpid()));
   std::filesystem::create_directories(folder / "sub");
   for (const char* name : {"a scene.gltf", "b.glb", "c.png"}) std::ofstream(folder / name) << "x";
-  session::Session session({});
+  session::FakeSession session;
   Workspace work(session);
   const auto offers = [&](const std::string& line) { return work.registry.complete(line); };
   using List = std::vector<std::string>;

@@ -51,14 +51,14 @@ TEST_CASE("edits are visible immediately, reach the session, and can be undone a
 TEST_CASE("an edit is shown until the session has executed it, however busy the session is") {
   WorkspaceBench b;
   b.open();
-  session::fake::busy_ms = 100;
+  b.fake.busy_ms = 100;
   b.run("film.ev 1.5");
   b.run("light.set 1 on=false");
   b.work.refresh(b.timer.seconds() + 1000);
   CHECK(b.session.settings().real("film.ev") == 0);  // it is queued
   CHECK(b.work.open.setting_real("film.ev") == 1.5);
   CHECK_FALSE(b.work.open.light(0).enabled);
-  session::fake::busy_ms = 0;
+  b.fake.busy_ms = 0;
   REQUIRE(b.settled());
   CHECK(b.work.open.setting_real("film.ev") == 1.5);
   // Then the session's value is shown, whatever has set it.

@@ -22,7 +22,7 @@ const std::string k_line = "camera.place 1,2,3 0,0,0 0,1,0 fov=40";
 
 /// The window's stored state, without a window.
 struct Window {
-  session::Session session{{}};
+  session::FakeSession session;
   ui::Ui ui{session};
   ui::Memory memory{ui};
 };

@@ -22,7 +22,7 @@ namespace {
 /// Runs scripts over a workspace.
 struct Bench {
   test::Folder folder;
-  session::Session session{session::Options{}};
+  session::FakeSession session;
   Workspace work{session};
   ReportFolder report{folder.path / "report"};
   std::optional<int> status;

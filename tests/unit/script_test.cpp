@@ -18,7 +18,7 @@ using Catch::Contains;
 namespace {
 
 struct Bench {
-  session::Session session{{.device = "", .validation = false, .shaders = {}, .scenes = {}, .idle = true}};
+  session::FakeSession session;
   Workspace work{session};
   test::Folder folder;
 

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 #include <fstream>
 
+#include "base/timer.h"
 #include "commands/workspace.h"
 #include "viewer/fake_session.h"
 
@@ -10,7 +11,8 @@ namespace lucerna::test {
 
 /// A workspace whose session runs until a condition holds.
 struct WorkspaceBench {
-  session::Session session{session::Options{}};
+  session::FakeSession fake;
+  session::Session& session = fake;
   commands::Workspace work{session};
   Timer timer;
   int token;

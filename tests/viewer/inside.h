@@ -24,6 +24,6 @@ TEST_CASE("inside: one window", "[.][inside]") {
     std::ifstream stream(script);
     for (std::string line; std::getline(stream, line);) options.script.push_back(line);
   }
-  session::Session session({});
+  session::FakeSession session;
   REQUIRE(ui::run_viewer(session, options) == 0);
 }

@@ -7,6 +7,7 @@
 
 #include "inside.h"
 #include "ui/runner.h"
+#include "ui/state.h"
 
 namespace script_tests {
 
@@ -50,10 +51,10 @@ TEST_CASE("a script waits for its saves, and fails if one fails") {
 }
 
 TEST_CASE("file names of other formats are refused before the script runs") {
-  session::Session session({});
+  session::FakeSession session;
   ui::Ui window(session);
   commands::ReportFolder report;
-  ui::Runner runner(window, report);
+  ui::Runner runner(window.viewport, window.areas, window.log, window.requests, report);
   for (const char* line : {"image.save a.jpg", "image.save .exr", "image.save a", "screenshot a.exr",
                            "script.save a.txt", "cache.save a.exr"})
     CHECK_THROWS_WITH(commands::parse_script(window.work.registry, {line}, "s"),
@@ -61,9 +62,9 @@ TEST_CASE("file names of other formats are refused before the script runs") {
 }
 
 TEST_CASE("the busy card names the running command, not a finished one") {
-  session::Session session({});
+  session::FakeSession session;
   ui::Ui window(session);
-  session::fake::busy_ms = 150, session::fake::drawing_ms = 300;
+  session.busy_ms = 150, session.drawing_ms = 300;
   for (const char* line : {"film.ev 1", "window.fold left true", "image.save slow.exr"})
     window.work.run(line);
   const auto& busy = window.cards.busy;
@@ -79,7 +80,7 @@ TEST_CASE("the busy card names the running command, not a finished one") {
     REQUIRE(std::chrono::steady_clock::now() - begin < std::chrono::seconds(20));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
-  session::fake::busy_ms = 0, session::fake::drawing_ms = 0;
+  session.busy_ms = 0, session.drawing_ms = 0;
   CHECK(texts == std::vector<std::string>{"film.ev 1", "image.save slow.exr", "drawing"});
 }
 
@@ -213,7 +214,7 @@ TEST_CASE("in the program a saved picture shows the camera and the size of earli
 }
 
 TEST_CASE("the what-if target stays when the sampling mode changes, in one step to undo") {
-  session::Session session({});
+  session::FakeSession session;
   ui::Ui window(session);
   const auto target = [&] { return window.open.setting_real("sampling.target_error"); };
   const auto act = [&](const std::string& line) { window.work.run(line); };

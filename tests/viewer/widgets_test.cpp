@@ -100,7 +100,7 @@ namespace {
 /// A window's panels without a window: frames are drawn into lists that are not displayed.
 class Walk {
  public:
-  explicit Walk(float width = 1600, float height = 1000) : session_({}), ui_(session_) {
+  explicit Walk(float width = 1600, float height = 1000) : ui_(session_) {
     ImGui::CreateContext();
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
@@ -110,7 +110,7 @@ class Walk {
     io.KeyMap[ImGuiKey_Escape] = 256;
     ui::apply_theme(1);
     ui_.scripted = true;
-    ui_.texture = 1, ui_.texture_width = 64, ui_.texture_height = 48;
+    ui_.viewport.texture = 1, ui_.viewport.texture_width = 64, ui_.viewport.texture_height = 48;
   }
   ~Walk() {
     ui_.work.session.on_publish({});
@@ -263,7 +263,7 @@ class Walk {
   void frame() {
     ui_.work.now = ui_.time();
     ui_.work.refresh(ui_.work.now);
-    ui_.keys = std::exchange(keys, {});
+    ui_.keys.list = std::exchange(keys, {});
     g_frame = {};
     ImGui::NewFrame();
     ImGui::PushFont(ui::theme().fonts.regular);
@@ -290,7 +290,7 @@ class Walk {
     frame();
   }
 
-  session::Session session_;
+  session::FakeSession session_;
   ui::Ui ui_;
 };
 
@@ -304,7 +304,7 @@ void open_hall(Walk& walk) {
   walk.act("scene.open hall.gltf");
   walk.settle();
   REQUIRE(walk.ui().open.scene);
-  REQUIRE(walk.ui().has_picture());
+  REQUIRE(walk.ui().viewport.has_picture());
   for (const std::string& section : k_sections) walk.ui().sections[section] = true;
   walk.frames(3);
 }

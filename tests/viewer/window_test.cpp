@@ -5,6 +5,7 @@
 #include "round_trip.h"
 #include "ui/layout.h"
 #include "ui/runner.h"
+#include "ui/state.h"
 
 #include <numeric>
 #include <sstream>
@@ -30,10 +31,10 @@ std::vector<std::string> lines_of(const std::string& file) {
 }  // namespace
 
 TEST_CASE("a script is checked before it runs") {
-  session::Session session({});
+  session::FakeSession session;
   ui::Ui window(session);
   commands::ReportFolder report;
-  ui::Runner runner(window, report);
+  ui::Runner runner(window.viewport, window.areas, window.log, window.requests, report);
   const auto message = [&](const std::vector<std::string>& lines) -> std::string {
     try {
       commands::parse_script(window.work.registry, lines, "s");
@@ -56,10 +57,10 @@ TEST_CASE("a script is checked before it runs") {
 }
 
 TEST_CASE("every command of the window is unchanged after read, write and read") {
-  session::Session session({});
+  session::FakeSession session;
   ui::Ui window(session);
   commands::ReportFolder report;
-  ui::Runner runner(window, report);
+  ui::Runner runner(window.viewport, window.areas, window.log, window.requests, report);
   CHECK(test::round_trip(window.work.registry) > 200);
   for (const char* name : {"window.panels", "measure", "screenshot", "drop", "camera.orbit", "log.clear"})
     CHECK(window.work.registry.find(name));

@@ -29,8 +29,7 @@ void read_buffers(Document& document, const Container& container) {
     const auto length = static_cast<size_t>(buffer.at("byteLength").integer(1, int64_t{1} << 40));
     std::vector<uint8_t>& data = document.model.buffers[i].data;
     if (const auto uri = buffer.find("uri")) {
-      data = is_data_uri(uri->text()) ? decode_data_uri(*uri)
-                                      : read_file(document, resolve_uri(document, *uri), uri->where());
+      data = uri_bytes(document, *uri);
     } else {
       if (!container.binary || i != 0) buffer.fail("'uri' is missing");
       if (!container.has_bin) buffer.fail("the .glb has no binary chunk");
@@ -178,6 +177,19 @@ std::vector<uint8_t> decode_data_uri(const Item& item) {
     bytes.push_back(static_cast<uint8_t>(bits >> held));
   }
   return bytes;
+}
+
+std::vector<uint8_t> uri_bytes(const Document& document, const Item& uri) {
+  if (is_data_uri(uri.text())) return decode_data_uri(uri);
+  return read_file(document, resolve_uri(document, uri), uri.where());
+}
+
+std::vector<uint8_t> view_bytes(const Document& document, const Item& index) {
+  const auto& views = document.model.bufferViews;
+  const tinygltf::BufferView& view = views[index.index(views.size(), "bufferViews")];
+  const auto begin =
+      document.model.buffers[static_cast<size_t>(view.buffer)].data.begin() + std::ptrdiff_t(view.byteOffset);
+  return {begin, begin + std::ptrdiff_t(view.byteLength)};
 }
 
 std::string percent_decode(const std::string& uri) {

@@ -103,6 +103,10 @@ std::string percent_decode(const std::string& uri);
 /// The file that a URI names (percent-decoded, or as written if only that exists). Throws OutsideFolder at
 /// the item if it is outside the scene's folder.
 std::filesystem::path resolve_uri(const Document& document, const Item& uri);
+/// The bytes that a URI has, or those of the file that it names. Throws like the functions above.
+std::vector<uint8_t> uri_bytes(const Document& document, const Item& uri);
+/// The bytes of the buffer view of that index.
+std::vector<uint8_t> view_bytes(const Document& document, const Item& index);
 /// Throws OutsideFolder at `where` unless the file is in the scene's folder or below, symbolic links
 /// followed, or files outside are allowed. The file need not exist.
 void require_inside(const Document& document, const std::filesystem::path& file, const std::string& where);

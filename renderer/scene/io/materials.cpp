@@ -71,17 +71,10 @@ void decode(const Document& document, uint32_t index, Decoded& result) {
     std::vector<uint8_t> bytes;
     std::string hint = item.text("mimeType", "");
     if (view) {
-      const auto& v =
-          document.model.bufferViews[view->index(document.model.bufferViews.size(), "bufferViews")];
-      const auto& data = document.model.buffers[static_cast<size_t>(v.buffer)].data;
-      const auto begin = data.begin() + static_cast<std::ptrdiff_t>(v.byteOffset);
-      bytes.assign(begin, begin + static_cast<std::ptrdiff_t>(v.byteLength));
-    } else if (uri && is_data_uri(uri->text())) {
-      bytes = decode_data_uri(*uri);
+      bytes = view_bytes(document, *view);
     } else if (uri) {
-      name = percent_decode(uri->text());
-      hint = name;
-      bytes = read_file(document, resolve_uri(document, *uri), uri->where());
+      if (!is_data_uri(uri->text())) hint = name = percent_decode(uri->text());
+      bytes = uri_bytes(document, *uri);
     } else {
       item.fail("neither 'uri' nor 'bufferView' is given");
     }

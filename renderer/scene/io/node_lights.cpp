@@ -42,10 +42,8 @@ void set_intensity(Light& light, const Item& item, double strength, Document& do
 
 /// The bytes that a URI has or whose file it names; `name` becomes that of the file.
 std::vector<uint8_t> read_uri(const Document& document, const Item& uri, std::string& name) {
-  if (is_data_uri(uri.text())) return decode_data_uri(uri);
-  const std::filesystem::path file = resolve_uri(document, uri);
-  name = file.filename().string();
-  return read_file(document, file, uri.where());
+  if (!is_data_uri(uri.text())) name = resolve_uri(document, uri).filename().string();
+  return uri_bytes(document, uri);
 }
 
 /// Where errors of such a file are located.
@@ -62,17 +60,10 @@ std::shared_ptr<const LightProfile> NodeLights::profile_of(const Item& reference
   const auto [place, fresh] = profiles_.try_emplace(number);
   if (!fresh) return place->second;
   const Item item = lights.at(number);
-  std::vector<uint8_t> bytes;
   std::string name = item.text("name", "");
-  if (const auto uri = item.find("uri")) {
-    bytes = read_uri(document_, *uri, name);
-  } else {
-    const auto view = item.at("bufferView").index(document_.model.bufferViews.size(), "bufferViews");
-    const tinygltf::BufferView& v = document_.model.bufferViews[view];
-    const std::vector<unsigned char>& data = document_.model.buffers[size_t(v.buffer)].data;
-    bytes.assign(data.begin() + std::ptrdiff_t(v.byteOffset),
-                 data.begin() + std::ptrdiff_t(v.byteOffset + v.byteLength));
-  }
+  const auto uri = item.find("uri");
+  const std::vector<uint8_t> bytes =
+      uri ? read_uri(document_, *uri, name) : view_bytes(document_, item.at("bufferView"));
   place->second = light_profile_of({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, name,
                                    where_of(item, name));
   return place->second;

@@ -1,11 +1,11 @@
-// Recorded paths of the renderer's picture, and what they say about its noise.
+#include "session/path_study.h"
+
 #include <algorithm>
 #include <cmath>
 
 #include "base/error.h"
 #include "pilot/findings.h"
 #include "plan/choose.h"
-#include "session/renderer.h"
 #include "shaders/shared/seen_error.h"
 
 namespace lucerna::session {
@@ -59,21 +59,21 @@ std::string capital(std::string text) {
 
 }  // namespace
 
-recording::Recording Renderer::begin_recording() const {
+PictureView PathStudy::view() const {
   if (!setup_.engine) throw Error("", "there is no scene whose paths could be recorded");
-  return PathRecording(*device_, *compiler_).begin(picture_view());
+  return setup_.view(context_.automaton);
 }
 
-bool Renderer::record_paths(std::span<const shared::PathChoice> choices, recording::Recording& into,
-                            const std::function<bool()>& cancel, uint32_t events_per_path) {
-  if (!setup_.engine) throw Error("", "there is no scene whose paths could be recorded");
-  if (!recording_) recording_ = std::make_unique<PathRecording>(*device_, *compiler_);
-  return recording_->record(*setup_.engine, picture_view(), choices, into, cancel, events_per_path);
+recording::Recording PathStudy::begin() const { return recorder_->begin(view()); }
+
+bool PathStudy::record(std::span<const shared::PathChoice> choices, recording::Recording& into,
+                       const std::function<bool()>& cancel, uint32_t events_per_path) {
+  const PictureView picture = view();
+  return recorder_->record(*setup_.engine, picture, choices, into, cancel, events_per_path);
 }
 
-recording::NoiseReport Renderer::explain_noise(const vec2& lo, const vec2& hi) {
-  recording::Recording all = begin_recording();
-  settle_mix();
+recording::NoiseReport PathStudy::explain_noise(const vec2& lo, const vec2& hi) {
+  recording::Recording all = begin();
   const uvec2 first = pixel_at(lo, all.width, all.height);
   const uvec2 end = glm::min(pixel_at(hi, all.width, all.height) + 1u, uvec2(all.width, all.height));
   const std::vector<uint32_t> pixels = trial_pixels(first, end, all.width);
@@ -82,8 +82,8 @@ recording::NoiseReport Renderer::explain_noise(const vec2& lo, const vec2& hi) {
   std::vector<shared::PathChoice> choices;
   for (const uint32_t pixel : pixels)
     for (uint32_t s = 0; s < each; ++s) choices.push_back({pixel, s});
-  record_paths(choices, all);
-  const film::Image image = samples() > 0 ? setup_.film->read() : setup_.coarse->read();
+  record(choices, all);
+  const film::Image image = sampling_.samples() > 0 ? setup_.film->read() : setup_.coarse->read();
   const bool same_size = image.width == all.width && image.height == all.height;
   if (!same_size) throw Error("", "the picture has no sample yet");
   std::vector<double> near(all.paths.size());
@@ -94,18 +94,18 @@ recording::NoiseReport Renderer::explain_noise(const vec2& lo, const vec2& hi) {
   recording::NoiseReport report = recording::analyse_noise(all, near, pilot::k_most_variance);
   report.sentence =
       recording::noise_sentence(report, first == uvec2(0) && end == uvec2(all.width, all.height));
-  report.cure = noise_cure(report);
+  report.cure = cure_of(report);
   return report;
 }
 
-recording::NoiseCure Renderer::noise_cure(const recording::NoiseReport& report) const {
+recording::NoiseCure PathStudy::cure_of(const recording::NoiseReport& report) const {
   if (report.sentence.empty()) return {};
   const plan::Settings& settings = setup_.settings;
   const auto worst = size_t(
       std::find(paths::k_component_names.begin(), paths::k_component_names.end(), report.components[0].name) -
       paths::k_component_names.begin());
   // What `auto` would choose, had the picture the light and the noise of this part of it.
-  const std::array<plan::Choice, paths::k_component_count>& now = choices();
+  const std::array<plan::Choice, paths::k_component_count>& now = setup_.engine->plan().choices;
   plan::Settings open = settings;
   solvers::Findings findings;
   findings.pixels = double(setup_.width) * setup_.height;

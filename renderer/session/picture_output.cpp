@@ -1,16 +1,14 @@
-// The picture for display and files.
+#include "session/picture_output.h"
+
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <utility>
 
 #include "base/log.h"
-#include "film/io/ocio.h"
 #include "film/overlay.h"
 #include "film/tile_scale.h"
 #include "session/accuracy.h"
 #include "session/picture_layers.h"
-#include "session/renderer.h"
 #include "shaders/shared/film.h"
 
 namespace lucerna::session {
@@ -23,7 +21,7 @@ film::View without_tiles(film::View v) {
 }
 }  // namespace
 
-film::View Renderer::view() const {
+film::View PictureOutput::view() const {
   film::View v;
   v.layer = uint32_t(setup_.settings.choice("film.layer"));
   v.show = 0;
@@ -33,61 +31,43 @@ film::View Renderer::view() const {
   v.exposure = float(std::exp2(setup_.settings.real("film.ev")));
   v.scale = 2 * setup_.world.flat.core_radius;
   v.heat = heat_scale(v.layer);
-  if (setup_.settings.boolean("overlay.tiles")) v.tiles = tile_side();
+  if (setup_.settings.boolean("overlay.tiles")) v.tiles = setup_.tile_side();
   v.display_lut = ocio_ ? &ocio_->nodes : nullptr;
   v.tint_former = setup_.settings.boolean("overlay.former");
   return v;
 }
 
-std::shared_ptr<const Renderer::OcioTable> Renderer::ocio_table(const plan::Settings& settings) const {
-  const std::string& text = settings.text("film.ocio");
-  if (text.empty()) return nullptr;
-  const std::shared_ptr<const film::OcioConfig> config = film::ocio_config();
-  if (!config)
-    throw_error("film.ocio",
-                "'{}': the environment variable OCIO names no configuration (export OCIO=FILE.ocio)", text);
-  const std::string of = config->file() + ": " + text;
-  if (ocio_ && ocio_->of == of) return ocio_;
-  const auto [display, view] = config->split(text);
-  const std::vector<vec4> nodes = config->table(display, view);
-  OcioTable table{of, gpu::Buffer(*device_, {.name = "display and view",
-                                             .bytes = nodes.size() * sizeof(vec4),
-                                             .memory = gpu::Memory::host})};
-  table.nodes.write(nodes.data(), nodes.size() * sizeof(vec4));
-  if (!config->source_is_rec709())
-    log::warning("{}: names no linear Rec.709; radiance is taken as '{}'", config->file(), config->source());
-  return std::make_shared<const OcioTable>(std::move(table));
-}
-
-film::HeatScale Renderer::heat_scale(uint32_t layer) const {
+film::HeatScale PictureOutput::heat_scale(uint32_t layer) const {
   if (layer == shared::k_layer_samples)
-    return film::sample_scale(adaptive() ? adaptive()->options().min_samples : 0, max_samples());
+    return film::sample_scale(sampling_.adaptive() ? sampling_.adaptive()->options().min_samples : 0,
+                              sampling_.max_samples());
   if (layer == shared::k_layer_error) return film::error_scale(setup_.settings.real("sampling.target_error"));
   double ms = 0;
   for (const auto& stage : stats().stages) ms += stage.ms;
   for (const auto& stage : progress_.prepared().stages) ms -= stage.ms;
   const auto seen = [](const transport::TransportStats& s) { return double(s.rays - s.shadow_rays); };
   return film::cost_scale(ms, seen(stats()) - seen(progress_.prepared()),
-                          double(setup_.film->width()) * setup_.film->height(), adaptive() != nullptr);
+                          double(setup_.film->width()) * setup_.film->height(),
+                          sampling_.adaptive() != nullptr);
 }
 
-void Renderer::mark_tiles(const film::View& v) {
+void PictureOutput::mark_tiles(const film::View& v) {
   if (v.tiles == 0) return;
   std::vector<shared::TileMark> marks;
-  for (const TileStatus& t : tile_status(*this, true))
+  for (const TileStatus& t : tile_status(setup_, sampling_, progress_, true))
     marks.push_back({film::tile_position(double{t.sum()}, setup_.settings.real("sampling.target_error")),
                      t.state | (t.heavy_tailed ? shared::k_tile_heavy : 0)});
   setup_.film->mark_tiles(marks);
 }
 
-bool Renderer::previewed(const film::View& v) const {
+bool PictureOutput::previewed(const film::View& v) const {
   // Samples from which the picture is shown unfiltered, whatever its noise.
   constexpr uint32_t k_previewed_samples = 256;
-  return display_ && setup_.settings.text("preview.filter") == "auto" && !done() &&
-         samples() < k_previewed_samples && display_->shows(v, *setup_.film);
+  return display_ && setup_.settings.text("preview.filter") == "auto" && !sampling_.done() &&
+         sampling_.samples() < k_previewed_samples && display_->shows(v, *setup_.film);
 }
 
-bool Renderer::shows_the_same() const {
+bool PictureOutput::shows_the_same() const {
   const auto draws = [&](const OptionInfo& option) {
     return option.key.starts_with("overlay.") && setup_.settings.text(option.key) != option.fallback;
   };
@@ -100,23 +80,23 @@ bool Renderer::shows_the_same() const {
   return same && std::none_of(plan::options().begin(), plan::options().end(), draws);
 }
 
-bool Renderer::remembers() const {
+bool PictureOutput::remembers() const {
   return setup_.engine && setup_.film && previewed(view()) && display_->remembers();
 }
 
-std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::function<bool()>& cancel) {
+std::vector<uint8_t> PictureOutput::shown_picture(bool with_coarse, const std::function<bool()>& cancel) {
   constexpr double k_little_filtered = 0.1;
   const film::View v = view();
-  const bool quick = mix_pending_ && samples() > 0 && setup_.film->quick() &&
+  const bool quick = mix_.pending() && sampling_.samples() > 0 && setup_.film->quick() &&
                      v.layer == shared::k_layer_beauty && v.show == (1u << paths::k_component_count) - 1 &&
                      v.tiles == 0 && !v.display_lut;
   // A drag is shown at display rate, with unfiltered samples. A sudden mix of other groups takes a little
   // longer if it would show noise in place of a filtered picture.
-  if (quick && (mix_dragged_ || !previewed(v) || display_->shares().filtered < k_little_filtered)) {
+  if (quick && (mix_.dragged() || !previewed(v) || display_->shares().filtered < k_little_filtered)) {
     setup_.engine->developer().mix(setup_.engine->wavefront().stream(), *setup_.film, v);
     return overlays_.finish(v, cancel);
   }
-  settle_mix();
+  mix_.settle();
   if (const Filtered* f = shown_filtered(v)) {
     display_->plain(*setup_.engine, picture_view(), v);
     shown_ = {display_->version(), f->paths, true};
@@ -129,7 +109,7 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::functi
   mark_tiles(v);
   try {
     shown_ = {display_->version(), stats().paths, false};
-    display_->develop(*setup_.engine, picture_view(), *setup_.film, *setup_.coarse, v, samples(),
+    display_->develop(*setup_.engine, picture_view(), *setup_.film, *setup_.coarse, v, sampling_.samples(),
                       stats().paths > 0);
   } catch (const Error& e) {
     setup_.engine->wavefront().stream().discard();
@@ -141,8 +121,8 @@ std::vector<uint8_t> Renderer::shown_picture(bool with_coarse, const std::functi
   return overlays_.finish(v, cancel);
 }
 
-std::vector<uint8_t> Renderer::picture(bool with_coarse, const std::function<bool()>& cancel) {
-  settle_mix();
+std::vector<uint8_t> PictureOutput::picture(bool with_coarse, const std::function<bool()>& cancel) {
+  mix_.settle();
   const film::View v = view();
   if (const Filtered* f = filtered(); f && v.layer < shared::k_layer_albedo) return picture_of(*f, v, cancel);
   mark_tiles(v);
@@ -151,8 +131,8 @@ std::vector<uint8_t> Renderer::picture(bool with_coarse, const std::function<boo
   return overlays_.finish(v, cancel);
 }
 
-std::vector<uint8_t> Renderer::picture_of(const Filtered& filtered, const film::View& v,
-                                          const std::function<bool()>& cancel) {
+std::vector<uint8_t> PictureOutput::picture_of(const Filtered& filtered, const film::View& v,
+                                               const std::function<bool()>& cancel) {
   mark_tiles(v);
   gpu::Stream& stream = setup_.engine->wavefront().stream();
   setup_.engine->developer().tone_map(stream, *filtered.film, without_tiles(v));
@@ -178,16 +158,16 @@ std::vector<vec3> sum_of(const film::Image& image, uint32_t components) {
 
 }  // namespace
 
-film::Brightness Renderer::measure(std::optional<vec2> at) const {
+film::Brightness PictureOutput::measure(std::optional<vec2> at) const {
   if (!setup_.engine || !setup_.film) throw Error("", "there is no picture to measure");
-  const film::Image image = samples() > 0 ? setup_.film->read() : setup_.coarse->read();
+  const film::Image image = sampling_.samples() > 0 ? setup_.film->read() : setup_.coarse->read();
   const auto sampled = [](uint32_t n) { return n > 0; };
   if (std::none_of(image.samples.begin(), image.samples.end(), sampled))
     throw Error("", "there is no picture to measure yet");
   // Layers that are no light have no exposure; the picture is measured then.
   const std::vector<vec3> sum = sum_of(image, shown_components(view()));
   if (at) return film::measure_point(sum, image.width, image.height, *at);
-  const auto part = options_.interactive ? std::nullopt : region();
+  const auto part = sampling_.only_region();
   if (!part) return film::measure_picture(sum, image.width, image.height);
   std::vector<vec3> inside;
   for (uint32_t i = 0; i < sum.size(); ++i)
@@ -195,13 +175,13 @@ film::Brightness Renderer::measure(std::optional<vec2> at) const {
   return film::measure_picture(inside, part->right - part->left, part->bottom - part->top);
 }
 
-HeldPicture Renderer::held_picture() {
-  if (!setup_.engine || samples() == 0) throw Error("", "the picture has no sample yet");
+HeldPicture PictureOutput::held_picture() {
+  if (!setup_.engine || sampling_.samples() == 0) throw Error("", "the picture has no sample yet");
   const film::View v = view();
   if (v.layer >= shared::k_layer_albedo)
     throw_error("", "the layer '{}' shows no light; choose beauty or a component",
                 setup_.settings.text("film.layer"));
-  settle_mix();
+  mix_.settle();
   const uint32_t shown = shown_components(v);
   const uint32_t width = setup_.film->width(), height = setup_.film->height();
   const Filtered* filtered = shown_filtered(v);
@@ -217,12 +197,12 @@ HeldPicture Renderer::held_picture() {
                                     : sum_of((filtered ? *filtered->film : *setup_.film).read(), shown),
                    .filtered = filtered || preview,
                    .samples = double(stats().paths) / (double(width) * height),
-                   .seconds = seconds(),
-                   .ledger = ledger(),
+                   .seconds = progress_.seconds(),
+                   .ledger = progress_.ledger(),
                    .scene = setup_.world.scene->name,
                    .view = setup_.view_text()};
   for (size_t c = 0; c < held.methods.size(); ++c) {
-    held.methods[c] = choices()[c].solver;
+    held.methods[c] = setup_.engine->plan().choices[c].solver;
     if (shown != (1u << paths::k_component_count) - 1 && (shown >> c & 1u))
       held.shows += (held.shows.empty() ? "" : " + ") + std::string(paths::k_component_names[c]);
   }
@@ -231,34 +211,40 @@ HeldPicture Renderer::held_picture() {
     held.former = shares.stale;
     if (shares.error) held.shown_error = shares.error->median;
   }
-  if (samples() >= 2) {
-    const film::ImageError e = image_error();
+  if (sampling_.samples() >= 2) {
+    const film::ImageError e = progress_.estimate_error();
     held.error = error_sum(e.seen(0), e.seen_lookup_noise, e.seen_interpolation);
   }
   return held;
 }
 
-film::FilmImage Renderer::film_image() {
-  settle_mix();
-  film::FilmImage out = picture_layers(setup_);
+film::FilmImage PictureOutput::film_image() {
+  mix_.settle();
+  return layers_of(setup_.film->read());
+}
+
+film::FilmImage PictureOutput::film_image_with_halves() {
+  if (!setup_.engine || sampling_.samples() == 0) throw Error("", "the picture has no sample yet");
+  mix_.settle();
+  const film::Image image = setup_.film->read();
+  film::FilmImage out = layers_of(image);
+  add_noise_layers(out, *setup_.film, image, !setup_.engine->solvers().empty());
+  return out;
+}
+
+film::FilmImage PictureOutput::layers_of(const film::Image& image) const {
+  film::FilmImage out = picture_layers(setup_, image);
   // In the window the rest has samples too.
-  if (const auto part = options_.interactive ? std::nullopt : region())
+  if (const auto part = sampling_.only_region())
     out.window = {part->left, part->top, part->right, part->bottom};
-  out.metadata["device"] = device_->info().name;
-  out.metadata["tracer"] = tracer_name();
-  out.metadata["noise"] = film::noise_text(image_error().rms);
+  out.metadata["device"] = context_.device.info().name;
+  out.metadata["tracer"] = setup_.tracer_name();
+  out.metadata["noise"] = film::noise_text(progress_.estimate_error().rms);
   if (const Filtered* f = filtered()) add_filtered_layers(out, *f);
   return out;
 }
 
-film::FilmImage Renderer::film_image_with_halves() {
-  if (!setup_.engine || samples() == 0) throw Error("", "the picture has no sample yet");
-  film::FilmImage out = film_image();
-  add_noise_layers(out, *setup_.film, looks_up());
-  return out;
-}
-
-void Renderer::save(const std::filesystem::path& file, bool as_shown) {
+void PictureOutput::save(const std::filesystem::path& file, bool as_shown) {
   if (!setup_.engine) throw Error(file.string(), "nothing to save yet; load a scene first");
   const std::string extension = file.extension().string();
   if (extension == ".exr")
@@ -267,7 +253,7 @@ void Renderer::save(const std::filesystem::path& file, bool as_shown) {
     // The inspected place is not saved.
     const Overlays::Mode mode = overlays_.mode();
     overlays_.set_mode({});
-    settle_mix();
+    mix_.settle();
     const std::vector<uint8_t> shown = as_shown ? shown_picture(false) : picture(false);
     overlays_.set_mode(mode);
     std::map<std::string, std::string> metadata;
@@ -279,11 +265,52 @@ void Renderer::save(const std::filesystem::path& file, bool as_shown) {
     throw_error(file.string(), "cannot write '{}' files; use .exr or .png", extension);
 }
 
-double peak_host_mb() {
-  std::ifstream status("/proc/self/status");
-  for (std::string line; std::getline(status, line);)
-    if (line.rfind("VmHWM:", 0) == 0) return std::stod(line.substr(6)) / 1024;
-  return 0;
+PictureOutput::WindowParts PictureOutput::make_window_parts(bool again) const {
+  WindowParts parts;
+  if (!context_.interactive || (display_ && !again)) return parts;
+  parts.display = std::make_unique<Display>(context_.device, context_.compiler);
+  if (!window_filter_) parts.filter = std::make_unique<WindowFilter>(context_.device, context_.compiler);
+  return parts;
+}
+
+void PictureOutput::adopt(WindowParts parts) noexcept {
+  if (!parts.display) return;
+  display_ = std::move(parts.display), shown_ = {};
+  if (window_filter_) window_filter_->reset_kernels();
+  if (parts.filter) window_filter_ = std::move(parts.filter);
+}
+
+void PictureOutput::mixed() {
+  forget_filtered();
+  if (display_) display_->mixed();
+}
+
+bool PictureOutput::keep_former(const std::vector<vec3>* factors) {
+  if (!display_) return false;
+  transport::Wavefront& wavefront = setup_.engine->wavefront();
+  // Groups with different factors are a new mix of the present picture.
+  if (factors) {
+    std::vector<vec3> weights = setup_.relight.weights;
+    for (size_t g = 0; g < weights.size(); ++g) weights[g] *= (*factors)[g];
+    setup_.film->set_mix(weights);
+    wavefront.mix(*setup_.film);
+  }
+  const Filtered* filtered = shown_.filtered && !factors ? window_filter_->result() : nullptr;
+  // The root: of single pixels' bias about half is left in means over 3x3, as bench latency measures.
+  return display_->take(wavefront.stream(), filtered ? *filtered->film : *setup_.film,
+                        filtered ? std::sqrt(filtered->error.over_noise) : 1);
+}
+
+void PictureOutput::restart(const scene::Changes& changes, const vec3& scale, bool same_light) {
+  if (display_) display_->restart(changes, scale, same_light);
+}
+
+void PictureOutput::worked(double seconds) {
+  if (!display_) return;
+  display_->plan().worked(seconds);
+  if (sampling_.samples() == 0) return;
+  display_->warm(setup_.engine->wavefront().stream(), *setup_.film);
+  setup_.engine->developer().prepare_mix(setup_.engine->wavefront().stream(), *setup_.film, view());
 }
 
 }  // namespace lucerna::session
