@@ -83,7 +83,7 @@ void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progre
   target.settings = std::move(settings);
   install(std::move(target), progress, scene::Change::shape);
   loaded_ = loaded;
-  ocio_ = std::move(ocio);
+  show_by(std::move(ocio));
   overlays_.show_paths({});
 }
 
@@ -376,11 +376,11 @@ void Renderer::apply_settings() {
       std::any_of(std::begin(plan::k_traced_scene_settings), std::end(plan::k_traced_scene_settings),
                   changed)) {
     install(std::move(target), {}, changes);
-    ocio_ = std::move(ocio);
+    show_by(std::move(ocio));
     return;
   }
   again |= apply_plan(std::move(target), changes);
-  ocio_ = std::move(ocio);
+  show_by(std::move(ocio));
   notify_settings_changed();
   setup_.kept.note(changes.edits);
   if (changed("samples") && !again)

@@ -356,10 +356,12 @@ class Renderer {
   struct OcioTable {
     std::string of;  ///< file, display and view
     gpu::Buffer nodes;
+    float white;  ///< film::OcioConfig::white()
   };
+  void show_by(std::shared_ptr<const OcioTable> ocio);
   /// The table for these settings: null without film.ocio, the present one if it fits. Throws Error, located.
   std::shared_ptr<const OcioTable> ocio_table(const plan::Settings& settings) const;
-  /// Another exposure or tone curve changes errors as seen, by which tiles have stopped.
+  /// Another exposure, tone curve or view changes errors as seen, by which tiles have stopped.
   bool judged_otherwise() const { return adaptive() && seen_ != setup_.seen_range(); }
   /// True if the picture's light is unchanged, whatever its computation and camera.
   bool keeps_light(const scene::Changes& changes) const;

@@ -52,11 +52,17 @@ std::shared_ptr<const Renderer::OcioTable> Renderer::ocio_table(const plan::Sett
   const std::vector<vec4> nodes = config->table(display, view);
   OcioTable table{of, gpu::Buffer(*device_, {.name = "display and view",
                                              .bytes = nodes.size() * sizeof(vec4),
-                                             .memory = gpu::Memory::host})};
+                                             .memory = gpu::Memory::host}),
+                  config->white(display, view)};
   table.nodes.write(nodes.data(), nodes.size() * sizeof(vec4));
   if (!config->source_is_rec709())
     log::warning("{}: names no linear Rec.709; radiance is taken as '{}'", config->file(), config->source());
   return std::make_shared<const OcioTable>(std::move(table));
+}
+
+void Renderer::show_by(std::shared_ptr<const OcioTable> ocio) {
+  ocio_ = std::move(ocio);
+  setup_.ocio_white = ocio_ ? ocio_->white : 0;
 }
 
 film::HeatScale Renderer::heat_scale(uint32_t layer) const {
