@@ -352,6 +352,7 @@ class Renderer {
   void mark_tiles(const film::View& view);
   bool previewed(const film::View& view) const;  ///< true if the window shows a preview in that view
   film::HeatScale heat_scale(uint32_t layer) const;
+  HeldPicture described();  ///< a held picture without its light
   /// The display and view of film.ocio as a table on the device.
   struct OcioTable {
     std::string of;  ///< file, display and view

@@ -50,9 +50,10 @@ std::shared_ptr<const Renderer::OcioTable> Renderer::ocio_table(const plan::Sett
   if (ocio_ && ocio_->of == of) return ocio_;
   const auto [display, view] = config->split(text);
   const std::vector<vec4> nodes = config->table(display, view);
-  OcioTable table{of, gpu::Buffer(*device_, {.name = "display and view",
-                                             .bytes = nodes.size() * sizeof(vec4),
-                                             .memory = gpu::Memory::host}),
+  OcioTable table{of,
+                  gpu::Buffer(*device_, {.name = "display and view",
+                                         .bytes = nodes.size() * sizeof(vec4),
+                                         .memory = gpu::Memory::host}),
                   config->white(display, view)};
   table.nodes.write(nodes.data(), nodes.size() * sizeof(vec4));
   if (!config->source_is_rec709())
@@ -217,26 +218,29 @@ HeldPicture Renderer::held_picture() {
     shown_picture(true);
     preview = previewed(v);
   }
-  HeldPicture held{.width = width,
-                   .height = height,
-                   .light = preview ? display_->shown_light(shown)
-                                    : sum_of((filtered ? *filtered->film : *setup_.film).read(), shown),
-                   .filtered = filtered || preview,
-                   .samples = double(stats().paths) / (double(width) * height),
-                   .seconds = seconds(),
-                   .ledger = ledger(),
-                   .scene = setup_.world.scene->name,
-                   .view = setup_.view_text()};
-  for (size_t c = 0; c < held.methods.size(); ++c) {
-    held.methods[c] = choices()[c].solver;
+  HeldPicture held = described();
+  held.width = width, held.height = height;
+  held.light = preview ? display_->shown_light(shown)
+                       : sum_of((filtered ? *filtered->film : *setup_.film).read(), shown);
+  held.filtered = filtered || preview;
+  for (size_t c = 0; c < held.methods.size(); ++c)
     if (shown != (1u << paths::k_component_count) - 1 && (shown >> c & 1u))
       held.shows += (held.shows.empty() ? "" : " + ") + std::string(paths::k_component_names[c]);
-  }
   if (held.filtered) {
     const film::PreviewShares shares = preview_shares();
     held.former = shares.stale;
     if (shares.error) held.shown_error = shares.error->median;
   }
+  return held;
+}
+
+HeldPicture Renderer::described() {
+  HeldPicture held{.samples = double(stats().paths) / (double(setup_.film->width()) * setup_.film->height()),
+                   .seconds = seconds(),
+                   .ledger = ledger(),
+                   .scene = setup_.world.scene->name,
+                   .view = setup_.view_text()};
+  for (size_t c = 0; c < held.methods.size(); ++c) held.methods[c] = choices()[c].solver;
   if (samples() >= 2) {
     const film::ImageError e = image_error();
     held.error = error_sum(e.seen(0), e.seen_lookup_noise, e.seen_interpolation);
@@ -253,6 +257,7 @@ film::FilmImage Renderer::film_image() {
   out.metadata["device"] = device_->info().name;
   out.metadata["tracer"] = tracer_name();
   out.metadata["noise"] = film::noise_text(image_error().rms);
+  describe(described(), out.metadata);
   if (const Filtered* f = filtered()) add_filtered_layers(out, *f);
   return out;
 }
