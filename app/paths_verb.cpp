@@ -185,17 +185,13 @@ int search_paths(const PathsArguments& a) {
   Findings findings(a);
   recording::Reader reader(a.file);
   findings.begin();
-  Sum all;
-  uint64_t paths = 0;
-  while (const auto chunk = reader.next()) {
-    paths += chunk->paths.size();
+  // With a bound on places, only the paths there are read.
+  const std::optional<Box> places = query.places();
+  while (const auto chunk = reader.next(places))
     recording::visit_rows(*chunk, [&](const Row& row) {
-      ++all.rows;
-      if (recording::contributes_light(row.at())) all.light += double(luminance(row.at().contribution));
       if (query(row)) findings.add(row);
     });
-  }
-  findings.end(all, paths);
+  findings.end({reader.rows(), reader.light()}, reader.paths());
   return 0;
 }
 

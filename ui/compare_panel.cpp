@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "chart.h"
 #include "compare_plot.h"
@@ -27,6 +28,8 @@ float share_of_width(int parts) {
 
 /// "12 s · 2.1 %"
 std::string cost_text(const session::HeldPicture& p) {
+  if (p.displayed) return "Display colours";
+  if (p.is_foreign) return "Time and error unknown";
   const std::string error = held_error_text(p);
   if (p.seconds <= 0) return error;
   return error.empty() ? about_text(p.seconds) : about_text(p.seconds) + " \xC2\xB7 " + error;
@@ -39,7 +42,7 @@ std::string content_text(const HeldResult& held) {
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : " \xC2\xB7 ") + part; };
   if (p.samples > 0) add(fmt::format("{:.3g} sample{}", p.samples, p.samples == 1 ? "" : "s"));
-  if (methods.empty()) add("from a file");
+  if (!p.file.empty()) add(p.is_foreign ? "file of unknown origin" : "file");
   if (!p.shows.empty()) add(p.shows + " only");
   if (!methods.empty() && !held.name.starts_with(methods)) add(methods);
   if (!held.camera.empty()) add(held.camera);
@@ -108,12 +111,32 @@ void name_field(Controls& controls, const HeldResult& held, CompareState& state)
   tooltip("Name of the chosen result. Press to change it.");
 }
 
+/// A file that is being read: its share, and a button that ends it.
+void reading_row(Controls& controls, const commands::Comparing::Reading& reading) {
+  const float width = ImGui::CalcItemWidth(), button_width = px(22);
+  const double done = reading.done;
+  const std::string text =
+      reading.cancelled ? "Ends reading\xE2\x80\xA6"
+                        : fmt::format("Reads '{}': {:.0f} %",
+                                      std::filesystem::path(reading.file).filename().string(), 100 * done);
+  const ImVec2 lo = ImGui::GetCursorScreenPos();
+  draw_text(ImGui::GetWindowDrawList(), lo, {lo.x + width - button_width, lo.y + px(22)},
+            elided(text, width - button_width - px(6), theme().fonts.small), colour::text_dim, Align::left,
+            theme().fonts.small);
+  ImGui::SetCursorScreenPos({lo.x + width - button_width, lo.y});
+  if (sign_button("##stop_reading", Sign::close, false)) controls.act("compare.cancel");
+  tooltip("Ends reading; nothing is held.");
+  stacked_bar({{static_cast<float>(done), colour::accent}}, px(3), width);
+  gap(6);
+}
+
 void results_block(Controls& controls, const commands::Workspace& work, CompareState& state) {
   const HeldResults& results = work.compare.results;
   const bool full = results.list().size() >= HeldResults::k_most;
   ImGui::BeginDisabled(!work.open.scene || full);
-  if (button("##hold", work.compare.holding ? "Holding\xE2\x80\xA6" : "Hold picture", false,
-             share_of_width(2)))
+  const auto& holding = work.compare.holding;
+  const bool reads = holding && holding->reading;
+  if (button("##hold", holding && !reads ? "Holding\xE2\x80\xA6" : "Hold picture", false, share_of_width(2)))
     controls.act("compare.hold");
   ImGui::EndDisabled();
   tooltip(full ? "All places are taken: forget a result first."
@@ -122,8 +145,9 @@ void results_block(Controls& controls, const commands::Workspace& work, CompareS
   ImGui::BeginDisabled(full);
   if (button("##load", "Load\xE2\x80\xA6", false, share_of_width(2))) controls.act("dialog.held");
   ImGui::EndDisabled();
-  tooltip("Holds the picture of an EXR file, such as a reference.");
+  tooltip("Holds the picture of an EXR, HDR or PNG file, such as a reference.");
   gap(6);
+  if (reads) reading_row(controls, *holding->reading);
   if (results.list().empty())
     return paragraph(
         "Render with one choice of methods and hold the result. Then choose others, or change a setting, and "
@@ -168,14 +192,15 @@ void comparison_block(Controls& controls, const commands::Workspace& work) {
   if (const std::string& problem = work.compare.live.problem(); !problem.empty())
     return paragraph("No comparison: " + problem + ".", colour::warning);
   const auto& figures = work.compare.live.figures();
-  const auto text = [&](const std::string& known) { return figures ? known : std::string(k_dash); };
-  value_row("Relative squared error", text(figures ? fmt::format("{:.3g}", figures->relative_squared) : ""),
+  const bool light = figures && !held->picture->displayed;
+  value_row("Relative squared error", light ? fmt::format("{:.3g}", figures->relative_squared) : k_dash,
             "Mean over the pixels of the squared difference over the held result's square.");
-  value_row("Error as seen", text(figures ? percent_text(figures->as_seen) : ""),
-            "Root mean square difference of the pixels, each relative to the light around it.");
-  value_row(
-      "FLIP", text(figures ? fmt::format("{:.4f}", figures->flip) : ""),
-      "How large the difference appears when the two pictures alternate: 0 equal, 1 as different as can be.");
+  value_row("Error as seen", light ? percent_text(figures->as_seen) : k_dash,
+            "Root mean square difference of the pixels, each relative to the light around it. Light beyond "
+            "white counts as white.");
+  value_row("FLIP", figures ? fmt::format("{:.4f}", figures->flip) : k_dash,
+            "How large the difference of the two pictures appears as they are shown, with this exposure and "
+            "tone curve, when they alternate: 0 equal, 1 as different as can be.");
   gap(2);
   paragraph("Of the live picture against the held result; the noise of both is contained.",
             colour::text_faint);

@@ -26,7 +26,7 @@ class ComparePictures {
  private:
   /// Identifies the present exposure and tone curve.
   std::string display() const;
-  std::vector<uint8_t> displayed(std::span<const vec3> light) const;
+  std::vector<uint8_t> displayed(const session::HeldPicture& picture) const;
 
   const commands::OpenScene& open_;
 };

@@ -85,7 +85,9 @@ void difference_legend(const commands::Comparing& compare, const HeldResult& hel
   const float pad = px(10), line = px(16), bar = px(8), width = px(k_ramp) + 2 * pad;
   const auto& figures = compare.live.figures();
   std::vector<std::string> texts{"Now: " + live_text(live), "Held: " + held_text(held)};
-  if (figures)
+  if (figures && std::isnan(figures->as_seen))
+    texts.push_back(fmt::format("FLIP {:.3g}", figures->flip));
+  else if (figures)
     for (const std::string& text :
          {fmt::format("Relative squared error {:.3g}", figures->relative_squared),
           fmt::format("Error as seen {}, FLIP {:.3g}", percent_text(figures->as_seen), figures->flip)})

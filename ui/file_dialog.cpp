@@ -80,10 +80,10 @@ Question question(const Dialog& dialog) {
               .reads = true};
     case Purpose::held:
       return {.title = "Hold the picture of a file",
-              .note = "An .exr of this size, such as a saved picture or a reference.",
+              .note = "An .exr, .hdr or .png of this size, such as a saved picture or a reference.",
               .command = "compare.load",
               .answer = "Hold",
-              .endings = {".exr"},
+              .endings = {".exr", ".hdr", ".png"},
               .reads = true};
     case Purpose::solver_load:
       return {.title = "Load a " + uncapitalised(dialog.solver->label),

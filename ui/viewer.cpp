@@ -88,7 +88,7 @@ class Viewer {
     else if (size_changed_at_ >= 0)
       sleep = k_settle;
     else if (ui_.cards.busy.command != 0 || ui_.work.now < ui_.cards.note.until ||
-             ui_.work.exposure.measuring())
+             ui_.work.exposure.measuring() || ui_.work.compare.holding)
       sleep = 0.1;
     if (window_.wait(sleep)) ui_.wake(3), hovering_since_ = ui_.time();
   }
@@ -125,7 +125,7 @@ class Viewer {
       ui_.cards.note.text.clear(), ui_.wake(2);
     // Tooltips and the text cursor need a frame after the pointer has stopped.
     if (ui_.work.now - hovering_since_ < 0.7 || ImGui::GetIO().WantTextInput) ui_.wake(1);
-    if (runner_.measuring() || ui_.moves.moving()) ui_.wake(1);
+    if (runner_.measuring() || ui_.moves.moving() || ui_.work.compare.holding) ui_.wake(1);
   }
 
   /// The scene's name, with an asterisk if there is something to save.

@@ -1,5 +1,6 @@
 // Commands that hold results and compare them with the live picture.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
 #include "base/error.h"
@@ -32,6 +33,10 @@ std::string camera_name(const Workspace& work) {
   return work.open.scene->cameras[size_t(camera)].name;
 }
 
+void needs_no_holding(const Workspace& work) {
+  if (work.compare.holding) throw Error("", "another picture is being held; try again in a moment");
+}
+
 void add_holding(Workspace& work) {
   HeldResults& results = work.compare.results;
   work.registry.add(
@@ -46,8 +51,7 @@ void add_holding(Workspace& work) {
              work.open.needs_scene();
              const std::string name = a.has("name") ? a.text("name") : "";
              results.needs_room(name);
-             if (work.compare.holding)
-               throw Error("", "another picture is being held; try again in a moment");
+             needs_no_holding(work);
              const std::string& layer = work.open.setting("film.layer");
              const auto& components = session::k_component_names;
              if (layer != "beauty" &&
@@ -62,23 +66,31 @@ void add_holding(Workspace& work) {
        .needs_outcome = true});
   work.registry.add(
       {.name = "compare.load",
-       .help = "Holds the picture of an EXR file, such as a reference, to compare the picture "
-               "with it. It must have the picture's size.",
-       .parameters = {file_named({".exr"}), new_name()},
+       .help = "Holds the picture of a file, such as a reference, to compare the picture with it. It must "
+               "have the picture's size. Methods, time and error are those that an EXR of this program "
+               "stores. An 8-bit picture (PNG) is compared with the picture as it is shown. A script "
+               "continues when it is held.",
+       .parameters = {file_named({".exr", ".png", ".hdr"}), new_name()},
        .run =
            [&work, &results](const Arguments& a) {
              const std::string& file = a.text("file");
              const std::string name = a.has("name") ? a.text("name") : "";
              results.needs_room(name);
-             auto held = std::make_shared<session::HeldPicture>(session::read_held_picture(file));
-             const session::Snapshot* s = work.open.snapshot.get();
-             if (s && s->width > 0 && (s->width != held->width || s->height != held->height))
-               throw Error(file, fmt::format("{} x {} pixels, the picture has {} x {}; they must "
-                                             "be of one size",
-                                             held->width, held->height, s->width, s->height));
-             results.add(name, std::filesystem::path(file).stem().string(), "", std::move(held));
+             needs_no_holding(work);
+             std::error_code code;
+             if (!std::filesystem::exists(file, code)) throw Error(file, "there is no such file");
+             work.compare.read(file, name);
            },
+       .done = [&work](const Arguments&) { return !work.compare.holding; },
        .needs_outcome = true});
+  work.registry.add({.name = "compare.cancel",
+                     .help = "Ends the reading of a file by compare.load.",
+                     .parameters = {},
+                     .run =
+                         [&work](const Arguments&) {
+                           if (!work.compare.cancel()) throw Error("", "no file is being read");
+                         },
+                     .recorded = false});
   work.registry.add({.name = "compare.forget",
                      .help = "Forgets a held result, or all without a name.",
                      .parameters = {held_name(work, true)},
@@ -201,14 +213,18 @@ void add_compare_values(Workspace& work) {
     add(name, help, [&work, value] {
       const auto& figures = work.compare.live.figures();
       if (!figures) throw Error("", "not measured yet; compare.measure measures it");
-      return word((*figures).*value);
+      const double known = (*figures).*value;
+      if (std::isnan(known))
+        throw Error("", "the held result is a picture in display colours; only compare.flip is known");
+      return word(known);
     });
   };
   figure("compare.squared_error", "relative squared error of the picture against the held result",
          &film::LightDifference::relative_squared);
   figure("compare.seen_error", "error as seen of the picture against it; 0.05 is 5 %",
          &film::LightDifference::as_seen);
-  figure("compare.flip", "mean FLIP of the picture against it, 0..1", &film::LightDifference::flip);
+  figure("compare.flip", "mean FLIP of the picture against it, as both are shown, 0..1",
+         &film::LightDifference::flip);
   work.values.add({.name = "held",
                    .help = fmt::format("of a held result: {}", fmt::join(held_part_names(), ", ")),
                    .words = {"NAME", "PART"},

@@ -8,11 +8,11 @@
 #include "commands/expectation.h"
 #include "commands/script.h"
 #include "commands/values.h"
+#include "commands/view_transform.h"
 #include "commands/workspace.h"
 #include "film/io/compare.h"
 #include "film/io/picture_match.h"
 #include "film/io/stochastic.h"
-#include "film/tonemap.h"
 
 namespace lucerna::commands {
 namespace {
@@ -183,7 +183,7 @@ void add_picture(Workspace& work, Expectations& expectations) {
        }});
 }
 
-/// A layer as it is displayed with the present exposure.
+/// A layer as the picture is shown: exposure, tone curve or view of OpenColorIO.
 std::vector<uint8_t> displayed(const Workspace& work, const film::FilmImage& image,
                                const std::string& layer) {
   const std::vector<size_t> channels = image.layer(layer);
@@ -191,11 +191,7 @@ std::vector<uint8_t> displayed(const Workspace& work, const film::FilmImage& ima
   for (size_t i = 0; i < radiance.size(); ++i)
     for (int k = 0; k < 3; ++k)
       radiance[i][k] = image.channels[channels[std::min(size_t(k), channels.size() - 1)]].second[i];
-  const std::string& curve = work.open.setting("film.tone_curve");
-  return film::tone_map_picture(radiance, static_cast<float>(work.open.setting_real("film.ev")),
-                                curve == "agx"      ? film::ToneCurve::agx
-                                : curve == "linear" ? film::ToneCurve::linear
-                                                    : film::ToneCurve::neutral);
+  return film::shown_picture(view_transform(work.open), radiance);
 }
 
 Verdict judge_image(const Workspace& work, const ExpectContext& context, const std::string& file,

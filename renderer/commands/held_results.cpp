@@ -1,6 +1,7 @@
 #include "commands/held_results.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include "base/error.h"
 #include "commands/text.h"
@@ -57,7 +58,9 @@ void HeldResults::add(std::string name, const std::string& fallback, const std::
   needs_room(name);
   if (name.empty()) {
     const std::string methods = session::methods_text(picture->methods);
-    const std::string base = methods.empty() ? fallback : methods;
+    const std::string base = !picture->file.empty() ? std::filesystem::path(picture->file).stem().string()
+                             : methods.empty()      ? fallback
+                                                    : methods;
     name = base;
     for (int number = 2; taken(name); ++number) name = fmt::format("{} {}", base, number);
   }

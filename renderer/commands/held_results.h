@@ -38,7 +38,8 @@ class HeldResults {
   /// Throws Error if as many are held as can be, or if the name is taken.
   void needs_room(const std::string& name = "") const;
 
-  /// Holds a picture; without a name, under its methods or `fallback`, with a number if that name is taken.
+  /// Holds a picture; without a name, under that of its file, its methods or `fallback`, with a number if
+  /// that name is taken.
   /// The first one is compared with the live picture. Throws Error like needs_room().
   void add(std::string name, const std::string& fallback, const std::string& camera,
            std::shared_ptr<const session::HeldPicture> picture);

@@ -1,6 +1,7 @@
 #include "commands/live_difference.h"
 
 #include "base/future.h"
+#include "commands/view_transform.h"
 
 namespace lucerna::commands {
 namespace {
@@ -41,7 +42,7 @@ void LiveDifference::take_figures() {
   if (!is_ready(measuring_)) return;
   try {
     const Measured measured = measuring_.get();
-    if (measured.held != held_ || measured.version < oldest_) return;
+    if (measured.held != held_ || measured.version < oldest_ || measured.view != view_) return;
     figures_ = measured.figures;
     figures_version_ = measured.version;
   } catch (const std::exception& error) {  // memory
@@ -69,6 +70,10 @@ void LiveDifference::follow(const OpenScene& open, const HeldResult* held) {
   if (!why_not.empty() || !refused_) problem_ = why_not;
   if (!why_not.empty()) return figures_.reset();
   comparable_ = true;
+  if (const film::ViewTransform view = view_transform(open); view != view_) {
+    view_ = view;
+    figures_.reset(), figures_samples_ = 0;
+  }
   const std::string now = shown_light(open);
   if (now != light_of_ && light_) {
     figures_.reset(), figures_samples_ = 0;
@@ -88,10 +93,11 @@ void LiveDifference::follow(const OpenScene& open, const HeldResult* held) {
                              (light_->samples >= k_more_figures * figures_samples_ || rests(s))));
   if (due && !measuring_.valid()) {
     figures_samples_ = light_->samples;
-    measuring_ = std::async(
-        std::launch::async, [live = light_, other = held->picture, id = held->id, version = version_] {
-          return Measured{film::light_difference(live->width, live->light, other->light), id, version};
-        });
+    measuring_ = std::async(std::launch::async, [live = light_, other = held->picture, id = held->id,
+                                                 version = version_, view = view_] {
+      const auto measure = other->displayed ? film::display_difference : film::light_difference;
+      return Measured{measure(live->width, live->light, other->light, view), id, version, view};
+    });
   }
 }
 

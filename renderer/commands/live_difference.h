@@ -14,8 +14,8 @@ namespace lucerna::commands {
 class LiveDifference {
  public:
   /// Reads the live light when the picture is another one, after a quarter more samples and when it rests,
-  /// and measures its figures after twice as many samples and when it rests, on a thread. `held`: null ends
-  /// it.
+  /// and measures its figures after twice as many samples, when it rests and when it is shown by another
+  /// exposure or view, on a thread. `held`: null ends it.
   void follow(const OpenScene& open, const HeldResult* held);
   /// Discards light and figures, so that both are of the present picture.
   void restart();
@@ -38,6 +38,7 @@ class LiveDifference {
   struct Measured {
     film::LightDifference figures;
     uint64_t held = 0, version = 0;
+    film::ViewTransform view;
   };
   std::shared_future<std::shared_ptr<const session::HeldPicture>> requested_;
   std::string requested_for_;  ///< shown_light() of the request
@@ -46,6 +47,7 @@ class LiveDifference {
   uint64_t version_ = 0, oldest_ = 0;  ///< of light_; figures of older light do not count
   std::future<Measured> measuring_;
   std::optional<film::LightDifference> figures_;
+  film::ViewTransform view_;  ///< of the figures
   double figures_samples_ = 0;
   uint64_t figures_version_ = 0, held_ = 0;
   bool comparable_ = false, refused_ = false;

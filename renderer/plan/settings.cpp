@@ -49,11 +49,11 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
                     "uniform: equally many samples for all pixels. adaptive: samples for the tiles whose "
                     "error exceeds the target. A change keeps the present samples.",
                     "Sampling")));
-  list.push_back(without_restart(
-      real_option("sampling.target_error", "0.05", 0.0001, 10, "",
-                  "Adaptive: error as seen at which a tile is done, relative to the light around each pixel. "
-                  "Light shown as white or black by film.ev and film.tone_curve has no visible error.",
-                  "Target error")));
+  list.push_back(without_restart(real_option(
+      "sampling.target_error", "0.05", 0.0001, 10, "",
+      "Adaptive: error as seen at which a tile is done, relative to the light around each pixel. "
+      "Light shown as white or black by film.ev and the tone curve, or film.ocio, has no visible error.",
+      "Target error")));
   list.push_back(
       without_restart(integer_option("sampling.min_samples", 64, 2, 1 << 20, "samples",
                                      "Adaptive: minimum samples of every pixel.", "Minimum samples")));
@@ -157,7 +157,7 @@ void add_display_options(std::vector<OptionInfo>& list) {
       "film.ocio",
       "DISPLAY: VIEW of the OpenColorIO configuration that the environment variable OCIO names, in place of "
       "the tone curve, in the window and in PNG files; without a view the display's default one. Empty: the "
-      "tone curve, as after a choice of one. Errors as seen always follow the tone curve.")));
+      "tone curve, as after a choice of one. Errors as seen follow what is shown.")));
   list.push_back(without_restart(choice_option("film.layer", "beauty",
                                                {"beauty", "primary", "secondary", "tertiary", "caustic",
                                                 "albedo", "normal", "depth", "samples", "error", "cost"},

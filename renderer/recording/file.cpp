@@ -5,9 +5,10 @@
 #include <bit>
 #include <cstddef>
 #include <cstring>
+#include <utility>
 
 #include "base/error.h"
-#include "base/hash.h"
+#include "base/file.h"
 #include "base/json_text.h"
 
 namespace lucerna::recording {
@@ -15,8 +16,8 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little);
 
-constexpr char k_magic[] = "LUCPATHS", k_chunk[] = "CHNK", k_done[] = "DONE";
-constexpr uint32_t k_version = 1;
+constexpr char k_magic[] = "LUCPATHS", k_chunk[] = "CHNK", k_tree[] = "TREE", k_done[] = "DONE";
+constexpr uint32_t k_version = 2;
 constexpr uint64_t k_most_header = 64u << 20;
 
 using Json = nlohmann::ordered_json;
@@ -27,30 +28,36 @@ struct ChunkHead {
   uint64_t events;
   uint64_t hash;
 };
-static_assert(sizeof(ChunkHead) == 24 && sizeof(Path) == 20);
-
-uint64_t hash_of(std::string_view bytes) {
-  Hash hash;
-  hash.add_bytes(bytes.data(), bytes.size());
-  return hash.low();
-}
-uint64_t hash_of(const Recording& part) {
-  Hash hash;
-  hash.add_bytes(part.paths.data(), part.paths.size() * sizeof(Path));
-  hash.add_bytes(part.events.data(), part.events.size() * sizeof(Event));
-  return hash.low();
-}
-/// Of an end: there is nothing behind its head.
-uint64_t hash_of_end(uint64_t paths, uint64_t events) {
-  Hash hash;
-  hash.add_value(paths);
-  hash.add_value(events);
-  return hash.low();
-}
+struct TreeHead {
+  char tag[4];
+  uint32_t leaves;
+  uint64_t rows;
+  double light;
+  uint64_t hash;
+};
+static_assert(sizeof(ChunkHead) == 24 && sizeof(TreeHead) == 32 && sizeof(Path) == 20 && sizeof(Box) == 24 &&
+              sizeof(PlaceIndex::Row) == 8);
 
 template <class T>
 std::string_view bytes_of(const T& value) {
   return {reinterpret_cast<const char*>(&value), sizeof value};
+}
+template <class T>
+std::string_view bytes_of(const std::vector<T>& values) {
+  return {reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)};
+}
+
+uint64_t hash_of(const Recording& part) {
+  return checksum(bytes_of(part.events), checksum(bytes_of(part.paths)));
+}
+uint64_t hash_of(TreeHead head, const PlaceIndex& index) {
+  head.hash = 0;
+  return checksum(bytes_of(index.rows),
+                  checksum(bytes_of(index.leaves), checksum(bytes_of(index.hash), checksum(bytes_of(head)))));
+}
+/// Of an end: there is nothing behind its head.
+uint64_t hash_of_end(uint64_t paths, uint64_t events) {
+  return checksum(bytes_of(events), checksum(bytes_of(paths)));
 }
 
 Json field(const char* name, const char* type, int count, size_t offset) {
@@ -104,7 +111,7 @@ Writer::Writer(const std::filesystem::path& file, const Recording& names, const 
   out_.write({k_magic, 8});
   out_.write(bytes_of(k_version));
   out_.write(bytes_of(bytes));
-  out_.write(bytes_of(hash_of(text)));
+  out_.write(bytes_of(checksum(text)));
   out_.write(text);
 }
 
@@ -114,8 +121,17 @@ void Writer::add(const Recording& part) {
   std::memcpy(head.tag, k_chunk, 4);
   head.paths = uint32_t(part.paths.size()), head.events = part.events.size(), head.hash = hash_of(part);
   out_.write(bytes_of(head));
-  out_.write({reinterpret_cast<const char*>(part.paths.data()), part.paths.size() * sizeof(Path)});
-  out_.write({reinterpret_cast<const char*>(part.events.data()), part.events.size() * sizeof(Event)});
+  out_.write(bytes_of(part.paths));
+  out_.write(bytes_of(part.events));
+  const PlaceIndex index = make_place_index(part);
+  TreeHead tree{};
+  std::memcpy(tree.tag, k_tree, 4);
+  tree.leaves = uint32_t(index.leaves.size()), tree.rows = index.rows.size(), tree.light = index.light;
+  tree.hash = hash_of(tree, index);
+  out_.write(bytes_of(tree));
+  out_.write(bytes_of(index.hash));
+  out_.write(bytes_of(index.leaves));
+  out_.write(bytes_of(index.rows));
   paths_ += part.paths.size(), events_ += part.events.size();
 }
 
@@ -141,10 +157,14 @@ void Reader::read(void* to, uint64_t bytes, const char* what) {
   at_ += bytes;
 }
 
-Reader::Reader(const std::filesystem::path& file) : file_(file), in_(file, std::ios::binary) {
+Reader::Reader(const std::filesystem::path& file) : file_(file) {
   std::error_code failed;
   if (std::filesystem::is_directory(file, failed))
     throw Error(file.string(), "is a folder; expected an .lpath file");
+  // A pipe cannot be read back and forth, and may never answer.
+  if (std::filesystem::exists(file, failed) && !is_plain_file(file))
+    throw Error(file.string(), "is a pipe or a device; expected an .lpath file");
+  in_.open(file, std::ios::binary);
   if (!in_) throw Error(file.string(), "cannot be opened");
   size_ = std::filesystem::file_size(file, failed);
   if (failed) throw Error(file.string(), "cannot be read: " + failed.message());
@@ -164,7 +184,7 @@ Reader::Reader(const std::filesystem::path& file) : file_(file), in_(file, std::
   if (bytes > k_most_header) refuse(fmt::format("a header of {} bytes: damaged", bytes));
   std::string text(bytes, '\0');
   read(text.data(), bytes, "the header");
-  if (hash_of(text) != hash) refuse("the header is damaged: its checksum differs");
+  if (checksum(text) != hash) refuse("the header is damaged: its checksum differs");
   try {
     header_ = Json::parse(text);
     if (header_.at("schema") != Json::parse(json_text(schema())))
@@ -181,7 +201,67 @@ Reader::Reader(const std::filesystem::path& file) : file_(file), in_(file, std::
   if (names_.width == 0 || names_.height == 0) refuse("the header names a picture without pixels");
 }
 
-std::optional<Recording> Reader::next() {
+void Reader::move_to(uint64_t at) {
+  in_.seekg(std::streamoff(at));
+  if (!in_) refuse("cannot be read");
+  at_ = at;
+}
+
+PlaceIndex Reader::read_index(uint32_t paths) {
+  const uint64_t begin = at_;
+  TreeHead head{};
+  read(&head, sizeof head, "an index");
+  at_ = begin;
+  if (std::memcmp(head.tag, k_tree, 4) != 0) refuse("expected the index of a chunk: damaged");
+  at_ += sizeof head;
+  const uint64_t left = size_ - at_;
+  if (head.rows > left / sizeof(PlaceIndex::Row) ||
+      head.leaves != (head.rows + PlaceIndex::k_leaf_rows - 1) / PlaceIndex::k_leaf_rows)
+    refuse(fmt::format("an index of {} rows, but {} bytes are left: it was cut", head.rows, left));
+  PlaceIndex index;
+  index.hash.resize(paths), index.leaves.resize(head.leaves), index.rows.resize(head.rows);
+  index.light = head.light;
+  read(index.hash.data(), paths * sizeof(uint64_t), "an index");
+  read(index.leaves.data(), head.leaves * sizeof(Box), "an index");
+  read(index.rows.data(), head.rows * sizeof(PlaceIndex::Row), "an index");
+  const uint64_t end = std::exchange(at_, begin);
+  if (hash_of(head, index) != head.hash) refuse("the index of a chunk is damaged: its checksum differs");
+  for (const PlaceIndex::Row& row : index.rows)
+    if (row.path >= paths) refuse("an index names a path that its chunk does not have: damaged");
+  at_ = end;
+  rows_ += head.rows, light_ += head.light;
+  return index;
+}
+
+void Reader::check(const Recording& chunk, const Path& path, uint64_t events) const {
+  if (path.pixel >= uint64_t{chunk.width} * chunk.height || path.first > events ||
+      path.count > events - path.first)
+    refuse("a path lies outside the picture or its chunk: damaged");
+}
+
+void Reader::read_paths(const PlaceIndex& index, const std::vector<uint32_t>& which, uint64_t begin,
+                        uint64_t events, Recording& into) {
+  std::vector<Path> paths;
+  for (const uint32_t i : which) {
+    move_to(begin + i * sizeof(Path));
+    read(&paths.emplace_back(), sizeof(Path), "a path");
+    at_ -= sizeof(Path);
+    check(into, paths.back(), events);
+  }
+  const uint64_t first_event = begin + index.hash.size() * sizeof(Path);
+  for (size_t i = 0; i < which.size(); ++i) {
+    Path path = paths[i];
+    std::vector<Event> own(path.count);
+    move_to(first_event + path.first * sizeof(Event));
+    read(own.data(), own.size() * sizeof(Event), "a path");
+    if (path_checksum(path, own) != index.hash[which[i]]) refuse("a path is damaged: its checksum differs");
+    path.first = uint32_t(into.events.size());
+    into.paths.push_back(path);
+    into.events.insert(into.events.end(), own.begin(), own.end());
+  }
+}
+
+std::optional<Recording> Reader::next(const std::optional<Box>& places) {
   const uint64_t begin = at_;
   ChunkHead head{};
   read(&head, sizeof head, "the head of a chunk");
@@ -202,16 +282,24 @@ std::optional<Recording> Reader::next() {
   if (head.events > left / sizeof(Event) || head.paths * sizeof(Path) + head.events * sizeof(Event) > left)
     refuse(fmt::format("a chunk of {} events, but {} bytes are left: it was cut", head.events, left));
   Recording chunk = names_;
-  chunk.paths.resize(head.paths), chunk.events.resize(head.events);
-  read(chunk.paths.data(), head.paths * sizeof(Path), "a chunk");
-  read(chunk.events.data(), head.events * sizeof(Event), "a chunk");
-  at_ = begin;
-  if (hash_of(chunk) != head.hash) refuse("a chunk is damaged: its checksum differs");
-  const uint64_t pixels = uint64_t{chunk.width} * chunk.height;
-  for (const Path& path : chunk.paths)
-    if (path.pixel >= pixels || path.first > head.events || path.count > head.events - path.first)
-      refuse("a path lies outside the picture or its chunk: damaged");
-  at_ = begin + sizeof head + head.paths * sizeof(Path) + head.events * sizeof(Event);
+  const uint64_t first = at_, end = at_ + head.paths * sizeof(Path) + head.events * sizeof(Event);
+  if (places) {
+    move_to(end);
+    const PlaceIndex index = read_index(head.paths);
+    const uint64_t after = at_;
+    const std::vector<uint32_t> which = paths_in(index, *places);
+    read_paths(index, which, first, head.events, chunk);
+    move_to(after);
+  } else {
+    chunk.paths.resize(head.paths), chunk.events.resize(head.events);
+    read(chunk.paths.data(), head.paths * sizeof(Path), "a chunk");
+    read(chunk.events.data(), head.events * sizeof(Event), "a chunk");
+    at_ = begin;
+    if (hash_of(chunk) != head.hash) refuse("a chunk is damaged: its checksum differs");
+    for (const Path& path : chunk.paths) check(chunk, path, head.events);
+    at_ = end;
+    read_index(head.paths);
+  }
   paths_ += head.paths, events_ += head.events;
   return chunk;
 }

@@ -68,6 +68,19 @@ std::vector<Field> make_fields() {
          [](const Row& r) { return double(r.at().pdf); });
   number("served", "records or photons that were read", [](const Row& r) { return double(r.at().served); });
   number("events", "events of the path", [](const Row& r) { return double(r.path.count); });
+  number("cost", "rays of the path: to surfaces and to lights",
+         [](const Row& r) { return double(rays_of(events_of(r))); });
+  using Read = double (*)(const Row&);
+  const Read places[] = {[](const Row& r) { return double(lit_place(events_of(r), r.event).x); },
+                         [](const Row& r) { return double(lit_place(events_of(r), r.event).y); },
+                         [](const Row& r) { return double(lit_place(events_of(r), r.event).z); }};
+  for (int k = 0; k < 3; ++k) {
+    number(k == 0   ? "lit_x"
+           : k == 1 ? "lit_y"
+                    : "lit_z",
+           "where the light is received, in the world [m]", places[k]);
+    all.back().axis = k;
+  }
   return all;
 }
 
@@ -78,14 +91,20 @@ struct Token {
   size_t at = 0;
 };
 
+/// A part of a query: its test, and a box that has the places of all rows that pass.
+struct Part {
+  Test test;
+  Box places{vec3(-k_infinity), vec3(k_infinity)};
+};
+
 class Parser {
  public:
   Parser(const std::string& text, const std::string& where) : text_(text), where_(where) { advance(); }
 
-  Test parse() {
-    Test test = any();
+  Part parse() {
+    Part part = any();
     if (token_.kind != Token::Kind::end) refuse(token_, "expected 'and', 'or' or the end");
-    return test;
+    return part;
   }
 
  private:
@@ -146,35 +165,45 @@ class Parser {
     return true;
   }
 
-  Test any() {
-    Test left = all();
-    while (accept(Token::Kind::word, "or"))
-      left = [a = std::move(left), b = all()](const Row& row) { return a(row) || b(row); };
+  Part any() {
+    Part left = all();
+    while (accept(Token::Kind::word, "or")) {
+      Part right = all();
+      left.places.grow(right.places);
+      left.test = [a = std::move(left.test), b = std::move(right.test)](const Row& row) {
+        return a(row) || b(row);
+      };
+    }
     return left;
   }
-  Test all() {
-    Test left = one();
-    while (accept(Token::Kind::word, "and"))
-      left = [a = std::move(left), b = one()](const Row& row) { return a(row) && b(row); };
+  Part all() {
+    Part left = one();
+    while (accept(Token::Kind::word, "and")) {
+      Part right = one();
+      left.places = {glm::max(left.places.lo, right.places.lo), glm::min(left.places.hi, right.places.hi)};
+      left.test = [a = std::move(left.test), b = std::move(right.test)](const Row& row) {
+        return a(row) && b(row);
+      };
+    }
     return left;
   }
-  Test one() {
+  Part one() {
     constexpr int k_deepest = 200;
     if (++depth_ > k_deepest) refuse(token_, "too many parentheses");
-    Test test;
+    Part part;
     if (accept(Token::Kind::word, "not")) {
-      test = [a = one()](const Row& row) { return !a(row); };
+      part.test = [a = one().test](const Row& row) { return !a(row); };
     } else if (accept(Token::Kind::sign, "(")) {
-      test = any();
+      part = any();
       if (!accept(Token::Kind::sign, ")")) refuse(token_, "expected ')'");
     } else {
-      test = comparison();
+      part = comparison();
     }
     --depth_;
-    return test;
+    return part;
   }
 
-  Test comparison() {
+  Part comparison() {
     const Token name = take();
     const Field* field = name.kind == Token::Kind::word ? find_field(name.text) : nullptr;
     if (!field) {
@@ -187,8 +216,15 @@ class Parser {
       refuse(sign, "expected == != < <= > >= or ~");
     const Token value = take();
     if (value.kind == Token::Kind::end || value.kind == Token::Kind::sign) refuse(value, "expected a value");
-    if (sign.text == "~") return matching(*field, sign, value);
-    return field->number ? numbers(*field, sign, value) : texts(*field, sign, value);
+    if (sign.text == "~") return {matching(*field, sign, value)};
+    if (!field->number) return {texts(*field, sign, value)};
+    Part part{numbers(*field, sign, value)};
+    if (field->axis >= 0 && sign.text != "!=") {
+      // Places are of single precision: the box is one step larger.
+      if (sign.text[0] != '<') part.places.lo[field->axis] = std::nextafter(float(value.value), -k_infinity);
+      if (sign.text[0] != '>') part.places.hi[field->axis] = std::nextafter(float(value.value), k_infinity);
+    }
+    return part;
   }
 
   Test numbers(const Field& field, const Token& sign, const Token& value) const {
@@ -223,8 +259,8 @@ class Parser {
     try {
       return [read = field.texts, automaton = paths::compile({value.text})](const Row& row) {
         const std::string word = read(row)[0];
-        // Of looked-up light only the way to the lookup is known.
-        return word.find('.') == std::string::npos && automaton.classify(word) == 0;
+        // Of looked-up light no single word is known.
+        return !is_open(word) && automaton.classify(word) == 0;
       };
     } catch (const Error& e) {
       refuse(value, fmt::format("not a path expression: {}", e.what()));
@@ -257,7 +293,15 @@ std::string text_of(const Field& field, const Row& row) {
 }
 
 Query::Query(const std::string& text, const std::string& where) {
-  if (text.find_first_not_of(" \t\r\n") != std::string::npos) test_ = Parser(text, where).parse();
+  if (text.find_first_not_of(" \t\r\n") == std::string::npos) return;
+  Part part = Parser(text, where).parse();
+  test_ = std::move(part.test), places_ = part.places;
+}
+
+std::optional<Box> Query::places() const {
+  for (int k = 0; k < 3; ++k)
+    if (places_.lo[k] > -k_infinity || places_.hi[k] < k_infinity) return places_;
+  return std::nullopt;
 }
 
 void visit_rows(const Recording& recording, const std::function<void(const Row&)>& f) {

@@ -10,10 +10,11 @@
 // row.
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "recording/recording.h"
+#include "recording/place_index.h"
 
 namespace lucerna::recording {
 
@@ -31,6 +32,7 @@ struct Field {
   std::function<std::vector<std::string>(const Row&)> texts = {};
   std::function<double(const Row&)> number = {};
   std::vector<std::string> values = {};  ///< all possible texts; empty: any
+  int axis = -1;                         ///< of a number that is a coordinate of lit_place()
 };
 const std::vector<Field>& fields();
 /// Null if there is none.
@@ -43,9 +45,12 @@ class Query {
   /// "": every row. Throws Error located at `where`, with the position of the mistake, from 1.
   explicit Query(const std::string& text, const std::string& where = "--where");
   bool operator()(const Row& row) const { return !test_ || test_(row); }
+  /// A box that has the lit_place() of every row that passes, slightly too large; nullopt: it has no bound.
+  std::optional<Box> places() const;
 
  private:
   std::function<bool(const Row&)> test_;
+  Box places_{vec3(-k_infinity), vec3(k_infinity)};
 };
 
 /// Calls f with each row of a recording: events that contribute light, and blocked light samples.

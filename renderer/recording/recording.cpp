@@ -56,14 +56,43 @@ std::string word_of(std::span<const Event> path, uint32_t event) {
   std::reverse(word.begin(), word.end());
   if (event >= path.size()) return word;
   const uint32_t kind = kind_of(path[event]);
-  if (looked_up(kind) || kind == k_path_splat) return word + "...L";
+  if (looked_up(kind) || kind == k_path_splat) {
+    const auto diffuse = uint32_t(std::count(word.begin(), word.end(), 'D'));
+    const char* from = kind == k_path_records   ? "records"
+                       : kind == k_path_photons ? "photons"
+                       : kind == k_path_splat   ? "light paths"
+                                                : "stored";
+    const std::string rest = rest_of_way(component_of(path[event]), diffuse);
+    return fmt::format("{} ({}: {})", word, from, rest.empty() ? ".*L" : rest);
+  }
   return component_of(path[event]) < paths::k_component_count ? word + "L" : word;
+}
+
+bool is_open(const std::string& word) { return word.find('(') != std::string::npos; }
+
+std::string rest_of_way(uint32_t component, uint32_t diffuse_events) {
+  // Derivatives of paths::k_component_expressions by a word with so many D.
+  using Rests = std::array<const char*, paths::k_component_count>;
+  constexpr std::array<Rests, 3> k_rests{
+      Rests{"[SG]*D?L", "[SG]*D[SG]*DL", "[SG]*D[SG]*D.+L", "[SG]*D[SG]+L"},
+      Rests{"L", "[SG]*DL", "[SG]*D.+L", "[SG]+L"}, Rests{"", "L", ".+L", ""}};
+  if (component >= paths::k_component_count) return "";
+  if (diffuse_events < k_rests.size()) return k_rests[diffuse_events][component];
+  return component == paths::k_tertiary ? ".*L" : "";
 }
 
 uint32_t depth_of(std::span<const Event> path, uint32_t event) {
   uint32_t depth = 0;
   walk_back(path, event, [&](const Event& e) { depth += lobe_of(e) < std::size(k_letters) ? 1 : 0; });
   return depth;
+}
+
+uint32_t rays_of(std::span<const Event> path) {
+  return uint32_t(std::count_if(path.begin(), path.end(), [](const Event& e) {
+    const uint32_t kind = kind_of(e);
+    return kind == k_path_surface || kind == k_path_passed || kind == k_path_background ||
+           kind == k_path_light || kind == k_path_blocked;
+  }));
 }
 
 Light light_of(std::span<const Event> path) {

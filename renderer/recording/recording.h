@@ -55,12 +55,21 @@ extern const std::array<const char*, shared::k_path_kinds> k_kind_names;
 /// "roulette": names of shared::k_end_*.
 extern const std::array<const char*, shared::k_end_reasons> k_reason_names;
 
-/// The word of the way to an event: E, and a letter for each scattering. Of light it ends in L ("EDSL"); of
-/// light that was looked up in "...L", because the rest of the way is unknown. `event`: its number in the
-/// path.
+/// The word of the way to an event: E, and a letter for each scattering. Of light it ends in L ("EDSL"). Of
+/// light that was looked up, or that light tracing brought, the rest is known as a path expression only:
+/// "ED (records: [SG]*DL)". `event`: its number in the path.
 std::string word_of(std::span<const Event> path, uint32_t event);
+/// True if the word of an event has such an expression.
+bool is_open(const std::string& word);
+/// The ways of a component's light behind a way with so many D, if any the last letter, as a path expression:
+/// what stored light of that component can be. "": there is none.
+std::string rest_of_way(uint32_t component, uint32_t diffuse_events);
 /// Number of scatterings on the way to it.
 uint32_t depth_of(std::span<const Event> path, uint32_t event);
+
+/// Rays of a path: one to each surface that it meets or out of the scene, one for each light sample. Of lost
+/// events none.
+uint32_t rays_of(std::span<const Event> path);
 
 /// Radiance that the path adds to its sample, by component, in double precision.
 using Light = std::array<std::array<double, 3>, paths::k_component_count>;

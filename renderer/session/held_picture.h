@@ -1,6 +1,8 @@
 #pragma once
 // A picture kept as light, with how it was computed and what that took, for comparing it with another one.
 #include <array>
+#include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,6 +35,10 @@ struct HeldPicture {
   std::string scene;     ///< its name; "": not known
   /// The camera as text, as in the metadata of files; "": not known. Equal texts: the same view.
   std::string view;
+  std::string file;         ///< it was read from; "": it was rendered here
+  bool is_foreign = false;  ///< read from a file that does not say how it was computed
+  /// `light` is no light, but display colours 0..1 decoded by the sRGB curve: of an 8-bit picture.
+  bool displayed = false;
 };
 
 /// Methods in words: "path", "cache, photons for caustics". The method of secondary light is named first,
@@ -40,9 +46,14 @@ struct HeldPicture {
 /// they are not known.
 std::string methods_text(const ComponentMethods& methods);
 
-/// The picture of an EXR file: its channels R, G, B, the samples, and scene and view of its metadata if
-/// `lucerna` wrote it. Throws Error located at `file`: it cannot be read, has no such channels, or values
-/// that are not finite.
-HeldPicture read_held_picture(const std::string& file);
+/// Writes methods, time, error and accuracy over time into the metadata of a file; what is unknown is left
+/// out.
+void describe(const HeldPicture& picture, std::map<std::string, std::string>& metadata);
+
+/// The picture of an image file: its channels R, G, B, the samples, and what describe(), scene and view have
+/// written into its metadata; unreadable entries count as unknown. `stop`: as in film::ReadOptions. Throws
+/// Error located at `file`: it cannot be read, has no such channels, values that are not finite, or it is
+/// stopped.
+HeldPicture read_held_picture(const std::string& file, const std::function<bool(double)>& stop = {});
 
 }  // namespace lucerna::session

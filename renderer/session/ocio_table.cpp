@@ -21,9 +21,11 @@ std::shared_ptr<const OcioTable> ocio_table(gpu::Device& device, const plan::Set
   if (present && present->of == of) return present;
   const auto [display, view] = config->split(text);
   const std::vector<vec4> nodes = config->table(display, view);
-  OcioTable table{of, gpu::Buffer(device, {.name = "display and view",
-                                           .bytes = nodes.size() * sizeof(vec4),
-                                           .memory = gpu::Memory::host})};
+  OcioTable table{of,
+                  gpu::Buffer(device, {.name = "display and view",
+                                       .bytes = nodes.size() * sizeof(vec4),
+                                       .memory = gpu::Memory::host}),
+                  config->white(display, view)};
   table.nodes.write(nodes.data(), nodes.size() * sizeof(vec4));
   if (!config->source_is_rec709())
     log::warning("{}: names no linear Rec.709; radiance is taken as '{}'", config->file(), config->source());

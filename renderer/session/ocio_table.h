@@ -11,6 +11,7 @@ namespace lucerna::session {
 struct OcioTable {
   std::string of;  ///< file, display and view
   gpu::Buffer nodes;
+  float white;  ///< film::OcioConfig::white()
 };
 
 /// Null without film.ocio; `present` if it fits. Throws Error located at the setting: $OCIO names no

@@ -191,26 +191,29 @@ HeldPicture PictureOutput::held_picture() {
     shown_picture(true);
     preview = previewed(v);
   }
-  HeldPicture held{.width = width,
-                   .height = height,
-                   .light = preview ? display_->shown_light(shown)
-                                    : sum_of((filtered ? *filtered->film : *setup_.film).read(), shown),
-                   .filtered = filtered || preview,
-                   .samples = double(stats().paths) / (double(width) * height),
-                   .seconds = progress_.seconds(),
-                   .ledger = progress_.ledger(),
-                   .scene = setup_.world.scene->name,
-                   .view = setup_.view_text()};
-  for (size_t c = 0; c < held.methods.size(); ++c) {
-    held.methods[c] = setup_.engine->plan().choices[c].solver;
+  HeldPicture held = described();
+  held.width = width, held.height = height;
+  held.light = preview ? display_->shown_light(shown)
+                       : sum_of((filtered ? *filtered->film : *setup_.film).read(), shown);
+  held.filtered = filtered || preview;
+  for (size_t c = 0; c < held.methods.size(); ++c)
     if (shown != (1u << paths::k_component_count) - 1 && (shown >> c & 1u))
       held.shows += (held.shows.empty() ? "" : " + ") + std::string(paths::k_component_names[c]);
-  }
   if (held.filtered) {
     const film::PreviewShares shares = preview_shares();
     held.former = shares.stale;
     if (shares.error) held.shown_error = shares.error->median;
   }
+  return held;
+}
+
+HeldPicture PictureOutput::described() const {
+  HeldPicture held{.samples = double(stats().paths) / (double(setup_.film->width()) * setup_.film->height()),
+                   .seconds = progress_.seconds(),
+                   .ledger = progress_.ledger(),
+                   .scene = setup_.world.scene->name,
+                   .view = setup_.view_text()};
+  for (size_t c = 0; c < held.methods.size(); ++c) held.methods[c] = setup_.engine->plan().choices[c].solver;
   if (sampling_.samples() >= 2) {
     const film::ImageError e = progress_.estimate_error();
     held.error = error_sum(e.seen(0), e.seen_lookup_noise, e.seen_interpolation);
@@ -240,6 +243,7 @@ film::FilmImage PictureOutput::layers_of(const film::Image& image) const {
   out.metadata["device"] = context_.device.info().name;
   out.metadata["tracer"] = setup_.tracer_name();
   out.metadata["noise"] = film::noise_text(progress_.estimate_error().rms);
+  describe(described(), out.metadata);
   if (const Filtered* f = filtered()) add_filtered_layers(out, *f);
   return out;
 }

@@ -97,7 +97,10 @@ class PictureOutput {
   std::shared_ptr<const OcioTable> ocio_for(const plan::Settings& settings) const {
     return ocio_table(context_.device, settings, ocio_);
   }
-  void set_ocio(std::shared_ptr<const OcioTable> table) noexcept { ocio_ = std::move(table); }
+  void set_ocio(std::shared_ptr<const OcioTable> table) noexcept {
+    ocio_ = std::move(table);
+    setup_.ocio_white = ocio_ ? ocio_->white : 0;
+  }
 
   /// Call when the mix has changed.
   void mixed();
@@ -119,6 +122,7 @@ class PictureOutput {
   film::FilmImage layers_of(const film::Image& image) const;
   std::vector<uint8_t> picture_of(const Filtered& filtered, const film::View& view,
                                   const std::function<bool()>& cancel);
+  HeldPicture described() const;  ///< a held picture without its light
   FilterJob filter_job() const;
   WindowFilter::Progress filter_progress() const;
   /// True if the window filters pictures in that view.

@@ -19,6 +19,7 @@ struct Setup {
   plan::Settings settings;
   scene::Camera camera;
   uint32_t width = 1280, height = 720;  ///< of the picture
+  float ocio_white = 0;                 ///< film::OcioConfig::white() of film.ocio; 0: the tone curve is used
   World world;
   Relight relight;
   std::unique_ptr<Engine> engine;            ///< null before the first scene; destroyed before the world

@@ -76,6 +76,16 @@ TEST_CASE("a render records its paths, and changes no pixel; the search finds th
   CHECK_THAT(search("--most 3").out, Contains(" paths\n") && Contains("contribution"));
   CHECK(lines(search("--most 3").out) == 5);
 
+  // A search in a part of the scene reads that part only; its rows and shares are those of all.
+  const Run here = search("--where 'lit_x > -0.1 and lit_x < 0.1' --csv");
+  CHECK(here.status == 0);
+  CHECK(here.out == search("--where 'not (lit_x <= -0.1 or lit_x >= 0.1)' --csv").out);
+  CHECK(lines(here.out) > 1);
+  CHECK(lines(here.out) < lines(search("--csv").out));
+  const auto end_of = [](const Run& r) { return r.out.substr(r.out.rfind(" rows, ")); };
+  CHECK(end_of(search("--where 'lit_x > -0.1 and lit_x < 0.1' --group-by component")) ==
+        end_of(search("--where 'not (lit_x <= -0.1 or lit_x >= 0.1)' --group-by component")));
+
   CHECK_THAT(search("--where 'colour == 1'").out, Contains("--where: position 1: expected a field"));
   CHECK_THAT(search("--group-by colour").out, Contains("--group-by: 'colour': expected one of component"));
   CHECK(search("--csv --json").status == 1);

@@ -88,6 +88,23 @@ TEST_CASE("the shown picture is that of the view, within a level or two of 255")
   CHECK(r.device().validation_messages() == 0);
 }
 
+TEST_CASE("errors as seen are those of the view: light that it shows as white has none") {
+  const test::Folder f;
+  const test::OcioVariable variable(test::write_ocio(f.path).string());
+  session::Renderer r(test::renderer_options(true));
+  open(r, {{"film.ev", "5"}, {"film.tone_curve", "linear"}});
+  test::finish(r);
+  const auto seen = [&](const std::string& ocio) {
+    test::set(r, {{"film.ocio", ocio}});
+    return r.image_error().seen(0);
+  };
+  const double linear = seen(""), plain = seen("Other: Plain"), film = seen("Screen: sRGB: Film");
+  CAPTURE(linear, plain, film);
+  CHECK(plain == Approx(linear));  // both end at 1
+  CHECK(film > 2 * plain);
+  CHECK(seen("") == Approx(linear));
+}
+
 TEST_CASE("without a configuration, or with a bad choice, the picture keeps its tone curve") {
   const test::Folder f;
   const test::OcioVariable none("");

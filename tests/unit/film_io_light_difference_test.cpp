@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "film/io/light_difference.h"
+#include "support/folder.h"
+#include "support/ocio.h"
 
 namespace film_io_light_difference_tests {
 
@@ -35,6 +37,37 @@ TEST_CASE("equal pictures differ by nothing, and a constant factor gives its clo
   CHECK(brighter.as_seen == Approx(0.1 / 1.05).epsilon(1e-4));
   CHECK(brighter.flip > 0);
   CHECK(film::light_difference(16, grey(256, 2), grey(256, 1)).flip > brighter.flip);
+}
+
+TEST_CASE("what the view does not show is no difference: light beyond its white") {
+  const auto differs = [](const film::ViewTransform& view, float a, float b) {
+    const film::LightDifference d = film::light_difference(16, grey(256, a), grey(256, b), view);
+    CHECK((d.flip > 1e-3) == (d.as_seen > 1e-3));
+    CHECK(d.relative_squared > 0);
+    return d.flip > 1e-3;
+  };
+  const film::ViewTransform linear{.curve = shared::k_tone_linear}, agx{.curve = shared::k_tone_agx};
+  CHECK_FALSE(differs(linear, 2, 3));
+  CHECK(differs(agx, 2, 3));
+  CHECK(differs({.ev = -2, .curve = shared::k_tone_linear}, 2, 3));
+  const test::Folder f;
+  const test::OcioVariable variable(test::write_ocio(f.path).string());
+  CHECK_FALSE(differs({.ocio = "Other: Plain"}, 2, 3));
+  CHECK(differs({.ocio = "Other: Plain"}, 0.2f, 0.3f));
+  CHECK(differs({.ocio = "Screen: sRGB: Film"}, 2, 3));
+  // Without a configuration the curve counts.
+  const test::OcioVariable none("");
+  CHECK(differs({.curve = shared::k_tone_agx, .ocio = "Other: Plain"}, 2, 3));
+}
+
+TEST_CASE("against display colours only FLIP is known") {
+  const film::ViewTransform view{.ev = 1, .curve = shared::k_tone_agx};
+  const std::vector<vec3> light = grey(256, 0.5f), shown = film::shown_light(view, light);
+  const film::LightDifference same = film::display_difference(16, light, shown, view);
+  CHECK(same.flip < 1e-4);
+  CHECK(std::isnan(same.relative_squared));
+  CHECK(std::isnan(same.as_seen));
+  CHECK(film::display_difference(16, light, shown, {.ev = -1, .curve = shared::k_tone_agx}).flip > 0.1);
 }
 
 TEST_CASE("a difference is blue below zero, white at zero, orange above, and darkens evenly to both ends") {

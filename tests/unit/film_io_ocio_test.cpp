@@ -72,6 +72,14 @@ TEST_CASE("displays and views of a configuration, the default ones first") {
     CHECK(config.split(film::ocio_text(display, view)) == std::pair(display, view));
 }
 
+TEST_CASE("the luminance from which a view shows white") {
+  const test::Folder f;
+  const film::OcioConfig config(test::write_ocio(f.path));
+  CHECK(config.white("Other", "Plain") == Approx(1));
+  CHECK(config.white("Screen: sRGB", "Film") == Approx(64).epsilon(0.1));
+  CHECK_THROWS_WITH(config.white("Other", "Film"), Contains("has no view 'Film'"));
+}
+
 TEST_CASE("the table is close to the exact view: within a level of 255 on average, a few at a clipped edge") {
   const test::Folder f;
   const film::OcioConfig config(test::write_ocio(f.path));

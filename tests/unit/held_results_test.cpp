@@ -2,8 +2,10 @@
 // Held results and their comparison with the live picture.
 #include <catch2/catch.hpp>
 #include <filesystem>
+#include <mutex>
 
 #include "commands/held_results.h"
+#include "commands/view_transform.h"
 #include "film/io/image_file.h"
 #include "film/io/planes.h"
 #include "support/folder.h"
@@ -144,35 +146,162 @@ TEST_CASE("a result is held and compared with the live picture") {
   CHECK(b.until([&] { return value("compare.problem").empty(); }));
 }
 
+namespace {
+
+/// A workspace that loads files, with the last error.
+struct Loading : test::WorkspaceBench {
+  std::mutex mutex;
+  std::string last;
+  int listener;
+  Loading() {
+    listener = log::add_listener([this](log::Level level, const std::string& text) {
+      const std::lock_guard lock(mutex);
+      if (level == log::Level::error) last = text;
+    });
+    open();
+    run("wait_samples 2");
+  }
+  ~Loading() { log::remove_listener(listener); }
+  /// Loads a file; the error, or "".
+  std::string load(const std::string& file) {
+    last.clear();
+    if (const std::string at_once = failure("compare.load " + quote(file)); !at_once.empty()) return at_once;
+    REQUIRE(until([&] { return !work.compare.holding; }));
+    const std::lock_guard lock(mutex);
+    return last;
+  }
+  std::string value(const std::string& name) { return work.values.read(work, {name, {}}); }
+};
+
+}  // namespace
+
 TEST_CASE("a picture from a file is held; a missing, damaged or foreign one is refused") {
   const test::Folder folder;
-  test::WorkspaceBench b;
-  b.open();
-  b.run("wait_samples 2");
-  const auto load = [&](const std::string& file) { return b.failure("compare.load " + quote(file)); };
+  Loading b;
   const std::string missing = (folder.path / "none.exr").string();
-  CHECK_THAT(load(missing), Contains("compare.load") && Contains(missing));
+  CHECK_THAT(b.load(missing), Contains("compare.load") && Contains(missing));
   const std::string good = write_picture(folder, "good.exr", 64, 36);
   const std::string damaged = (folder.path / "damaged.exr").string();
   std::filesystem::copy_file(good, damaged);
   std::filesystem::resize_file(damaged, 300);
-  CHECK_THAT(load(damaged), Contains(damaged));
+  CHECK_THAT(b.load(damaged), Contains("compare.load: " + damaged));
+  CHECK_THAT(b.load(folder.path.string()), Contains("is a folder, expected an image"));
   const std::string other = write_picture(folder, "other.exr", 32, 32);
-  CHECK_THAT(load(other), Contains(other) && Contains("32 x 32 pixels, the picture has 64 x 36"));
+  CHECK_THAT(b.load(other), Contains(other) && Contains("32 x 32 pixels, the picture has 64 x 36"));
   const std::string infinite = write_picture(folder, "infinite.exr", 64, 36, INFINITY);
-  CHECK_THAT(load(infinite), Contains(infinite) && Contains("pixel 63 35 is not finite"));
+  CHECK_THAT(b.load(infinite), Contains(infinite) && Contains("pixel 63 35 is not finite"));
   CHECK(b.work.compare.results.list().empty());
-  CHECK(load(good) == "");
-  CHECK(load(good) == "");
+  CHECK(b.load(good) == "");
+  CHECK(b.load(good) == "");
   REQUIRE(b.work.compare.results.list().size() == 2);
   CHECK(b.work.compare.results.list()[1].name == "good 2");
   CHECK(b.work.compare.results.list()[0].picture->samples == 64);
+  CHECK(b.work.compare.results.list()[0].picture->is_foreign);
   b.run("compare.measure");
-  CHECK(b.work.values.read(b.work, {"compare.flip", {}}) == "0");
+  CHECK(b.value("compare.flip") == "0");
   // Eight are held: the ninth is refused before the file is read.
-  while (b.work.compare.results.list().size() < HeldResults::k_most) CHECK(load(good) == "");
-  CHECK_THAT(load(missing), Contains("8 results are held already"));
+  while (b.work.compare.results.list().size() < HeldResults::k_most) CHECK(b.load(good) == "");
+  CHECK_THAT(b.load(missing), Contains("8 results are held already"));
   CHECK_THAT(b.failure("compare.hold"), Contains("8 results are held already"));
+}
+
+TEST_CASE("a file is read on a thread, and reading can be cancelled") {
+  const test::Folder folder;
+  const std::string good = write_picture(folder, "good.exr", 64, 36);
+  Loading b;
+  CHECK_THAT(b.failure("compare.cancel"), Contains("no file is being read"));
+  CHECK(b.failure("compare.load " + quote(good)) == "");
+  CHECK(b.work.compare.holding);
+  // Between two refreshes the file is on its way, whatever its thread does.
+  CHECK_THAT(
+      [&] {
+        try {
+          b.work.run("compare.load " + quote(good));
+        } catch (const Error& e) {
+          return std::string(e.what());
+        }
+        return std::string();
+      }(),
+      Contains("another picture is being held"));
+  b.work.run("compare.cancel");
+  REQUIRE(b.until([&] { return !b.work.compare.holding; }));
+  CHECK(b.work.compare.results.list().empty());
+  CHECK(b.last.empty());
+  double done = -1;
+  CHECK_THROWS_WITH(session::read_held_picture(good, [&](double share) { return done = share, true; }),
+                    Contains(good + ": reading was stopped"));
+  CHECK(done == 0);
+}
+
+TEST_CASE("a file keeps how its picture was computed and what that took") {
+  const test::Folder folder;
+  session::HeldPicture made{.width = 64, .height = 36, .light = {}};
+  made.methods = {"path", "cache", "cache", "light+photons"};
+  made.seconds = 12.5, made.error = 0.021;
+  for (const double part : {0.25, 0.5}) {
+    stats::Entry e;
+    e.wall_s = part * 10, e.has_error = true, e.error[0] = 0.1 / part, e.records = 0.01;
+    made.ledger.add(e);
+  }
+  film::FilmImage image{.width = 64, .height = 36};
+  film::add_plane(image, "", "RGB", std::vector<vec3>(64 * 36, vec3(0.5f)));
+  const auto read_back = [&] {
+    film::write_exr(folder.path / "made.exr", image);
+    return session::read_held_picture((folder.path / "made.exr").string());
+  };
+  session::describe(made, image.metadata);
+  const session::HeldPicture held = read_back();
+  CHECK(held.methods == made.methods);
+  CHECK(held.seconds == 12.5);
+  REQUIRE(held.error);
+  CHECK(*held.error == 0.021);
+  CHECK_FALSE(held.is_foreign);
+  REQUIRE(held.ledger.entries().size() == 2);
+  for (size_t i = 0; i < 2; ++i) {
+    CHECK(held.ledger.entries()[i].wall_s == made.ledger.entries()[i].wall_s);
+    CHECK(held.ledger.entries()[i].sum() == Approx(made.ledger.entries()[i].sum()).epsilon(1e-3));
+  }
+  // The name is the file's.
+  Loading b;
+  CHECK(b.load((folder.path / "made.exr").string()) == "");
+  CHECK(b.work.compare.results.list()[0].name == "made");
+  // What cannot be read is unknown.
+  for (const auto& [seconds, error, accuracy] :
+       {std::array{"soon", "-1", "1 2 3, , 4"}, {"inf", "0", "2 0.1, 1 0.2, nan 3"}, {"-3", "", ",,, "}}) {
+    image.metadata["seconds"] = seconds, image.metadata["error"] = error;
+    image.metadata["accuracy"] = accuracy, image.metadata["methods"] = "primary, other path";
+    const session::HeldPicture damaged = read_back();
+    CHECK(damaged.is_foreign);
+    CHECK(damaged.seconds == 0);
+    CHECK_FALSE(damaged.error);
+    CHECK(damaged.ledger.entries().size() <= 1);
+  }
+}
+
+TEST_CASE("an 8-bit picture is compared with the picture as it is shown") {
+  const test::Folder folder;
+  Loading b;
+  const std::string file = (folder.path / "shown.png").string();
+  b.run("set film.tone_curve agx");
+  b.run("set film.ev 1");
+  const std::vector<uint8_t> shown =
+      film::shown_picture(view_transform(b.work.open), std::vector<vec3>(64 * 36, vec3(0.5f)));
+  film::write_png(file, 64, 36, shown);
+  CHECK(b.load(file) == "");
+  REQUIRE(b.work.compare.results.list().size() == 1);
+  CHECK(b.work.compare.results.list()[0].picture->displayed);
+  const auto flip = [&] {
+    b.run("compare.measure");
+    double value = -1;
+    REQUIRE(read_number(b.value("compare.flip"), value));
+    return value;
+  };
+  CHECK(flip() < 0.01);
+  CHECK_THROWS_WITH(b.value("compare.squared_error"), Contains("in display colours"));
+  CHECK_THROWS_WITH(b.value("compare.seen_error"), Contains("in display colours"));
+  // Another exposure of the live picture shows another picture.
+  b.run("set film.ev -1");
+  CHECK(flip() > 0.1);
 }
 
 }  // namespace held_results_tests

@@ -1,6 +1,9 @@
 // links: recording
 // Recorded paths as data: words, texts, noise by classes against closed forms, queries against brute force,
 // files and damaged files.
+#include <fmt/format.h>
+#include <sys/stat.h>
+
 #include <catch2/catch.hpp>
 #include <cmath>
 #include <cstring>
@@ -128,12 +131,35 @@ TEST_CASE("words, light and texts of a path") {
   ++all.paths[1].count;
   const auto second = all.events_of(all.paths[1]);
   CHECK(luminance_of(second) == Approx(2));
-  CHECK(word_of(second, 7) == "ED...L");
+  CHECK(word_of(second, 7) == "ED (records: [SG]*DL)");
+  CHECK(is_open(word_of(second, 7)));
+  CHECK_FALSE(is_open(word_of(second, 2)));
   CHECK(by_contribution(all) == std::vector<uint32_t>{0, 1});
   Recording bright = all;
   keep_over(bright, 3);
   REQUIRE(bright.paths.size() == 1);
   CHECK(bright.events.size() == 7);
+}
+
+TEST_CASE("what is known of stored light is all that belongs to its component there, and no more") {
+  const paths::Automaton automaton = paths::compile_components();
+  // All words of up to seven letters.
+  std::vector<std::string> ways{""};
+  for (size_t begin = 0, length = 0; length < 5; ++length)
+    for (const size_t end = ways.size(); begin < end; ++begin)
+      for (const char letter : {'D', 'G', 'S'}) ways.push_back(ways[begin] + letter);
+  for (const std::string way : {"E", "ES", "ED", "EGSD", "EDD", "EDSGD", "EDDD", "EDDSD"}) {
+    const auto diffuse = uint32_t(std::count(way.begin(), way.end(), 'D'));
+    for (uint32_t c = 0; c < paths::k_component_count; ++c) {
+      const std::string rest = rest_of_way(c, diffuse);
+      for (const std::string& behind : ways) {
+        const bool belongs = automaton.classify(way + behind + "L") == c;
+        // The matcher's expressions begin with E.
+        const bool said = !rest.empty() && paths::matches("E" + rest, "E" + behind + "L");
+        if (belongs != said) FAIL_CHECK(way << " " << behind << "L, component " << c << ", " << rest);
+      }
+    }
+  }
 }
 
 TEST_CASE("parents that are wrong do not make the walk endless") {
@@ -219,6 +245,137 @@ TEST_CASE("queries against brute force") {
   CHECK(rows("contribution > 1e9") == 0);
 }
 
+namespace {
+
+/// Paths whose events have places in a room of 4 x 4 x 4 m, in chunks of 1000 paths.
+Recording placed_recording(const fs::path& file, uint32_t paths) {
+  std::mt19937 random(5);
+  Recording all = random_recording(paths);
+  for (Event& e : all.events)
+    for (int k = 0; k < 3; ++k) e.position[k] = float(random() % 4096) / 1024;
+  Writer writer(file, all);
+  Recording part = empty();
+  for (const Path& path : all.paths) {
+    const auto events = all.events_of(path);
+    add(part, path.pixel, path.sample, {events.begin(), events.end()});
+    if (part.paths.size() == 1000) writer.add(part), part = empty();
+  }
+  writer.add(part);
+  writer.finish();
+  return all;
+}
+
+/// Rows that pass, as text, in the order of the file; and how many paths were read.
+std::pair<std::vector<std::string>, size_t> rows_of(const fs::path& file, const Query& query,
+                                                    const std::optional<Box>& places) {
+  std::vector<std::string> found;
+  size_t paths = 0;
+  Reader reader(file);
+  while (const auto chunk = reader.next(places)) {
+    paths += chunk->paths.size();
+    visit_rows(*chunk, [&](const Row& row) {
+      if (query(row)) found.push_back(fmt::format("{} {} {}", row.path.pixel, row.path.sample, row.event));
+    });
+  }
+  return {found, paths};
+}
+
+}  // namespace
+
+TEST_CASE("the place of light is the surface that it lights, or the emitter that is seen directly") {
+  Recording all = empty();
+  add(all, 0, 0, usual(1, 2));
+  for (size_t i = 0; i < all.events.size(); ++i) all.events[i].position = vec3(float(i));
+  const auto events = all.events_of(all.paths[0]);
+  CHECK(lit_place(events, 2) == vec3(1));  // a light sample at the first surface
+  CHECK(lit_place(events, 5) == vec3(3));  // emission of surface 4, received at surface 3
+  std::vector<Event> seen{event(shared::k_path_camera, k_none), event(shared::k_path_surface, 0),
+                          event(shared::k_path_emission, 1, shared::k_path_by_none, 0, 1)};
+  seen[1].position = seen[2].position = vec3(7);
+  CHECK(lit_place(seen, 2) == vec3(7));
+  // Panes that light passes straight are skipped.
+  std::vector<Event> passed{event(shared::k_path_camera, k_none), event(shared::k_path_surface, 0),
+                            event(shared::k_path_passed, 1, 0),
+                            event(shared::k_path_background, 2, 15, 0, 1)};
+  passed[1].position = vec3(3), passed[2].position = vec3(4), passed[3].position = vec3(100);
+  CHECK(lit_place(passed, 3) == vec3(3));
+  // Damaged parents end the walk.
+  CHECK(lit_place(std::vector<Event>{event(shared::k_path_light, 9)}, 0) == vec3(0));
+  CHECK(rays_of(events) == 4);
+}
+
+TEST_CASE("a search in a part of the scene finds the same rows and reads few paths") {
+  const test::Folder folder;
+  const fs::path file = folder / "a.lpath";
+  const Recording all = placed_recording(file, 2000);
+  size_t every = 0;
+  double light = 0;
+  visit_rows(all, [&](const Row& row) {
+    ++every;
+    if (contributes_light(row.at())) light += double(luminance(row.at().contribution));
+  });
+  struct Case {
+    const char* query;
+    bool bounded;
+    std::function<bool(const vec3&)> brute;
+  };
+  const Case cases[] = {
+      {"lit_x < 0.5 and lit_y >= 3 and lit_z < 1", true,
+       [](const vec3& p) { return p.x < 0.5f && p.y >= 3 && p.z < 1; }},
+      {"(lit_x <= 0.25 and lit_y < 1) or (lit_x == 0.5 and lit_y < 1)", true,
+       [](const vec3& p) { return p.y < 1 && (p.x <= 0.25f || p.x == 0.5f); }},
+      {"lit_x > 1 and lit_x < 1", true, [](const vec3&) { return false; }},
+      {"lit_x > 3.5 or lit_y > 3.5", false, [](const vec3& p) { return p.x > 3.5f || p.y > 3.5f; }},
+      {"not lit_x > 1", false, [](const vec3& p) { return !(p.x > 1); }},
+      {"lit_x != 2", false, [](const vec3& p) { return p.x != 2; }}};
+  for (const Case& c : cases) {
+    INFO(c.query);
+    const Query query(c.query);
+    CHECK(query.places().has_value() == c.bounded);
+    const auto [found, read] = rows_of(file, query, query.places());
+    std::vector<std::string> expected;
+    visit_rows(all, [&](const Row& row) {
+      if (c.brute(lit_place(row.of.events_of(row.path), row.event)))
+        expected.push_back(fmt::format("{} {} {}", row.path.pixel, row.path.sample, row.event));
+    });
+    CHECK(found == expected);
+    CHECK(rows_of(file, query, {}).first == expected);
+    if (&c == cases) CHECK(read < 500);
+    if (!c.bounded) CHECK(read == 2000);
+  }
+  Reader reader(file);
+  while (reader.next(Box{vec3(9), vec3(10)})) continue;
+  CHECK(reader.paths() == 2000);
+  CHECK(reader.rows() == every);
+  CHECK(reader.light() == Approx(light));
+}
+
+TEST_CASE("damage is found where a search in a part of the scene reads") {
+  const test::Folder folder;
+  const fs::path file = folder / "a.lpath";
+  placed_recording(file, 300);
+  const std::string good = bytes_of(file);
+  const Query query("lit_x < 4 and lit_x > -1");  // everywhere
+  const auto problem = [&](const std::string& bytes) {
+    write(folder / "bad.lpath", bytes);
+    return failure([&] { rows_of(folder / "bad.lpath", query, query.places()); });
+  };
+  CHECK(problem(good) == "no error");
+  const size_t step = std::max<size_t>(1, good.size() / 97);
+  for (size_t at = good.find("CHNK"); at < good.size(); at += step) {
+    INFO(at);
+    CHECK_THAT(problem(good.substr(0, at)), Contains("bad.lpath: byte "));
+    std::string changed = good;
+    changed[at] = char(changed[at] ^ 0x40);
+    const std::string found = problem(changed);
+    // Paths without light are not read.
+    if (found != "no error") CHECK_THAT(found, Contains("bad.lpath: byte "));
+  }
+  std::string many = good;
+  many[good.find("TREE") + 14] = 0x7f;
+  CHECK_THAT(problem(many), Contains("bytes are left: it was cut"));
+}
+
 TEST_CASE("queries that cannot be read say where") {
   const auto problem = [](const std::string& text) { return failure([&] { Query q(text); }); };
   CHECK_THAT(problem("colour == 1"),
@@ -282,11 +439,13 @@ TEST_CASE("damaged, cut and foreign files are refused with their place") {
   CHECK_THAT(failure([&] { Reader r(folder / "none.lpath"); }),
              Contains("none.lpath") && Contains("cannot be opened"));
   CHECK_THAT(failure([&] { Reader r(folder.path); }), Contains("is a folder"));
+  REQUIRE(mkfifo((folder / "pipe.lpath").c_str(), 0600) == 0);
+  CHECK_THAT(failure([&] { Reader r(folder / "pipe.lpath"); }), Contains("is a pipe or a device"));
   CHECK_THAT(problem(""), Contains("bad.lpath: byte 0: not a file of recorded paths"));
   CHECK_THAT(problem("some other file, longer than this"), Contains("byte 0: not a file of recorded paths"));
   std::string newer = good;
-  newer[8] = 2;
-  CHECK_THAT(problem(newer), Contains("version 2 of the format; this program reads version 1"));
+  newer[8] = 3;
+  CHECK_THAT(problem(newer), Contains("version 3 of the format; this program reads version 2"));
   // Every cut is found, and every changed byte.
   const size_t step = std::max<size_t>(1, good.size() / 97);
   for (size_t at = 0; at < good.size(); at += step) {

@@ -8,6 +8,7 @@
 #include "commands/script_runner.h"
 #include "film/io/image_file.h"
 #include "support/folder.h"
+#include "support/ocio.h"
 #include "workspace_bench.h"
 
 namespace script_runner_tests {
@@ -223,6 +224,24 @@ TEST_CASE("light is compared within its noise") {
   result = other.run(steps);
   CHECK_THAT(result.cases.back().message,
              Contains("1 of 12 tiles differ beyond noise") && Contains("at 0,0: G"));
+}
+
+TEST_CASE("light that differs is reported as the picture is shown, also by OpenColorIO") {
+  const test::Folder f;
+  const test::OcioVariable variable(test::write_ocio(f.path).string());
+  const auto first_red = [](const std::string& ocio) {
+    Bench b;
+    const ScriptResult result =
+        b.run("samples 8\nset film.ocio \"" + ocio + "\"\nwait idle\nexpect image light.exr\n");
+    REQUIRE(result.cases.back().pictures.size() == 1);
+    const film::FilmImage light = film::read_exr(b.folder.path / "report" / "1-now.exr");
+    const film::FilmImage shown =
+        film::read_exr(b.folder.path / "report" / result.cases.back().pictures[0].now);
+    return std::pair((*light.find("R"))[0], (*shown.find("R"))[0]);
+  };
+  const auto [light, plain] = first_red("Other: Plain");
+  CHECK(plain == Approx(std::pow(light, 1 / 2.2f)).margin(0.005));
+  CHECK(first_red("Screen: sRGB: Film").second == Approx((std::log2(light) + 10) / 16).margin(0.01));
 }
 
 TEST_CASE("a report folder with other files is refused") {

@@ -58,6 +58,8 @@ TEST_CASE("a result in words: name, methods, what it shows, time, error, filter"
   auto picture = held("path", 12, 0.021);
   results.add("", "", "", picture);
   CHECK(held_text(results.list()[0]) == "path, 12 s, 2.10 %");
+  picture->file = "/pictures/before.exr";
+  CHECK(held_text(results.list()[0]) == "path, 12 s, 2.10 %");
   picture->shows = "caustic", picture->filtered = true, picture->shown_error = 0.05;
   results.rename("path", "before");
   CHECK(held_text(results.list()[0]) == "before: path, caustic only, 12 s, 5.00 % off, filtered");

@@ -239,7 +239,44 @@ std::map<std::string, std::string> read_metadata(const fs::path& file) {
   return metadata_of(open_image(file).input->spec());
 }
 
-FilmImage read_exr(const fs::path& file) {
+namespace {
+
+/// Consecutive channels that are read: first, and behind the last.
+std::vector<std::pair<int, int>> channel_runs(const OIIO::ImageSpec& spec, const ReadOptions& options) {
+  std::vector<std::pair<int, int>> runs;
+  for (int c = 0; c < spec.nchannels; ++c) {
+    if (options.wants && !options.wants(spec.channel_name(c))) continue;
+    if (runs.empty() || runs.back().second != c) runs.emplace_back(c, c);
+    ++runs.back().second;
+  }
+  return runs;
+}
+
+/// Reads the channels of one run, interleaved. Throws Error located at `where`, also if it is stopped.
+std::vector<float> read_run(OIIO::ImageInput& input, const std::string& where, size_t pixels,
+                            const std::pair<int, int>& run, const ReadOptions& options) {
+  struct Progress {
+    const ReadOptions& options;
+    double before, share;
+    bool stopped = false;
+  };
+  const double all = input.spec().nchannels;
+  Progress progress{options, run.first / all, (run.second - run.first) / all};
+  const auto stop = [](void* data, float done) {
+    auto& p = *static_cast<Progress*>(data);
+    return p.stopped = p.stopped || (p.options.stop && p.options.stop(p.before + p.share * double(done)));
+  };
+  std::vector<float> interleaved(pixels * size_t(run.second - run.first));
+  const bool read = input.read_image(0, 0, run.first, run.second, OIIO::TypeDesc::FLOAT, interleaved.data(),
+                                     OIIO::AutoStride, OIIO::AutoStride, OIIO::AutoStride, stop, &progress);
+  if (progress.stopped) throw_error(where, "reading was stopped");
+  if (!read) throw_error(where, "cannot read this image: {}", one_line(input.geterror()));
+  return interleaved;
+}
+
+}  // namespace
+
+FilmImage read_exr(const fs::path& file, const ReadOptions& options) {
   const std::string where = file.string();
   const OpenImage opened = open_image(file);
   const auto& input = opened.input;
@@ -253,17 +290,20 @@ FilmImage read_exr(const fs::path& file) {
   FilmImage image;
   image.width = opened.radiance ? opened.radiance->width() : window.full_width;
   image.height = opened.radiance ? opened.radiance->height() : window.full_height;
-  const size_t pixels = size_t{image.width} * image.height, count = static_cast<size_t>(spec.nchannels);
-  std::vector<float> interleaved(size_t{window.width} * window.height * count);
-  if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, interleaved.data()))
-    throw_error(where, "cannot read this image: {}", one_line(input->geterror()));
-  if (opened.radiance) interleaved = upright_radiance(interleaved, count, *opened.radiance);
-  if (!window.whole()) interleaved = fit_to_picture(interleaved, count, window);
-  for (size_t c = 0; c < count; ++c) {
-    std::vector<float> values(pixels);
-    for (size_t p = 0; p < pixels; ++p) values[p] = interleaved[p * count + c];
-    image.channels.emplace_back(spec.channel_name(static_cast<int>(c)), std::move(values));
+  const size_t pixels = size_t{image.width} * image.height;
+  for (const std::pair<int, int>& run : channel_runs(spec, options)) {
+    const auto count = size_t(run.second - run.first);
+    std::vector<float> interleaved =
+        read_run(*input, where, size_t{window.width} * window.height, run, options);
+    if (opened.radiance) interleaved = upright_radiance(interleaved, count, *opened.radiance);
+    if (!window.whole()) interleaved = fit_to_picture(interleaved, count, window);
+    for (size_t c = 0; c < count; ++c) {
+      std::vector<float> values(pixels);
+      for (size_t p = 0; p < pixels; ++p) values[p] = interleaved[p * count + c];
+      image.channels.emplace_back(spec.channel_name(run.first + int(c)), std::move(values));
+    }
   }
+  image.encoded = !spec.format.is_floating_point();
   image.metadata = metadata_of(spec);
   return image;
 }

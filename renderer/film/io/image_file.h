@@ -3,6 +3,7 @@
 // A file that exists is never left half overwritten (base/output_file.h).
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -36,6 +37,7 @@ struct FilmImage {
     uint32_t left = 0, top = 0, right = 0, bottom = 0;
   };
   std::optional<Window> window = {};
+  bool encoded = false;  ///< read from integers: 0..1 with the file's transfer curve
   std::map<std::string, std::string>
       metadata;  ///< string attributes; the film writes settings (JSON), seed, device, version
 
@@ -59,12 +61,20 @@ inline constexpr uint32_t k_max_image_size = 32768;
 /// file already there is then untouched.
 void write_exr(const std::filesystem::path& file, const FilmImage& image);
 
+/// How an image is read.
+struct ReadOptions {
+  /// True for the names of channels that are read; empty: all.
+  std::function<bool(const std::string&)> wants = {};
+  /// Called between parts of a large image with the share that is read, 0..1. True ends reading.
+  std::function<bool(double)> stop = {};
+};
+
 /// Reads any image that OpenImageIO knows (its first subimage, full resolution), as float. An EXR's data
 /// window is placed in its display window, 0 outside; a Radiance picture is turned upright, its exposure
 /// divided out. EXR and HDR are linear as stored; integer formats are scaled to 0..1 and keep the file's
 /// transfer curve. Channels that are named R, G, B, A or carry a layer name keep their names. Throws Error
-/// located at `file` when it is missing, truncated, empty or larger than k_max_image_size.
-FilmImage read_exr(const std::filesystem::path& file);
+/// located at `file` when it is missing, truncated, empty, larger than k_max_image_size, or stopped.
+FilmImage read_exr(const std::filesystem::path& file, const ReadOptions& options = {});
 
 /// The metadata of an image file, as FilmImage has them, without its pixels. Throws Error located at `file`
 /// when it is no image that can be read.

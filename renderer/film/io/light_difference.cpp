@@ -4,31 +4,70 @@
 #include <array>
 #include <cassert>
 #include <cmath>
+#include <limits>
+#include <numeric>
 
+#include "base/color.h"
 #include "film/io/compare.h"
-#include "film/io/planes.h"
+#include "film/io/flip.h"
 #include "film/io/relative_mse.h"
 #include "shaders/shared/tone.h"
 
 namespace lucerna::film {
 namespace {
 
-FilmImage as_image(uint32_t width, std::span<const vec3> light) {
-  FilmImage image{.width = width, .height = uint32_t(light.size() / width)};
-  add_plane(image, "", "RGB", light);
-  return image;
+constexpr double k_epsilon = CompareOptions{}.epsilon;
+
+/// Mean over pixels and channels of (a - b)^2 / (b^2 + epsilon), as Comparison::relmse.
+double relative_squared(std::span<const vec3> a, std::span<const vec3> b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i)
+    for (int k = 0; k < 3; ++k) {
+      const double d = double{a[i][k]} - double{b[i][k]};
+      sum += d * d / (double{b[i][k]} * double{b[i][k]} + k_epsilon);
+    }
+  return sum / (3 * double(a.size()));
+}
+
+/// Scales what is brighter than white down to it.
+std::vector<vec3> up_to_white(std::span<const vec3> light, float white) {
+  std::vector<vec3> shown(light.begin(), light.end());
+  for (vec3& c : shown)
+    if (const float y = luminance(c); y > white) c *= white / y;
+  return shown;
+}
+
+double mean_flip(uint32_t width, std::span<const vec3> a, std::span<const vec3> b) {
+  const std::vector<float> flips = flip(width, a, b);
+  return std::accumulate(flips.begin(), flips.end(), 0.0) / double(flips.size());
 }
 
 }  // namespace
 
-LightDifference light_difference(uint32_t width, std::span<const vec3> picture, std::span<const vec3> other) {
+std::vector<vec3> shown_light(const ViewTransform& view, std::span<const vec3> radiance) {
+  std::vector<vec3> colors = shown_colors(view, radiance);
+  for (vec3& c : colors)
+    for (int k = 0; k < 3; ++k) c[k] = linear_from_srgb(c[k]);
+  return colors;
+}
+
+LightDifference light_difference(uint32_t width, std::span<const vec3> picture, std::span<const vec3> other,
+                                 const ViewTransform& view) {
   assert(width > 0 && picture.size() == other.size() && !picture.empty());
-  const Comparison compared = compare(as_image(width, picture), as_image(width, other));
-  const std::vector<vec3> truth(other.begin(), other.end());
-  const SeenMse seen = seen_mse(picture, {.width = width, .first = truth, .second = truth});
-  return {.relative_squared = compared.relmse,
+  const float white = shown_white(view);
+  const std::vector<vec3> truth = up_to_white(other, white);
+  const SeenMse seen =
+      seen_mse(up_to_white(picture, white), {.width = width, .first = truth, .second = truth});
+  return {.relative_squared = relative_squared(picture, other),
           .as_seen = std::sqrt(std::max(0.0, seen.all)),
-          .flip = compared.flip.value_or(0)};
+          .flip = mean_flip(width, shown_light(view, picture), shown_light(view, other))};
+}
+
+LightDifference display_difference(uint32_t width, std::span<const vec3> picture, std::span<const vec3> other,
+                                   const ViewTransform& view) {
+  assert(width > 0 && picture.size() == other.size() && !picture.empty());
+  constexpr double k_unknown = std::numeric_limits<double>::quiet_NaN();
+  return {k_unknown, k_unknown, mean_flip(width, shown_light(view, picture), other)};
 }
 
 vec3 difference_color(float t) {

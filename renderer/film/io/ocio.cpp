@@ -7,10 +7,12 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdlib>
 #include <mutex>
 #include <string_view>
 
+#include "base/color.h"
 #include "base/error.h"
 #include "base/file.h"
 #include "shaders/shared/display_lut.h"
@@ -129,6 +131,28 @@ std::vector<vec4> OcioConfig::table(const std::string& display, const std::strin
   const auto shown = [](float x) { return x > 0 ? std::min(x, 1.0f) : 0.0f; };
   for (const vec3& c : colors) nodes.emplace_back(shown(c.x), shown(c.y), shown(c.z), 1);
   return nodes;
+}
+
+float OcioConfig::white(const std::string& display, const std::string& view) const {
+  constexpr int k_steps = 8, k_darkest = -8, k_brightest = 12;  // a stop; stops
+  constexpr float k_seen = 0.1f;
+  std::vector<vec3> greys;
+  for (int i = k_darkest * k_steps; i <= k_brightest * k_steps; ++i)
+    greys.emplace_back(std::exp2(float(i) / k_steps));
+  std::vector<vec3> colors = greys;
+  show(display, view, colors);
+  const auto shown = [&](size_t i) {
+    const vec3& c = colors[i];
+    vec3 linear;
+    for (int k = 0; k < 3; ++k) linear[k] = linear_from_srgb(c[k] > 0 ? std::min(c[k], 1.0f) : 0.0f);
+    return luminance(linear);
+  };
+  for (size_t i = greys.size() - 1; i > 0; --i) {
+    const float low = shown(i - 1), high = shown(i);
+    const float change = std::log2(std::max(high, 1e-6f) / std::max(low, 1e-6f)) * k_steps;
+    if (change >= k_seen) return greys[i].x;
+  }
+  return 1;
 }
 
 std::shared_ptr<const OcioConfig> ocio_config() {

@@ -36,6 +36,9 @@ class OcioConfig {
   /// The display and the view that ocio_text() has joined; a view "" is the default one. A text that fits no
   /// display is split at its first ": ", for the message of show().
   std::pair<std::string, std::string> split(const std::string& text) const;
+  /// Exposed luminance from which on a view shows grey as white: from there on less than a tenth of its
+  /// relative change is seen, the displayed colours decoded by the sRGB curve. Errors like show().
+  float white(const std::string& display, const std::string& view) const;
   /// show() of all nodes of a table (shaders/shared/display_lut.h), clamped to 0..1.
   std::vector<vec4> table(const std::string& display, const std::string& view) const;
 
