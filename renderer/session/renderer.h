@@ -11,6 +11,7 @@
 
 #include "scene/io/load.h"
 #include "session/active_solvers.h"
+#include "session/choice_review.h"
 #include "session/lights_edit.h"
 #include "session/lookup_refinement.h"
 #include "session/object_edit.h"
@@ -203,6 +204,10 @@ class Renderer {
   void notify_settings_changed();  ///< informs the solvers
   /// Runs a part of the pilot, and then chooses the solvers. False if cancelled.
   bool run_pilot(const std::function<bool()>& cancel);
+  /// Chooses the solvers by the findings; another choice begins another picture.
+  void choose_solvers();
+  /// With a limit of time: chooses again once the cost of the chosen solvers is measured.
+  void review_choice();
   bool render_item(const std::function<bool()>& cancel);
   /// If the item waits for a round: runs one work item of that round. True if it did.
   std::optional<bool> prepare_round(const schedule::WorkItem& item, const std::function<bool()>& cancel);
@@ -228,6 +233,7 @@ class Renderer {
   std::unique_ptr<Pilot> pilot_;                ///< while it runs
   std::optional<solvers::Findings> findings_;   ///< of this scene's pilot
   std::optional<double> seconds_limit_;
+  ChoiceReview review_;
   scene::Lens begun_lens_;  ///< of the picture begun last
   uint64_t restarts_ = 0;
   double load_seconds_ = 0;

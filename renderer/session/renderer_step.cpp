@@ -1,4 +1,5 @@
 // Work items of the picture: preparation, samples, learning.
+#include <algorithm>
 #include <utility>
 
 #include "base/log.h"
@@ -27,6 +28,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
     progress_.note_prepared();
   else if (progress && !learns)
     progress_.note(false);
+  if (!prepares) review_choice();
   if (done()) progress_.rest();
   return progress;
 }
@@ -84,6 +86,12 @@ bool Renderer::run_pilot(const std::function<bool()>& cancel) {
   if (!pilot_->done()) return true;
   findings_ = pilot_->findings(setup_.settings.text("lights.sampling") == "learned");
   pilot_.reset();
+  choose_solvers();
+  return true;
+}
+
+void Renderer::choose_solvers() {
+  review_.restart();
   const std::array<plan::Choice, 4> before = setup_.engine->plan().choices;
   scene::Changes changes;
   try {
@@ -101,10 +109,22 @@ bool Renderer::run_pilot(const std::function<bool()>& cancel) {
     if (now[c].solver != before[c].solver) changes.settings.insert(key);
   }
   // Nothing but paths: the picture goes on as it was begun.
-  if (changes.settings.empty()) return true;
+  if (changes.settings.empty()) return;
   notify_settings_changed();
   restart(changes);
-  return true;
+}
+
+void Renderer::review_choice() {
+  if (!seconds_limit_ || !findings_ || findings_->begun || findings_->seconds <= 0) return;
+  const std::array<plan::Choice, 4>& chosen = choices();
+  // Paths cost what the pilot has measured.
+  if (std::all_of(chosen.begin(), chosen.end(),
+                  [](const plan::Choice& c) { return c.reason.empty() || c.solver == "path"; }))
+    return;
+  findings_->begun = review_.note(samples(), progress_.seconds(), findings_->seconds);
+  if (!findings_->begun) return;
+  for (size_t c = 0; c < chosen.size(); ++c) findings_->begun->solvers[c] = chosen[c].solver;
+  choose_solvers();
 }
 
 std::optional<bool> Renderer::prepare_round(const schedule::WorkItem& item,

@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "plan/choose.h"
+#include "session/choice_review.h"
 #include "solvers/registry.h"
 
 namespace choose_tests {
@@ -149,6 +150,21 @@ TEST_CASE("solvers that cost more than predicted are replaced while that pays") 
   given.set("components.tertiary", "photons");
   caustics.begun->sample = 8, caustics.begun->spent = 16;
   CHECK(plan::choose(facts, given, &caustics, goal)[3].solver == "photons");
+}
+
+TEST_CASE("the cost of a sample is measured after the first, with preparation in what is spent") {
+  session::ChoiceReview review;
+  CHECK_FALSE(review.note(0, 3, 0.5));
+  CHECK_FALSE(review.note(1, 5, 0.5));
+  CHECK_FALSE(review.note(1, 5.5, 0.5));
+  const auto cost = review.note(3, 9, 0.5);
+  REQUIRE(cost);
+  CHECK(cost->samples == 3);
+  CHECK(cost->sample == 4);
+  CHECK(cost->spent == 18);
+  review.restart();
+  CHECK_FALSE(review.note(2, 1, 0.5));
+  CHECK(review.note(3, 2, 0.5)->sample == 2);
 }
 
 TEST_CASE("a dark pilot leaves everything to paths") {
