@@ -76,6 +76,7 @@ stats::Ledger read_accuracy(std::string_view text) {
     if (seconds <= before || error <= 0) return;
     stats::Entry entry;
     entry.wall_s = before = seconds, entry.error[0] = error, entry.has_error = true;
+    entry.paths = ledger.entries().size() + 1;  // an entry of as many paths would replace the last
     ledger.add(entry);
   });
   return ledger;

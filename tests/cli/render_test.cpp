@@ -59,6 +59,13 @@ TEST_CASE("render writes layers, PNG and figures") {
     CHECK(found);
   }
   CHECK(image.metadata.count("seed") == 1);
+  // What a picture that is held for comparison is read with.
+  CHECK(image.metadata.at("methods") == "primary path, secondary path, tertiary path, caustic path");
+  for (const char* key : {"seconds", "error", "accuracy"}) {
+    INFO(key);
+    REQUIRE(image.metadata.count(key) == 1);
+    CHECK(std::atof(image.metadata.at(key).c_str()) > 0);
+  }
   CHECK(fs::file_size(f / "a.png") > 500);
   std::ifstream stats(f / "a.json");
   const std::string text((std::istreambuf_iterator<char>(stats)), {});

@@ -240,7 +240,8 @@ TEST_CASE("a file keeps how its picture was computed and what that took") {
   made.seconds = 12.5, made.error = 0.021;
   for (const double part : {0.25, 0.5}) {
     stats::Entry e;
-    e.wall_s = part * 10, e.has_error = true, e.error[0] = 0.1 / part, e.records = 0.01;
+    e.paths = uint64_t(1000 * part), e.wall_s = part * 10, e.has_error = true;
+    e.error[0] = 0.1 / part, e.records = 0.01;
     made.ledger.add(e);
   }
   film::FilmImage image{.width = 64, .height = 36};
