@@ -174,17 +174,10 @@ int bench_interiors(const BenchInteriorsArguments& a) {
   if (!left_out.empty())
     std::fprintf(stderr, "lucerna: %s does not support %s; these settings have no counterpart\n",
                  options.against.c_str(), fmt::format("{}", fmt::join(left_out, ", ")).c_str());
-  return run({.matrix = {},
-              .built_in = {},
-              .report = a.report,
-              .references = a.references,
-              .device = a.device,
-              .quiet = a.quiet,
-              .command = a.command,
-              .compare = {},
-              .page = {},
-              .scenes = a.scenes},
-             matrix);
+  BenchArguments renders;
+  static_cast<VerbArguments&>(renders) = a;
+  renders.report = a.report, renders.references = a.references, renders.quiet = a.quiet;
+  return run(renders, matrix);
 }
 
 }  // namespace lucerna::app

@@ -149,9 +149,11 @@ void flatten_emission(const scene::Scene& scene, FlatScene& flat) {
                                                                         << k_light_group_shift);
     e.lights.insert(e.lights.end(), texels.begin(), texels.end());
   }
-  e.profiles = profiles == flat.profiles_in_table ? flat.profiles : profile_texels(profiles);
+  e.profiles =
+      profiles == flat.profiles_in_table ? flat.profiles : SharedVector<vec4>(profile_texels(profiles));
   e.profiles_in_table = std::move(profiles);
-  e.pictures = pictures == flat.pictures_in_table ? flat.pictures : picture_texels(pictures);
+  e.pictures =
+      pictures == flat.pictures_in_table ? flat.pictures : SharedVector<vec4>(picture_texels(pictures));
   e.pictures_in_table = std::move(pictures);
   e.environment_rotation = scene.environment.rotation * k_pi / 180;
   if (flat.effects.environment_map) {

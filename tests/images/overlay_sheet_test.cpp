@@ -106,11 +106,11 @@ TEST_CASE("before the first sample records are rings, not the squares of the coa
 
 TEST_CASE("records over a picture that is shown enlarged are as thin as over a large one") {
   const auto small = prepared(k_size / 4);
-  small->set_window_scale(4);
+  small->overlays().set_window_scale(4);
   while (small->step()) {
   }
   const std::vector<int> enlarged = records_alone(*small);
-  CHECK(small->shown_scale() == 1);  // without an overlay the picture comes as it is
+  CHECK(small->overlays().scale() == 1);  // without an overlay the picture comes as it is
   REQUIRE(enlarged.size() == size_t{k_size} * k_size);
   CHECK(full_squares(enlarged, k_size, 4) < 0.3);
   CHECK(drawn_share(enlarged) > 0.01);
@@ -120,11 +120,11 @@ TEST_CASE("records over a picture that is shown enlarged are as thin as over a l
   // What is saved has the size of the picture, with its overlays.
   const std::string file = "/tmp/lucerna-overlay-sheet-" + std::to_string(getpid()) + ".png";
   show(*small, "overlay.records", true);
-  small->save(file);
+  small->output().save(file);
   const film::FilmImage saved = film::read_exr(file);
   std::filesystem::remove(file);
   CHECK(saved.width == k_size / 4);
-  CHECK(small->picture(false).size() == size_t{k_size} * k_size * 4);
+  CHECK(small->output().picture(false).size() == size_t{k_size} * k_size * 4);
 }
 
 TEST_CASE("in the window a moved camera does not wait for the surfaces of overlays; one at rest has them") {
