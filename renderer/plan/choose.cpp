@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -95,6 +96,24 @@ double variance_of(const Findings& findings, uint32_t components) {
   return sum;
 }
 
+/// What a combination has in common with the solvers of the picture as it was begun.
+enum class Shared { none, part, all };
+Shared shared_with_begun(const Findings& findings, const std::vector<Slot>& slots,
+                         const std::vector<const SolverInfo*>& by) {
+  bool any = false, all = true;
+  for (size_t s = 0; s < slots.size(); ++s)
+    for (size_t c = 0; c < k_count; ++c) {
+      if ((slots[s].components >> c & 1u) == 0) continue;
+      const bool same = findings.begun->solvers[c] == (by[s] ? by[s]->name : "path");
+      all &= same;
+      any |= same && by[s];
+    }
+  return all ? Shared::all : any ? Shared::part : Shared::none;
+}
+
+/// Cost of a sample of the picture as it was begun, over the predicted one.
+double excess_of_begun(Findings findings, uint32_t decided, const std::vector<Slot>& slots);
+
 /// The combination of these solvers; nullopt if one of them is not suited. `decided`: components whose solver
 /// is given: they count as if paths computed them.
 std::optional<Combination> combine(const Findings& findings, uint32_t decided, const std::vector<Slot>& slots,
@@ -117,16 +136,27 @@ std::optional<Combination> combine(const Findings& findings, uint32_t decided, c
   }
   if (!findings.begun) return all;
   all.spent = findings.begun->spent;
-  bool same = true;  // as the picture was begun
-  for (size_t s = 0; s < slots.size(); ++s)
-    for (size_t c = 0; c < k_count; ++c)
-      if ((slots[s].components >> c & 1u) != 0)
-        same &= findings.begun->solvers[c] == (all.solvers[s] ? all.solvers[s]->name : "path");
-  if (!same) return all;
+  const Shared shared = shared_with_begun(findings, slots, all.solvers);
+  if (shared == Shared::none) return all;
+  // What the solvers cost beyond the prediction they cost in other combinations, too.
+  all.sum.sample += std::max(0.0, excess_of_begun(findings, decided, slots));
+  if (shared == Shared::part) return all;
   all.has = findings.begun->samples;
   all.sum.sample = findings.begun->sample;
   all.sum.preparation = 0;
   return all;
+}
+
+double excess_of_begun(Findings findings, uint32_t decided, const std::vector<Slot>& slots) {
+  const Findings::Begun begun = *findings.begun;
+  findings.begun.reset();
+  std::vector<const SolverInfo*> by;
+  for (const Slot& slot : slots) {
+    const SolverInfo* solver = solvers::find(begun.solvers[size_t(std::countr_zero(slot.components))]);
+    by.push_back(solver && !solver->unbiased ? solver : nullptr);
+  }
+  const std::optional<Combination> predicted = combine(findings, decided, slots, std::move(by));
+  return predicted ? begun.sample - predicted->sum.sample : 0;
 }
 
 /// Every combination of candidates, paths alone first.

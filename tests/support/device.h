@@ -10,8 +10,9 @@
 
 namespace lucerna::test {
 
-/// False if LUCERNA_TEST_VALIDATION is 0. The validation layers take up to half of a test's time, so ctest uses
-/// them where commands are recorded that no other test records (tests/CMakeLists.txt); by hand a test has them.
+/// False if LUCERNA_TEST_VALIDATION is 0. The validation layers take up to half of a test's time, so ctest
+/// uses them where commands are recorded that no other test records (tests/CMakeLists.txt); by hand a test
+/// has them.
 inline bool with_validation() {
   const char* wanted = std::getenv("LUCERNA_TEST_VALIDATION");
   return !wanted || std::string_view(wanted) != "0";

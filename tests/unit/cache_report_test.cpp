@@ -147,7 +147,8 @@ TEST_CASE("the panel shows numbers, steps and passes, each step with its text") 
   // The pyramid's level has a control while it is shown.
   const auto rows = [&] {
     size_t n = 0;
-    for (const auto& i : section(make_report(c, s), "Overlays").items)
+    const solvers::Report report = make_report(c, s);
+    for (const auto& i : section(report, "Overlays").items)
       n += std::holds_alternative<solvers::OptionRow>(i);
     return n;
   };
