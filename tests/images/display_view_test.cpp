@@ -101,7 +101,7 @@ TEST_CASE("errors as seen are those of the view: light that it shows as white ha
   const double linear = seen(""), plain = seen("Other: Plain"), film = seen("Screen: sRGB: Film");
   CAPTURE(linear, plain, film);
   CHECK(plain == Approx(linear));  // both end at 1
-  CHECK(film > 1.15 * plain);  // it ends at several times that
+  CHECK(film > 1.15 * plain);      // it ends at several times that
   CHECK(seen("") == Approx(linear));
 }
 

@@ -64,8 +64,10 @@ struct Outcome {
   std::string output;
 };
 
-/// Runs through the shell for at most `seconds`; returns standard output and error together.
-inline Outcome run(const std::string& command, int seconds = 120) {
+/// Runs through the shell for at most `seconds`; returns standard output and error together. The limit ends
+/// programs that hang, and is far above the minute or two that compiling all shaders beside other tests can
+/// take.
+inline Outcome run(const std::string& command, int seconds = 600) {
   Outcome outcome;
   FILE* pipe = popen(("timeout " + std::to_string(seconds) + " " + command + " 2>&1").c_str(), "r");
   if (!pipe) return outcome;
@@ -94,7 +96,7 @@ inline Outcome window(const std::string& steps, const std::string& environment =
 }
 
 /// Runs the steps in a window of the program with `arguments`.
-inline Outcome program(const std::string& arguments, const std::string& steps, int seconds = 120) {
+inline Outcome program(const std::string& arguments, const std::string& steps, int seconds = 600) {
   return run(with_display(std::string(LUCERNA_BINARY) + " " + arguments + " --script " + script_of(steps)),
              seconds);
 }

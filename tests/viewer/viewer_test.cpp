@@ -9,7 +9,7 @@ using namespace lucerna;
 namespace {
 
 test::Outcome viewer(const std::string& arguments, const std::string& steps) {
-  return test::program(arguments, steps, 400);
+  return test::program(arguments, steps);
 }
 
 }  // namespace
