@@ -35,6 +35,17 @@ vec3 turn_along(vec3 w, vec3 a, vec3 b) {
   return w - both * (dot(both, w) / (1.0 + dot(a, b))) + b * (2.0 * dot(a, w));
 }
 
+// True if the disc around a point of a triangle lies within the triangle. Its area is then 1, whatever is near: other
+// surfaces could only add to it (photon_areas() ends at 1). Most discs do, and the search for surfaces takes far longer.
+bool disc_within_triangle(uint triangle, vec3 x, float radius) {
+  uvec4 tri = floatBitsToUint(texelFetch(scene_triangles, int(triangle)));
+  vec3 a = texelFetch(scene_vertices, int(2u * tri.x)).xyz - x, b = texelFetch(scene_vertices, int(2u * tri.y)).xyz - x,
+       c = texelFetch(scene_vertices, int(2u * tri.z)).xyz - x;
+  vec3 ab = b - a, bc = c - b, ca = a - c, to_ab = cross(ab, a), to_bc = cross(bc, b), to_ca = cross(ca, c);
+  float r2 = radius * radius;
+  return dot(to_ab, to_ab) >= r2 * dot(ab, ab) && dot(to_bc, to_bc) >= r2 * dot(bc, bc) && dot(to_ca, to_ca) >= r2 * dot(ca, ca);
+}
+
 photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   photons_Vertex vertex = photons_Vertex(k_phase_start);
   // Learned light sampling must not depend on which solver computes a component.
@@ -142,7 +153,8 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   if (deep && photons_pilot_mask() == 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0 && max3(found_1 + found_2 + found_3) <= 0.0)
     o.bias += k_found_nothing;
   // Only if there is an error to correct.
-  if (max3(found_0 + found_1 + found_2 + found_3) > 0.0) areas = photon_areas(x, v.surface.normal_g, radius);
+  if (max3(found_0 + found_1 + found_2 + found_3) > 0.0 && !disc_within_triangle(v.hit.prim, x, radius))
+    areas = photon_areas(x, v.surface.normal_g, radius);
   o.bias += 2.0 * luminance(weight * found_flat) / areas.y;
   weight /= areas.x;
   for (uint component = 0u; component < k_component_count; ++component) {

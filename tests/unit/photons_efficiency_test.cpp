@@ -132,6 +132,18 @@ TEST_CASE("each region gets the method that makes the whole most efficient", "[p
     }
     CHECK_FALSE(choose(halves(soft, soft), k_costs).scarce);
   }
+  SECTION("photons everywhere if they find most light, and the rest is the noisiest light of paths") {
+    // As in `glass` and `ring`: a bright caustic, and faint light around it that few photons find.
+    const Moments faint{0.05, 0.01, 500, 1}, bright{1, 0.1, 20, 50};
+    const Regions all = choose(halves(bright, faint), k_costs);
+    CHECK((all.by_photons == 1 && !all.nowhere));
+    CHECK(all.gain == 1);
+    // With little of the light well found there is no evidence.
+    const Moments equal{1, 0.01, 500, 1};
+    CHECK(choose(halves({0.02, 0.1, 20, 8}, equal), k_costs).by_photons < 1);
+    // Nor if paths find the faint light easily.
+    CHECK(choose(halves(bright, {0.05, 0.5, 0.001, 1}), k_costs).by_photons < 1);
+  }
   SECTION("light that no camera path hits") {
     const Moments unmet{1, 0.1, double(shared::k_radiance_unmet), 50};
     CHECK(choose(halves(unmet, soft), k_costs).delegated[0] == 0);

@@ -17,7 +17,10 @@ constexpr uint32_t k_region = 2;  // pixels of the pilot's picture, per side
 // Mean number of photons per lookup of a region from which their estimate is used.
 constexpr double k_least_found = 4;
 constexpr double k_least_found_in_all = 256;  // ... and in the whole picture
-constexpr uint32_t k_most_steps = 32;         // iterations of the optimization
+// Share of the caustics' light in such regions from which photons may compute the others, too: 0.5 in `glass`
+// and `ring`, at most 0.08 where light is too rare for the pilot; and how far they must be ahead.
+constexpr double k_well_found = 0.25, k_clearly = 2;
+constexpr uint32_t k_most_steps = 32;  // iterations of the optimization
 
 double radius_at(const PhotonFrame& f, const vec3& x) {
   return double(photon_radius_of(f.base + f.slope * glm::distance(x, f.eye), f.most, x));
@@ -176,6 +179,12 @@ Regions choose_regions(std::span<const Moments> moments, uint32_t width, uint32_
   double least = whole(best).product();
   if (mixed.product() < least) best = mixed_delegated, least = mixed.product();
   if (found >= k_least_found_in_all && paths.product() < least) best = none, least = paths.product();
+  // Where the pilot finds most of the light, the rest is faint and often the noisiest light of eye paths, so
+  // delegating it would leave their noise and add the photons' cost.
+  double light = 0, well_found = 0;
+  for (const Region& r : all) light += r.mean, well_found += r.found >= k_least_found ? r.mean : 0;
+  if (well_found > 0 && well_found >= k_well_found * light && k_clearly * photons.product() < least)
+    best.assign(all.size(), false), least = photons.product();
   for (size_t i = 0; i < out.delegated.size(); ++i) out.delegated[i] = best[i] ? 1 : 0;
   const auto by_photons = std::count(best.begin(), best.end(), false);
   out.by_photons = double(by_photons) / regions;
