@@ -19,8 +19,8 @@ using solvers::Findings, solvers::Prospect, solvers::SolverInfo;
 constexpr size_t k_count = paths::k_component_count;
 constexpr double k_least_sample = 0.1;  // of the cost of a path-traced sample
 constexpr double k_most_samples = 1e7;
-// Part of the time for preparation that a prediction may take: predictions are right within 1.5.
-constexpr double k_safe = 1 / 1.5;
+// Share of the cost after which preparation ends where a limit of time cuts it.
+constexpr double k_most_preparation = 0.5;
 constexpr double k_never = std::numeric_limits<double>::max();
 
 std::string key_of(size_t component) {
@@ -58,22 +58,26 @@ std::vector<Slot> slots_of(uint32_t undecided) {
 struct Combination {
   std::vector<const SolverInfo*> solvers;
   Prospect sum{.sample = 1};
-  double spent = 0;  ///< of the goal's cost, on the picture so far
-  double has = 0;    ///< samples of the picture so far that stay
+  double traced = 0;  ///< variance of paths where data is still to be prepared
+  double spent = 0;   ///< of the goal's cost, on the picture so far
+  double has = 0;     ///< samples of the picture so far that stay
 
   double sample_cost() const { return std::max(sum.sample, k_least_sample); }
-  /// Error as seen with that many samples.
-  double error(double samples) const {
-    return std::hypot(std::sqrt(sum.variance / samples), prepared_error(sum, samples), sum.floor);
+  /// Error as seen with that many samples, if that share of the data is prepared: elsewhere, paths compute
+  /// the light.
+  double error(double samples, double prepared = 1) const {
+    return std::hypot(std::sqrt((sum.variance + (1 - prepared) * traced) / samples),
+                      prepared_error(sum, samples), sum.floor);
   }
   /// Squared error after the goal's cost, k_never before the first sample.
   double squared_error(const Goal& goal) const {
-    // Data that is prepared in part is worse than none: its errors are the largest where it is missing.
     const double left = goal.samples - spent;
-    if (goal.cuts_preparation && sum.preparation > k_safe * 0.5 * left) return k_never;
-    const double samples = has + (left - sum.preparation) / sample_cost();
+    const double most = goal.cuts_preparation ? k_most_preparation * left : k_never;
+    const double preparation = std::min(sum.preparation, most);
+    const double samples = has + (left - preparation) / sample_cost();
     if (!(samples >= 1)) return k_never;
-    return error(samples) * error(samples);
+    const double e = error(samples, sum.preparation > most ? most / sum.preparation : 1);
+    return e * e;
   }
   /// Cost until the error is reached, k_never if it is not.
   double cost(double target) const {
@@ -128,6 +132,7 @@ std::optional<Combination> combine(const Findings& findings, uint32_t decided, c
     const std::optional<Prospect> p = all.solvers[s]->prospect(findings, slots[s].components);
     if (!p) return std::nullopt;
     all.sum.preparation += p->preparation;
+    if (p->preparation > 0) all.traced += variance_of(findings, slots[s].components);
     all.sum.sample += p->sample;
     all.sum.variance += p->variance;
     if (p->prepared > all.sum.prepared) all.sum.refined = p->refined;
