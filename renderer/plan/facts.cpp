@@ -222,6 +222,11 @@ std::vector<Row> light_rows() {
        of_lamps<LightKind::profile>, drop_lamps<LightKind::profile>},
       {"shaped", "Lamps with a shape", group, "light table; rays may meet the lamps", "none is on",
        shaped_lamps, drop_shaped_lamps},
+      {"projector", "Pictures that spots project", group, "tables of the pictures", "no spot has one",
+       [](const Context& c) { return c.lamps([](const scene::Light& l) { return bool(l.picture); }); },
+       [](Scene& s) {
+         for (scene::Light& l : s.lights) l.picture.reset();
+       }},
       {"emission", "Emitting surfaces", group, "triangles in the light table", "no surface emits",
        of_materials<has_emission>, of_each<drop_emission>},
       {"environment", "Sky", group, "environment map and its table", "none",

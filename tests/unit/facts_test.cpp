@@ -3,6 +3,7 @@
 #include <catch2/catch.hpp>
 
 #include "plan/facts_text.h"
+#include "scene/light_picture.h"
 
 namespace facts_tests {
 
@@ -127,6 +128,8 @@ TEST_CASE("without an effect, a scene no longer calls for it, and keeps all othe
   glass.transmission_texture.texture = 0;
   full.lights.resize(5);
   full.lights[3].kind = scene::LightKind::disk, full.lights[4].kind = scene::LightKind::profile;
+  full.lights[1].picture = std::make_shared<const scene::LightPicture>(
+      scene::make_picture(1, 1, {vec3(1)}, "full.lights[1].picture"));
   full.lights[1].kind = scene::LightKind::spot, full.lights[2].kind = scene::LightKind::directional;
   full.environment.radiance = vec3(1);
   full.portals.resize(1);
