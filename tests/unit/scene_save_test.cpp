@@ -163,6 +163,88 @@ TEST_CASE("edited lights read back exactly") {
   CHECK(noted);
 }
 
+TEST_CASE("a light that is off has intensity 0 for other programs, and its own one when it is on again") {
+  Asset a;
+  a.triangle();
+  Bench b(a);
+  const auto profile = std::make_shared<LightProfile>(
+      parse_ies("IES:LM-63-2019\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n1 1 10\n0 45 90\n0\n700 500.5 3\n", "x"));
+  for (const LightKind kind :
+       {LightKind::point, LightKind::directional, LightKind::disk, LightKind::profile}) {
+    Light l;
+    l.name = fmt::format("lamp {}", b.edited->lights.size());
+    l.id = k_first_added + Id(b.edited->lights.size());
+    l.kind = kind, l.intensity = {0.1f, 3.3f, 0.7f};
+    if (kind == LightKind::disk) l.radius = 0.2f;
+    if (kind == LightKind::profile) l.profile = profile;
+    b.edited->lights.push_back(l);
+  }
+  const auto strength = [&](const json& doc, size_t i) -> double {
+    for (const json& node : doc["nodes"])
+      if (node.value("name", "") == fmt::format("lamp {}", i)) {
+        const json& e = node["extensions"];
+        if (e.contains("EXT_lights_ies")) return e["EXT_lights_ies"]["multiplier"];
+        const size_t at = e["KHR_lights_punctual"]["light"];
+        return doc["extensions"]["KHR_lights_punctual"]["lights"][at]["intensity"];
+      }
+    return -1;
+  };
+  const auto same = [&](Scene read) {
+    REQUIRE(read.lights.size() == 4);
+    std::vector<Light> edited = b.edited->lights;
+    for (std::vector<Light>* lights : {&read.lights, &edited})
+      for (Light& l : *lights)
+        if (l.profile) l.profile = profile;
+    check_equal(edited, read.lights);
+  };
+  // Off when saved for the first time, and switched off, edited and switched on after that.
+  b.edited->lights[0].enabled = false, b.edited->lights[3].enabled = false;
+  same(b.saved());
+  for (const size_t i : {0u, 3u}) CHECK(strength(b.document(), i) == 0);
+  for (const size_t i : {1u, 2u}) CHECK(strength(b.document(), i) > 0);
+  b.source = b.folder / "b.gltf";
+  b.read();
+  for (Light& l : b.edited->lights) l.enabled = !l.enabled;
+  same(b.saved(b.folder / "c.gltf"));
+  for (const size_t i : {0u, 3u}) CHECK(strength(b.document("c.gltf"), i) > 0);
+  for (const size_t i : {1u, 2u}) CHECK(strength(b.document("c.gltf"), i) == 0);
+  b.source = b.folder / "c.gltf";
+  b.read();
+  for (const size_t i : {1u, 2u}) b.edited->lights[i].intensity = {5, 0.3f, 0.01f};
+  same(b.saved(b.folder / "d.gltf"));
+  for (const size_t i : {1u, 2u}) CHECK(strength(b.document("d.gltf"), i) == 0);
+  // An intensity that another program wrote counts more.
+  json doc = b.document("d.gltf");
+  for (json& l : doc["extensions"]["KHR_lights_punctual"]["lights"]) l["intensity"] = 2;
+  write_file((b.folder / "e.gltf").string(), doc.dump());
+  for (const Light& l : load(b.folder / "e.gltf").lights)
+    if (l.kind == LightKind::disk) CHECK(std::max({l.intensity.x, l.intensity.y, l.intensity.z}) == 2);
+}
+
+TEST_CASE("of lights that share a definition, one can be off") {
+  Asset a;
+  a.triangle();
+  Bench b(a);
+  Light l;
+  l.name = "pair", l.id = k_first_added, l.kind = LightKind::point, l.intensity = vec3(3);
+  b.edited->lights = {l};
+  b.saved();
+  json doc = b.document();
+  json twin = doc["nodes"].back();
+  doc["scenes"][0]["nodes"].push_back(doc["nodes"].size());
+  doc["nodes"].push_back(twin);
+  write_file((b.folder / "twins.gltf").string(), doc.dump());
+  b.source = b.folder / "twins.gltf";
+  b.read();
+  REQUIRE(b.edited->lights.size() == 2);
+  b.edited->lights[0].enabled = false;
+  const Scene back = b.saved(b.folder / "c.gltf");
+  check_equal(b.edited->lights, back.lights);
+  const json lights = b.document("c.gltf")["extensions"]["KHR_lights_punctual"]["lights"];
+  REQUIRE(lights.size() == 2);
+  CHECK(double(lights[0]["intensity"]) + double(lights[1]["intensity"]) == 3);
+}
+
 TEST_CASE("lights in every direction and of many colours read back exactly") {
   Asset a;
   a.triangle();
@@ -286,6 +368,27 @@ TEST_CASE("the picture of a spot is saved with it, and one that cannot be read i
              text.find(name) != std::string::npos;
     });
     CHECK((warned > 0) == !read);
+  }
+  // Edited and saved in another folder it stays a file, which is named from there; so does an untouched one.
+  {
+    json doc = b.document();
+    doc["extensions"]["KHR_lights_punctual"]["lights"][0]["extras"]["lucerna"]["picture"] = {
+        {"uri", "slide.hdr"}};
+    write_file((b.folder / "c.gltf").string(), doc.dump());
+    Bench c(a);
+    c.source = b.folder / "c.gltf";
+    std::filesystem::create_directory(b.folder / "other");
+    for (const bool edited : {false, true}) {
+      c.read();
+      if (edited) c.edited->lights[0].intensity *= 2.0f;
+      const Scene moved = c.saved(b.folder / "other" / "c.gltf");
+      REQUIRE(moved.lights.size() == 1);
+      REQUIRE(moved.lights[0].picture);
+      CHECK(moved.lights[0].picture->texels == picture->texels);
+      CHECK(b.document("other/c.gltf")["extensions"]["KHR_lights_punctual"]["lights"][0]["extras"]["lucerna"]
+                                      ["picture"]["uri"] == "../slide.hdr");
+      std::filesystem::remove(b.folder / "other" / "c.gltf");
+    }
   }
   json wide = b.document();
   wide["extensions"]["KHR_lights_punctual"]["lights"][0]["spot"]["outerConeAngle"] = 1.5;
@@ -590,6 +693,9 @@ TEST_CASE("damaged extras are refused or ignored where they stand") {
     return failure(a);
   };
   CHECK(with({{"enabled", false}}).empty());
+  CHECK(with({{"enabled", false}, {"off_intensity", {1, 2, 3}}}).empty());
+  CHECK_THAT(with({{"enabled", false}, {"off_intensity", {1, -2, 3}}}),
+             Contains("extras.lucerna.off_intensity") && Contains("-2 is not positive and finite"));
   CHECK_THAT(with({{"enabled", "no"}}), Contains("extras.lucerna.enabled: expected true or false"));
   const json sun{{"date", "2024-06-31"}, {"time", 12}, {"latitude", 1}, {"longitude", 2}};
   CHECK_THAT(with({{"sun", sun}}), Contains("extras.lucerna.sun: there is no date 2024-06-31"));

@@ -88,13 +88,22 @@ std::optional<Item> own_picture(const Item& definition) {
   return own ? own->find("picture") : std::nullopt;
 }
 
+namespace {
+
+vec3 finite_not_negative(const Item& item) {
+  const vec3 value = item.rgb();
+  for (int i = 0; i < 3; ++i)
+    if (!(value[i] >= 0 && value[i] < k_infinity)) item.fail("{} is not positive and finite", value[i]);
+  return value;
+}
+
+}  // namespace
+
 void read_own_emission(const Item& item, Material& material) {
   const auto own = own_extras(item);
   const auto off = own ? own->find("off_emission") : std::nullopt;
   if (!off) return;
-  const vec3 value = off->rgb();
-  for (int i = 0; i < 3; ++i)
-    if (!(value[i] >= 0 && value[i] < k_infinity)) off->fail("{} is not positive and finite", value[i]);
+  const vec3 value = finite_not_negative(*off);
   if (material.emission == vec3(0)) material.off_emission = value;
 }
 
@@ -102,6 +111,10 @@ void read_own_extras(const Item& node, Light& light) {
   const auto own = own_extras(node);
   if (!own) return;
   light.enabled = own->boolean("enabled", light.enabled);
+  if (const auto off = own->find("off_intensity"); off && !light.enabled) {
+    const vec3 value = finite_not_negative(*off);
+    if (light.intensity == vec3(0)) light.intensity = value;
+  }
   if (const auto right = own->find("right"); right && can_roll(light)) {
     const vec3 value = right->rgb();
     if (glm::distance(value, light.right) < glm::radians(0.01f)) light.right = value;

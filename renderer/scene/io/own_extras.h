@@ -4,7 +4,8 @@
 
 namespace lucerna::scene {
 
-/// Of a node with a light: {"enabled": false}, and of a sun {"sun": {"date": "2024-06-21", "time": 12.5,
+/// Of a node with a light: {"enabled": false, "off_intensity": [r, g, b]}, whose light has intensity 0 in the
+/// file; another intensity there counts more. And of a sun {"sun": {"date": "2024-06-21", "time": 12.5,
 /// "zone": 1, "latitude": 48.1, "longitude": 11.6, "north": 0}} (sun_time.h; time in hours). A place of the
 /// sun that does not fit the node's rotation within 0.01 degrees is ignored: the node was turned elsewhere.
 /// Throws a located Error for wrong types and values.

@@ -96,7 +96,7 @@ class LightWriter {
 
   void remove(Id index) {
     for (const char* extension : {k_punctual, k_ies}) remove_extension(node(index), extension);
-    for (const char* key : {"enabled", "sun", "right"}) remove_own(node(index), key);
+    for (const char* key : {"enabled", "off_intensity", "sun", "right"}) remove_own(node(index), key);
   }
 
   void add(const Light& light) {
@@ -105,10 +105,10 @@ class LightWriter {
     if (light.kind != LightKind::directional) place(made, dmat4(1), light);
     if (has_direction(light)) turn(made, dmat4(1), light);
     if (has_profile(light)) {
-      refer_to_profile(made, light, true);
+      refer_to_profile(made, light, true, !light.enabled);
     } else {
       EditedJson& list = definitions();
-      list.push_back(definition(light, EditedJson::object()));
+      list.push_back(definition(light, EditedJson::object(), {.off = !light.enabled}));
       const size_t index = list.size() - 1;
       extension_at(root_, made, k_punctual)["light"] = index;
     }
@@ -128,14 +128,16 @@ class LightWriter {
     if (turned) turn(node(index), parent, after);
     if (moved) place(node(index), parent, after);
     if (before.group != after.group) regroup(index, after.group);
-    write_own(node(index), after, tree_.is_visible(index));
+    const bool shown = tree_.is_visible(index), switched = before.enabled != after.enabled;
+    write_own(node(index), after, shown);
+    const bool off = shown && !after.enabled;
     if (has_profile(after)) {
       if (before.name != after.name) node(index)["name"] = after.name;
-      if (before.intensity != after.intensity || before.profile != after.profile)
-        refer_to_profile(node(index), after, before.profile != after.profile);
+      if (switched || before.intensity != after.intensity || before.profile != after.profile)
+        refer_to_profile(node(index), after, before.profile != after.profile, off);
       return;
     }
-    const bool defined = before.name != after.name || before.kind != after.kind ||
+    const bool defined = switched || before.name != after.name || before.kind != after.kind ||
                          before.intensity != after.intensity || before.inner_cone != after.inner_cone ||
                          before.outer_cone != after.outer_cone || before.width != after.width ||
                          before.height != after.height || before.radius != after.radius ||
@@ -144,7 +146,7 @@ class LightWriter {
     if (!defined) return;
     own_definition(index);
     EditedJson& slot = definitions()[reference(index).get<size_t>()];
-    slot = definition(after, std::move(slot));
+    slot = definition(after, std::move(slot), {.off = off, .keep_picture = before.picture == after.picture});
   }
 
   bool holds_light_only(Id index) {
@@ -200,12 +202,17 @@ class LightWriter {
     remove_from(definitions()[reference(index).get<size_t>()], "extras", "light_group");
   }
 
-  /// `shown`: nothing hides the node.
+  /// `shown`: nothing hides the node. A light that is switched off has intensity 0 in the file, for programs
+  /// that do not read these extras.
   static void write_own(EditedJson& n, const Light& light, bool shown) {
     if (light.enabled == shown)
       remove_own(n, "enabled");
     else
       set_own(n, "enabled", light.enabled);
+    if (shown && !light.enabled)
+      set_own(n, "off_intensity", vector_json(light.intensity));
+    else
+      remove_own(n, "off_intensity");
     if (can_roll(light) && has_direction(light))
       set_own(n, "right", vector_json(light.right));
     else
@@ -221,8 +228,9 @@ class LightWriter {
              {"north", t.north}});
   }
 
-  /// Writes the node's multiplier and colour; `fresh`: with a new definition of the distribution.
-  void refer_to_profile(EditedJson& n, const Light& light, bool fresh) {
+  /// Writes the node's multiplier and colour; `fresh`: with a new definition of the distribution; `off`: with
+  /// multiplier 0.
+  void refer_to_profile(EditedJson& n, const Light& light, bool fresh, bool off) {
     const auto [color, strength] = split_strength(light.intensity);
     if (fresh) {
       EditedJson& list = extension_at(root_, root_, k_ies)["lights"];
@@ -235,7 +243,7 @@ class LightWriter {
       extension_at(root_, n, k_ies)["light"] = place->second;
     }
     EditedJson& reference = extension_at(root_, n, k_ies);
-    reference["multiplier"] = double{strength} / light.profile->peak;
+    reference["multiplier"] = off ? 0.0 : double{strength} / light.profile->peak;
     reference["color"] = vector_json(color);
   }
 
@@ -253,10 +261,10 @@ class LightWriter {
   }
 
   /// As read_own_shape() reads it.
-  static void write_shape(EditedJson& n, const Light& light) {
+  static void write_shape(EditedJson& n, const Light& light, bool keep_picture) {
     for (const char* key : {"shape", "radius", "width", "height", "length", "two_sided", "visible"})
       remove_own(n, key);
-    write_picture(n, light);
+    if (!keep_picture) write_picture(n, light);
     if (!has_shape(light.kind)) return;
     set_own(n, "shape", kind_name(light.kind));
     if (light.kind == LightKind::rectangle) {
@@ -279,16 +287,21 @@ class LightWriter {
     set_own(n, "picture", {{"uri", uri}, {"name", light.picture->name}});
   }
 
-  static EditedJson definition(const Light& light, EditedJson from) {
+  struct DefinitionOptions {
+    bool off = false;           ///< intensity 0
+    bool keep_picture = false;  ///< as `from` names it
+  };
+  /// `from`, with this light.
+  static EditedJson definition(const Light& light, EditedJson from, const DefinitionOptions& o) {
     // Of shapes, the kind whose light is the most like theirs.
     static constexpr const char* k_types[] = {"point", "spot", "directional", "point",
                                               "spot",  "spot", "point",       "point"};
     if (!light.name.empty()) from["name"] = light.name;
     from["type"] = k_types[static_cast<size_t>(light.kind)];
-    write_shape(from, light);
+    write_shape(from, light, o.keep_picture);
     const auto [color, strength] = split_strength(light.intensity);
     from["color"] = vector_json(color);
-    from["intensity"] = number_json(strength);
+    from["intensity"] = o.off ? EditedJson(0.0) : number_json(strength);
     if (from["type"] != "spot") {
       from.erase("spot");
       return from;

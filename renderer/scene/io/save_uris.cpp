@@ -54,6 +54,12 @@ void for_each_uri(EditedJson& root, const std::function<void(EditedJson&)>& visi
       if (child.is_structured() && key != "extras") walk(child, inside || key == "extensions");
   };
   walk(root, false);
+  // Pictures of spots.
+  static const EditedJson::json_pointer lamps("/extensions/KHR_lights_punctual/lights"),
+      picture("/extras/lucerna/picture");
+  if (root.contains(lamps) && root[lamps].is_array())
+    for (EditedJson& lamp : root[lamps])
+      if (lamp.contains(picture)) visit_member(lamp[picture], "uri");
   if (const auto scenes = root.find("scenes"); scenes != root.end())
     for (EditedJson& scene : *scenes)
       if (const auto extras = scene.find("extras"); extras != scene.end() && extras->is_object()) {
