@@ -257,8 +257,12 @@ std::array<Choice, 4> choose(const SceneFacts& facts, const Settings& settings, 
   const auto less = [&](const Combination& a, const Combination& b) {
     return a.badness(goal) < b.badness(goal);
   };
-  const Combination *best = &*std::min_element(all.begin(), all.end(), less), *paths = &all.front();
-  if (best->badness(goal) * k_clearly > paths->badness(goal)) best = paths;
+  // What a picture was begun with stays unless another combination is clearly ahead.
+  const Combination *best = &*std::min_element(all.begin(), all.end(), less), *known = &all.front();
+  if (own.begun)
+    for (const Combination& c : all)
+      if (shared_with_begun(own, slots, c.solvers) == Shared::all) known = &c;
+  if (best->badness(goal) * k_clearly > known->badness(goal)) best = known;
   const double noise = variance_of(own, decided | undecided);
   for (size_t s = 0; s < slots.size(); ++s) {
     const double share = noise > 0 ? variance_of(own, slots[s].components) / noise : 0;

@@ -6,7 +6,7 @@
 // that samples do not reduce. Costs and variances of components add up, so the error of every combination
 // follows, for a given cost: error^2 = variance / samples + prepared(samples)^2 + floor^2. The choice is the
 // combination with the least cost for the goal's error or, without one, with the least error for the goal's
-// cost; paths unless another combination is clearly ahead (k_clearly).
+// cost; paths, or what the picture was begun with, unless another combination is clearly ahead (k_clearly).
 #include <array>
 #include <optional>
 #include <string>
@@ -39,7 +39,7 @@ struct Choice {
 inline constexpr const char* k_auto = "auto";
 
 /// Factor of cost, or of squared error, by which another combination must be ahead of paths.
-inline constexpr double k_clearly = 1.25;
+inline constexpr double k_clearly = 1.1;
 
 /// `findings`: null before the pilot: only facts decide, and undecided components are traced by paths.
 std::array<Choice, 4> choose(const SceneFacts& facts, const Settings& settings,

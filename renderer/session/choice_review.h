@@ -18,7 +18,7 @@ class ChoiceReview {
   std::optional<solvers::Findings::Begun> note(uint32_t samples, double seconds, double sample_seconds) {
     if (samples == 0) return std::nullopt;
     if (!first_) first_ = First{samples, seconds};
-    if (samples == first_->samples) return std::nullopt;
+    if (samples < first_->samples + k_measured) return std::nullopt;
     return solvers::Findings::Begun{
         .solvers = {},
         .samples = double(samples),
@@ -27,6 +27,8 @@ class ChoiceReview {
   }
 
  private:
+  /// Samples that are measured: a single one may wait for a kernel.
+  static constexpr uint32_t k_measured = 3;
   struct First {
     uint32_t samples;
     double seconds;

@@ -143,6 +143,8 @@ TEST_CASE("solvers that cost more than predicted are replaced while that pays") 
   // Of the variance .6 of 3.3 is left: a sample may cost five times as much.
   CHECK(by(4, 10) == "photons");
   CHECK(by(8, 16) == "path");
+  // As good as paths from here on: samples so far are kept.
+  CHECK(by(6.5, 16) == "photons");
   // Too late: the time that is left gives paths more noise.
   CHECK(by(8, 112) == "photons");
   // Photons for what is given cost time, too, which was not predicted.
@@ -157,14 +159,15 @@ TEST_CASE("the cost of a sample is measured after the first, with preparation in
   CHECK_FALSE(review.note(0, 3, 0.5));
   CHECK_FALSE(review.note(1, 5, 0.5));
   CHECK_FALSE(review.note(1, 5.5, 0.5));
-  const auto cost = review.note(3, 9, 0.5);
+  CHECK_FALSE(review.note(3, 7, 0.5));  // too few to measure
+  const auto cost = review.note(5, 13, 0.5);
   REQUIRE(cost);
-  CHECK(cost->samples == 3);
+  CHECK(cost->samples == 5);
   CHECK(cost->sample == 4);
-  CHECK(cost->spent == 18);
+  CHECK(cost->spent == 26);
   review.restart();
   CHECK_FALSE(review.note(2, 1, 0.5));
-  CHECK(review.note(3, 2, 0.5)->sample == 2);
+  CHECK(review.note(5, 4, 0.5)->sample == 2);
 }
 
 TEST_CASE("a dark pilot leaves everything to paths") {
