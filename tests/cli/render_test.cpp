@@ -189,6 +189,11 @@ TEST_CASE("a render ends at the first given limit, and at no other") {
   const auto uniform = stats("--time 0.5");
   CHECK(uniform["settings"]["samples"] == "1048576");
   CHECK(uniform["wall_s"] < 30);
+  // With a limit of time alone the program chooses the solvers.
+  CHECK(uniform["settings"]["components.tertiary"] == "auto");
+  for (const char* more : {"--time 60 --samples 3", "--time 0.5 --set components.secondary=path",
+                           "--time 0.5 --set relight.enabled=on", "--time 0.5 --error 0.1"})
+    CHECK_FALSE(stats(more)["settings"].contains("components.tertiary"));
   const std::string unreachable = "--set sampling.min_samples=2 --error 0.0001 ";
   const auto timed = stats(unreachable + "--time 0.5");
   CHECK(timed["settings"]["sampling.max_samples"] == "1048576");
