@@ -70,6 +70,21 @@ const test::Settings k_by_photons = with(k_caustics, {{"components.caustic", "ph
 /// Few enough photons that the wide lamp's light has less noise by path tracing.
 const test::Settings k_few{{"photons.per_round", "4"}};
 
+TEST_CASE("in the scenes made for caustics, photons compute them by default", "[photons_efficiency]") {
+  // Around the bright caustics is faint light that few photons of the pilot find and that has most of the
+  // noise of paths.
+  for (const std::string name : {"glass", "ring"}) {
+    INFO(name);
+    session::Renderer r(test::renderer_options(true));
+    r.set_size(64, 48);
+    r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + name + "/" + name + ".gltf");
+    test::set(r, {{"components.caustic", "photons"}, {"samples", "1"}});
+    test::finish(r);
+    const auto& solver = dynamic_cast<photons::PhotonSolver&>(*r.solver("photons"));
+    CHECK(solver.regions().by_photons == 1);
+  }
+}
+
 TEST_CASE("each part of the picture uses the more efficient method, with the same light",
           "[photons_efficiency]") {
   const scene::Scene scene = two_lamps();
