@@ -86,10 +86,11 @@ void add_pixels_and_limits(CLI::App* verb, RenderArguments& a) {
       "the others apply only if given; without it the number of samples always does (with --error "
       "sampling.max_samples). With --filter: target error of the filtered picture, over its mean luminance; "
       "all pixels then get the same number of samples");
-  verb->add_option("--time", a.seconds,
-                   "stop after this many seconds, of which solvers prepare for at most half, or earlier "
-                   "at --error or a number of samples that is given (also by --set or the scene). Alone, and "
-                   "without components.* there, it lets the program choose the solvers (auto)");
+  verb->add_option(
+      "--time", a.seconds,
+      "stop after this many seconds, of which solvers prepare for at most half, or earlier "
+      "at --error or a number of samples that is given (also by --set or the scene). Alone, and "
+      "without components.*, relight.* or sampling.* there, it lets the program choose the solvers (auto)");
 }
 
 void add_recording(CLI::App* verb, RenderArguments& a) {

@@ -311,9 +311,6 @@ void find_exposure(session::Renderer& r, const std::vector<session::SettingChang
   log::info("exposure found: film.ev={:.1f}", *ev);
 }
 
-/// Share of the time limit that solvers may use for preparation.
-constexpr double k_preparing = 0.5;
-
 /// The target of --error for the filtered picture. Filters at growing numbers of samples, which depend on
 /// errors only, not on times: equal renders end equally. A filtering costs as much as one to eight samples
 /// a pixel, together a tenth to a fifth of the time.
@@ -353,7 +350,7 @@ double run(session::Renderer& r, const RenderArguments& a, const std::vector<ses
   bool may_prepare = !a.seconds || !makes_picture(a) || !outputs.work().empty();
   while ((makes_picture(a) || !outputs.work().empty()) && !r.done() && !interrupt.signal() &&
          (!a.seconds || timer.seconds() < limit)) {
-    if (!may_prepare && timer.seconds() > k_preparing * limit) {
+    if (!may_prepare && timer.seconds() > plan::k_most_preparation * limit) {
       may_prepare = true;
       if (r.preparing()) {
         log::info("half of the time is over: the picture is rendered with the data prepared so far");

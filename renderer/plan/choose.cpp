@@ -19,8 +19,6 @@ using solvers::Findings, solvers::Prospect, solvers::SolverInfo;
 constexpr size_t k_count = paths::k_component_count;
 constexpr double k_least_sample = 0.1;  // of the cost of a path-traced sample
 constexpr double k_most_samples = 1e7;
-// Share of the cost after which preparation ends where a limit of time cuts it.
-constexpr double k_most_preparation = 0.5;
 constexpr double k_never = std::numeric_limits<double>::max();
 
 std::string key_of(size_t component) {
@@ -58,9 +56,10 @@ std::vector<Slot> slots_of(uint32_t undecided) {
 struct Combination {
   std::vector<const SolverInfo*> solvers;
   Prospect sum{.sample = 1};
-  double traced = 0;  ///< variance of paths where data is still to be prepared
-  double spent = 0;   ///< of the goal's cost, on the picture so far
-  double has = 0;     ///< samples of the picture so far that stay
+  double traced = 0;   ///< variance of paths where data is still to be prepared
+  double spent = 0;    ///< of the goal's cost, on the picture so far
+  double has = 0;      ///< samples of the picture so far that stay
+  bool begun = false;  ///< the solvers of the picture so far
 
   double sample_cost() const { return std::max(sum.sample, k_least_sample); }
   /// Error as seen with that many samples, if that share of the data is prepared: elsewhere, paths compute
@@ -146,6 +145,7 @@ std::optional<Combination> combine(const Findings& findings, uint32_t decided, c
   // What the solvers cost beyond the prediction they cost in other combinations, too.
   all.sum.sample += std::max(0.0, excess_of_begun(findings, decided, slots));
   if (shared == Shared::part) return all;
+  all.begun = true;
   all.has = findings.begun->samples;
   all.sum.sample = findings.begun->sample;
   all.sum.preparation = 0;
@@ -258,10 +258,9 @@ std::array<Choice, 4> choose(const SceneFacts& facts, const Settings& settings, 
     return a.badness(goal) < b.badness(goal);
   };
   // What a picture was begun with stays unless another combination is clearly ahead.
-  const Combination *best = &*std::min_element(all.begin(), all.end(), less), *known = &all.front();
-  if (own.begun)
-    for (const Combination& c : all)
-      if (shared_with_begun(own, slots, c.solvers) == Shared::all) known = &c;
+  const auto begun = std::find_if(all.begin(), all.end(), [](const Combination& c) { return c.begun; });
+  const Combination *best = &*std::min_element(all.begin(), all.end(), less),
+                    *known = begun != all.end() ? &*begun : &all.front();
   if (best->badness(goal) * k_clearly > known->badness(goal)) best = known;
   const double noise = variance_of(own, decided | undecided);
   for (size_t s = 0; s < slots.size(); ++s) {

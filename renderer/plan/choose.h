@@ -21,7 +21,7 @@ namespace lucerna::plan {
 struct Goal {
   double samples = 256;           ///< cost that may be spent, in path-traced samples
   std::optional<double> error{};  ///< error as seen to be reached at the least cost
-  /// Preparation ends when half of the cost is spent, as with a limit of time. Where data is missing then,
+  /// Preparation ends at k_most_preparation of the cost, as with a limit of time. Where data is missing then,
   /// paths compute the light.
   bool cuts_preparation = false;
 };
@@ -38,7 +38,11 @@ struct Choice {
 /// Value of components.X that leaves the choice to choose().
 inline constexpr const char* k_auto = "auto";
 
-/// Factor of cost, or of squared error, by which another combination must be ahead of paths.
+/// Share of a limit of time after which preparation ends.
+inline constexpr double k_most_preparation = 0.5;
+
+/// Factor of cost, or of squared error, by which another combination must be ahead of paths, or of what the
+/// picture was begun with.
 inline constexpr double k_clearly = 1.1;
 
 /// `findings`: null before the pilot: only facts decide, and undecided components are traced by paths.

@@ -24,6 +24,13 @@ std::optional<Item> own_extras(const Item& item) {
   return own;
 }
 
+vec3 finite_not_negative(const Item& item) {
+  const vec3 value = item.rgb();
+  for (int i = 0; i < 3; ++i)
+    if (!(value[i] >= 0 && value[i] < k_infinity)) item.fail("{} is not positive and finite", value[i]);
+  return value;
+}
+
 SunTime read_sun(const Item& item) {
   SunTime time;
   parse_date(item.at("date").text(), item.at("date").where(), time);
@@ -87,17 +94,6 @@ std::optional<Item> own_picture(const Item& definition) {
   const auto own = own_extras(definition);
   return own ? own->find("picture") : std::nullopt;
 }
-
-namespace {
-
-vec3 finite_not_negative(const Item& item) {
-  const vec3 value = item.rgb();
-  for (int i = 0; i < 3; ++i)
-    if (!(value[i] >= 0 && value[i] < k_infinity)) item.fail("{} is not positive and finite", value[i]);
-  return value;
-}
-
-}  // namespace
 
 void read_own_emission(const Item& item, Material& material) {
   const auto own = own_extras(item);

@@ -7,7 +7,7 @@ namespace lucerna::photons {
 namespace {
 
 // Measured with the default settings at 320x180 (lucerna bench auto): cost of a round's light paths and
-// lookups, in samples (1.2 in `glass`, 2.4 and 3.9 in two interiors), and the share of the variance of
+// lookups, in samples (1.5 in `glass`, 1.7 and 4.6 in two interiors), and the share of the variance of
 // caustics that they leave (below 0.05 in `glass`, 0.16 and 0.36 there).
 constexpr double k_round = 2, k_left = 0.1;
 
