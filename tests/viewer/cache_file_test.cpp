@@ -20,8 +20,7 @@ TEST_CASE("a script saves the cache when it is complete, loads it, and continues
           file("a.cache") +  // not complete yet: waits
           "\ncache.load " + file("a.cache") + "\ncache.save " + file("b.cache") + "\ncache.load " +
           file("broken.cache") + "\nset cache.error 0.4\ncache.load " + file("a.cache") + "\ncache.save " +
-          file("c.cache") + "\nscript.save " + file("session.lucerna") + "\nquit 0\n",
-      300);
+          file("c.cache") + "\nscript.save " + file("session.lucerna") + "\nquit 0\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   const auto read = [&](const char* name) { return read_file(file(name)); };

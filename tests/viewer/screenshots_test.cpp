@@ -17,8 +17,8 @@ TEST_CASE("scripts of tests/screenshots pass") {
   std::string command = std::string(LUCERNA_BINARY) + " script";
   for (const char* script : {"console", "dialogs", "errors", "exposure", "layers"})
     command += fmt::format(" tests/screenshots/{}.lucerna", script);
-  const auto outcome = test::run(
-      test::with_display(command + " --device cpu --report " + folder.path.string() + "/report"), 600);
+  const auto outcome =
+      test::run(test::with_display(command + " --device cpu --report " + folder.path.string() + "/report"));
   INFO(outcome.output);
   CHECK(outcome.status == 0);
   CHECK(std::filesystem::exists(folder.path / "report/junit.xml"));

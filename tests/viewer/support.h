@@ -64,12 +64,11 @@ struct Outcome {
   std::string output;
 };
 
-/// Runs through the shell for at most `seconds`; returns standard output and error together. The limit ends
-/// programs that hang, and is far above the minute or two that compiling all shaders beside other tests can
-/// take.
-inline Outcome run(const std::string& command, int seconds = 600) {
+/// Runs through the shell; returns standard output and error together. The limit of ten minutes ends programs
+/// that hang, and is far above the minute or two that compiling all shaders beside other tests can take.
+inline Outcome run(const std::string& command) {
   Outcome outcome;
-  FILE* pipe = popen(("timeout " + std::to_string(seconds) + " " + command + " 2>&1").c_str(), "r");
+  FILE* pipe = popen(("timeout 600 " + command + " 2>&1").c_str(), "r");
   if (!pipe) return outcome;
   std::array<char, 4096> block;
   size_t n = 0;
@@ -96,9 +95,8 @@ inline Outcome window(const std::string& steps, const std::string& environment =
 }
 
 /// Runs the steps in a window of the program with `arguments`.
-inline Outcome program(const std::string& arguments, const std::string& steps, int seconds = 600) {
-  return run(with_display(std::string(LUCERNA_BINARY) + " " + arguments + " --script " + script_of(steps)),
-             seconds);
+inline Outcome program(const std::string& arguments, const std::string& steps) {
+  return run(with_display(std::string(LUCERNA_BINARY) + " " + arguments + " --script " + script_of(steps)));
 }
 
 /// A PNG of the window as numbers 0..1 (encoded values).

@@ -6,19 +6,11 @@ namespace viewer_tests {
 
 using namespace lucerna;
 
-namespace {
-
-test::Outcome viewer(const std::string& arguments, const std::string& steps) {
-  return test::program(arguments, steps);
-}
-
-}  // namespace
-
 TEST_CASE("the viewer starts, renders cornell, saves a screenshot and quits") {
   if (test::no_program()) return;
   const test::Folder folder;
   const auto png = folder.path / "window.png";
-  const auto outcome = viewer(
+  const auto outcome = test::program(
       "scenes/cornell/cornell.gltf",
       "window.size 1100 700\nwait_scene\nwait_samples 1\ncamera.orbit 0.05 0\nwait_samples 1\nscreenshot " +
           png.string() + "\nquit 0\n");
@@ -59,7 +51,8 @@ TEST_CASE("a missing scene is an error in the window, and the script fails with 
   if (test::no_program()) return;
   const test::Folder folder;
   const auto png = folder.path / "window.png";
-  const auto shown = viewer("no/such/scene.gltf", "wait_load\nscreenshot " + png.string() + "\nquit 0\n");
+  const auto shown =
+      test::program("no/such/scene.gltf", "wait_load\nscreenshot " + png.string() + "\nquit 0\n");
   INFO(shown.output);
   REQUIRE(shown.status == 0);
   CHECK_THAT(shown.output, Catch::Contains("no/such/scene.gltf"));
@@ -67,10 +60,10 @@ TEST_CASE("a missing scene is an error in the window, and the script fails with 
   const vec3 strip = window.at(1084, 72);
   CHECK(strip.x > 1.5f * strip.y);
 
-  const auto failed = viewer("no/such/scene.gltf", "wait_scene\nquit\n");
+  const auto failed = test::program("no/such/scene.gltf", "wait_scene\nquit\n");
   INFO(failed.output);
   CHECK(failed.status == 1);
-  const auto mistyped = viewer("scenes/cornell/cornell.gltf --set film.evv=2", "quit\n");
+  const auto mistyped = test::program("scenes/cornell/cornell.gltf --set film.evv=2", "quit\n");
   CHECK(mistyped.status == 1);
   CHECK_THAT(mistyped.output,
              Catch::Contains("--set: set: there is no setting 'film.evv'; did you mean 'film.ev'?"));
@@ -82,10 +75,11 @@ TEST_CASE("a damaged file that is dropped keeps the scene, and a click selects t
   const auto broken = folder.path / "broken.glb", png = folder.path / "window.png";
   const auto session = folder.path / "session.lucerna";
   std::ofstream(broken, std::ios::binary) << "glTF\2 and then nothing that it says";
-  const auto outcome = viewer("scenes/cornell/cornell.gltf",
-                              "window.size 1100 700\nwait_scene\nwait_samples 1\ndrop " + broken.string() +
-                                  "\nwait_load\nwait_samples 1\npick 0.5 0.145\nscreenshot " + png.string() +
-                                  "\nscript.save " + session.string() + "\nquit 0\n");
+  const auto outcome =
+      test::program("scenes/cornell/cornell.gltf",
+                    "window.size 1100 700\nwait_scene\nwait_samples 1\ndrop " + broken.string() +
+                        "\nwait_load\nwait_samples 1\npick 0.5 0.145\nscreenshot " + png.string() +
+                        "\nscript.save " + session.string() + "\nquit 0\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   CHECK_THAT(outcome.output, Catch::Contains("broken.glb"));
@@ -100,13 +94,13 @@ TEST_CASE("a reference is loaded for a picture of its size, and refused with bot
   if (test::no_program()) return;
   const test::Folder folder;
   const std::string exr = (folder.path / "ref.exr").string(), png = (folder.path / "window.png").string();
-  const auto outcome =
-      viewer("scenes/cornell/cornell.gltf",
-             "window.size 1100 700\nwait_scene\nreference.load " + exr +
-                 "\nwait 0.5\nview.size 96 64\nwait 0.5\nsamples 8\nwait_samples 8\nimage.save " + exr +
-                 "\nsamples 64\nreference.load " + exr + "\nwait_samples 64\nwait 0.7\nscreenshot " + png +
-                 "\nview.size 80 64\nwait 0.5\nwait_samples 2\nreference.load " + exr +
-                 "\nwait 0.5\nreference.clear\nwait 0.2\nquit 0\n");
+  const auto outcome = test::program(
+      "scenes/cornell/cornell.gltf",
+      "window.size 1100 700\nwait_scene\nreference.load " + exr +
+          "\nwait 0.5\nview.size 96 64\nwait 0.5\nsamples 8\nwait_samples 8\nimage.save " + exr +
+          "\nsamples 64\nreference.load " + exr + "\nwait_samples 64\nwait 0.7\nscreenshot " + png +
+          "\nview.size 80 64\nwait 0.5\nwait_samples 2\nreference.load " + exr +
+          "\nwait 0.5\nreference.clear\nwait 0.2\nquit 0\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   CHECK_THAT(outcome.output, Catch::Contains("rendered with seed 0 like this picture"));
@@ -119,12 +113,12 @@ TEST_CASE("a PNG is saved as shown or unfiltered, by option; an EXR always unfil
   const test::Folder folder;
   const auto file = [&](const char* name) { return (folder.path / name).string(); };
   // Without panels the picture fills the window.
-  const auto outcome =
-      viewer("scenes/cornell/cornell.gltf",
-             "window.size 640 420\nwindow.panels false\nwait_scene\nwait 0.5\nwait_samples 4\nrender.pause\n"
-             "wait 0.5\nscreenshot " +
-                 file("window.png") + "\nimage.save " + file("shown.png") + " as=shown\nimage.save " +
-                 file("plain.png") + "\nimage.save " + file("named.png") + " as=unfiltered\nquit 0\n");
+  const auto outcome = test::program(
+      "scenes/cornell/cornell.gltf",
+      "window.size 640 420\nwindow.panels false\nwait_scene\nwait 0.5\nwait_samples 4\nrender.pause\n"
+      "wait 0.5\nscreenshot " +
+          file("window.png") + "\nimage.save " + file("shown.png") + " as=shown\nimage.save " +
+          file("plain.png") + "\nimage.save " + file("named.png") + " as=unfiltered\nquit 0\n");
   INFO(outcome.output);
   REQUIRE(outcome.status == 0);
   const test::Picture window(file("window.png")), shown(file("shown.png")), plain(file("plain.png")),
@@ -142,8 +136,8 @@ TEST_CASE("a PNG is saved as shown or unfiltered, by option; an EXR always unfil
   CHECK(other > 20000);
   CHECK(differs == 0);
 
-  const auto refused = viewer("scenes/cornell/cornell.gltf",
-                              "wait_scene\nimage.save " + file("a.exr") + " as=shown\nquit 0\n");
+  const auto refused = test::program("scenes/cornell/cornell.gltf",
+                                     "wait_scene\nimage.save " + file("a.exr") + " as=shown\nquit 0\n");
   CHECK(refused.status == 1);
   CHECK_THAT(refused.output, Catch::Contains("as: only a PNG is saved as shown"));
 }
