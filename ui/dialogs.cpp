@@ -1,5 +1,4 @@
 // The page of keys, the frame of every panel, and the borders between panels.
-#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui_internal.h>
 
@@ -89,9 +88,11 @@ std::vector<std::pair<std::string, std::string>> key_rows() {
   return rows;
 }
 
-void key_page(Ui& ui) {
+}  // namespace
+
+void draw_key_page(bool& wanted) {
   static bool open = false;
-  if (ui.help && !open) ImGui::OpenPopup("##keys");
+  if (wanted && !open) ImGui::OpenPopup("##keys");
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({std::floor(0.5f * window.x), std::floor(0.5f * window.y)}, 0, {0.5f, 0.5f});
   ImGui::SetNextWindowSizeConstraints({0, 0}, {window.x, window.y - px(16)});
@@ -128,11 +129,9 @@ void key_page(Ui& ui) {
     }
     ImGui::EndPopup();
   }
-  ui.help = open;
+  wanted = open;
   ImGui::PopStyleVar(2);
 }
-
-}  // namespace
 
 void begin_panel(const char* name, const Area& area, ImU32 background, bool scrolls) {
   ImGui::SetNextWindowPos(area.lo);
@@ -152,14 +151,7 @@ void begin_panel(const char* name, const Area& area, ImU32 background, bool scro
   ImGui::PopStyleColor();
 }
 
-void draw_dialogs(Ui& ui) {
-  draw_file_dialog(ui.actions, ui.open, ui.recent, ui.picture_of, ui.dialog,
-                   ui.keys.pressed(GLFW_KEY_ESCAPE));
-  draw_leaving_dialog(ui);
-  key_page(ui);
-}
-
-void draw_splitters(Ui& ui, const Areas& areas) {
+void draw_splitters(Actions& actions, const Areas& areas) {
   // A strip over each border, in a separate window so that it is above both neighbours.
   const auto strip = [&](const char* name, ImVec2 lo, ImVec2 hi, bool along_x, float direction,
                          float& value) {
@@ -178,15 +170,15 @@ void draw_splitters(Ui& ui, const Areas& areas) {
     return twice;
   };
   const float reach = px(3);
-  const Layout& l = ui.shown;
+  const Layout& l = areas.shown;
   const float left = areas.left.hi.x, right = areas.right.lo.x, bottom = areas.accuracy.lo.y;
   const auto edge = [&](const char* name, const char* panel, ImVec2 lo, ImVec2 hi, bool along_x,
                         float direction, float size, bool open) {
     float wanted = size;
     if (strip(name, lo, hi, along_x, direction, wanted))
-      ui.act("window.fold", panel, open);
+      actions.act("window.fold", panel, open);
     else if (wanted != size && open)
-      ui.act("window.split", panel, std::max(0.0f, wanted));
+      actions.act("window.split", panel, std::max(0.0f, wanted));
   };
   edge("##split_left", "left", {left - reach, areas.left.lo.y}, {left + reach, bottom - reach}, true, 1,
        l.left, l.left_open);
@@ -199,7 +191,7 @@ void draw_splitters(Ui& ui, const Areas& areas) {
     float width = before;
     strip(name, {area.lo.x - reach, bottom + reach}, {area.lo.x + reach, area.hi.y}, true, -1, width);
     if (width != before)
-      ui.act(command, std::clamp(width * theme().scale / std::max(1.0f, areas.log.hi.x), 0.0f, 1.0f));
+      actions.act(command, std::clamp(width * theme().scale / std::max(1.0f, areas.log.hi.x), 0.0f, 1.0f));
   };
   inner("##split_log", "window.log_share", areas.log, l.log_share);
   inner("##split_passes", "window.passes_share", areas.passes, l.passes_share);

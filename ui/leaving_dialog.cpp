@@ -1,7 +1,5 @@
 // The question before a scene is left with edits that are not saved: the window closes, or another scene
 // opens.
-#include <GLFW/glfw3.h>
-
 #include <filesystem>
 
 #include "state.h"
@@ -10,24 +8,27 @@
 namespace lucerna::ui {
 namespace {
 
-/// Leaves the scene once it is written; stays if that fails.
-void follow_saving(Ui& ui) {
+/// True once the scene is written; stays in it if that fails.
+bool saved(Actions& actions, const commands::SavedFiles& files, Leaving& leaving) {
+  actions.wake(2);
   try {
-    if (ui.work.files.latest_written()) ui.finish_leaving();
+    return files.latest_written();
   } catch (const std::exception&) {  // the reason is in the log
-    ui.leaving = {};
+    leaving = {};
+    return false;
   }
-  ui.wake(2);
 }
 
 }  // namespace
 
-void draw_leaving_dialog(Ui& ui) {
-  using Step = Ui::Leaving::Step;
-  if (ui.leaving.step == Step::no) return;
-  if (ui.leaving.step == Step::saves) return follow_saving(ui);
+bool draw_leaving_dialog(Actions& actions, const commands::SavedFiles& files, const std::string& saves_to,
+                         Leaving& leaving, bool escape) {
+  using Step = Leaving::Step;
+  if (leaving.step == Step::no) return false;
+  if (leaving.step == Step::saves) return saved(actions, files, leaving);
   constexpr const char* k_id = "##leaving";
-  const std::string opens = ui.leaving.opens;
+  const std::string opens = leaving.opens;
+  bool may_leave = false;
   if (!ImGui::IsPopupOpen(k_id)) ImGui::OpenPopup(k_id);
   const ImVec2 window = ImGui::GetIO().DisplaySize;
   ImGui::SetNextWindowPos({0.5f * window.x, 0.4f * window.y}, 0, {0.5f, 0.5f});
@@ -37,7 +38,7 @@ void draw_leaving_dialog(Ui& ui) {
   if (ImGui::BeginPopupModal(k_id, nullptr,
                              ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
                                  ImGuiWindowFlags_NoResize | ImGuiWindowFlags_AlwaysAutoResize)) {
-    const std::string file = std::filesystem::path(ui.work.scene_file.file()).filename().string();
+    const std::string file = std::filesystem::path(saves_to).filename().string();
     label(elided(opens.empty() ? "Save the edits before closing?"
                                : "Save the edits before " + std::filesystem::path(opens).filename().string() +
                                      " is opened?",
@@ -49,16 +50,16 @@ void draw_leaving_dialog(Ui& ui) {
     const float w = px(124);
     bool done = true;
     if (button("##save_scene", "Save", true, w)) {
-      ui.act("scene.save");
-      ui.leaving.step = Step::saves;
+      actions.act("scene.save");
+      leaving.step = Step::saves;
     } else {
       ImGui::SameLine(0, px(8));
       if (button("##discard", "Discard edits", false, w)) {
-        ui.finish_leaving();
+        may_leave = true;
       } else {
         ImGui::SameLine(0, px(8));
-        if (button("##stay", "Cancel", false, w) || ui.keys.pressed(GLFW_KEY_ESCAPE))
-          ui.leaving = {};
+        if (button("##stay", "Cancel", false, w) || escape)
+          leaving = {};
         else
           done = false;
       }
@@ -67,6 +68,7 @@ void draw_leaving_dialog(Ui& ui) {
     ImGui::EndPopup();
   }
   ImGui::PopStyleVar(3);
+  return may_leave;
 }
 
 }  // namespace lucerna::ui

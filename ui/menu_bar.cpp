@@ -366,7 +366,7 @@ void view_menu(Controls& controls, const Viewport& view, const Layout& layout, c
 }
 
 void camera_menu(Actions& actions, const commands::OpenScene& open, const commands::Navigation& camera,
-                 const Viewport& viewport, CardsView& cards) {
+                 Viewport& viewport) {
   if (!begin_menu("Camera")) return;
   const bool view = camera.view.has_value();
   if (entry("Frame selection", "F",
@@ -394,7 +394,7 @@ void camera_menu(Actions& actions, const commands::OpenScene& open, const comman
   divide();
   if (entry("Bookmark this view", "Ctrl+B", "Saves the view for this scene, also for later runs.", false,
             view))
-    keep_view(actions, open, camera, cards);
+    keep_view(actions, open, camera, viewport.cards);
   int row = 0;
   for (const auto& [name, line] : camera.bookmarks_of(open.scene.get())) {
     ImGui::PushID(row++);
@@ -496,7 +496,13 @@ float done_part(const session::Snapshot& s) {
 
 }  // namespace
 
-void draw_menu_bar(Ui& ui, const Area& area) {
+void draw_menu_bar(Viewport& view, AccuracyView& accuracy, LogView& log,
+                   const std::vector<std::string>& recent, const Layout& chosen, const std::string& side,
+                   const Areas& areas) {
+  Actions& actions = view.controls.actions;
+  commands::Workspace& work = view.work;
+  const Area& area = areas.bar;
+  const Layout& shown = areas.shown;
   begin_panel("##bar", area, colour::bar, false);
   ImDrawList* list = ImGui::GetWindowDrawList();
   // Menus. The bar is drawn here, so it can hold more than menus.
@@ -504,12 +510,12 @@ void draw_menu_bar(Ui& ui, const Area& area) {
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(16), 0});
   float menus_end = area.lo.x;
   if (ImGui::BeginMenuBar()) {
-    file_menu(ui.actions, ui.open, ui.work.scene_file, ui.recent, ui.viewport.has_picture());
-    edit_menu(ui.actions, ui.history, ui.camera.selection);
-    view_menu(ui.controls, ui.viewport, ui.layout, ui.shown, ui.side, !ui.accuracy.runs.earlier().empty());
-    camera_menu(ui.actions, ui.open, ui.camera, ui.viewport, ui.cards);
-    render_menu(ui.actions, ui.open, ui.region.picks);
-    help_menu(ui.actions, ui.log);
+    file_menu(actions, work.open, work.scene_file, recent, view.has_picture());
+    edit_menu(actions, work.history, work.camera.selection);
+    view_menu(view.controls, view, chosen, shown, side, !accuracy.runs.earlier().empty());
+    camera_menu(actions, work.open, work.camera, view);
+    render_menu(actions, work.open, view.region.picks);
+    help_menu(actions, log);
     menus_end = ImGui::GetCursorScreenPos().x;
     ImGui::EndMenuBar();
   }
@@ -517,12 +523,11 @@ void draw_menu_bar(Ui& ui, const Area& area) {
 
   // The rest is drawn over the whole bar; after its menus ImGui clips to the area below them.
   ImGui::PushClipRect(area.lo, area.hi, false);
-  const session::Snapshot* s = ui.open.snapshot.get();
+  const session::Snapshot* s = work.open.snapshot.get();
   // The scene's name is above the picture, or behind the menus if they extend further.
-  const float left =
-      std::max(menus_end + px(8), area.lo.x + px((ui.shown.left_open ? ui.shown.left : 0) + 8));
+  const float left = std::max(menus_end + px(8), area.lo.x + px((shown.left_open ? shown.left : 0) + 8));
   float right = area.hi.x - px(16), state_left = right;
-  if (s && ui.open.scene && s->max_samples > 0) {
+  if (s && work.open.scene && s->max_samples > 0) {
     const std::array<std::string, 3> states = state_texts(*s);
     // The numbers stay in place: the field is as wide as its longest text.
     const std::array<std::string, 3> longest = state_texts([&] {
@@ -549,7 +554,7 @@ void draw_menu_bar(Ui& ui, const Area& area) {
       draw_text(list, {begin, area.lo.y}, {preview_end, area.hi.y}, *preview, colour::accent, Align::right);
       ImGui::SetCursorScreenPos({begin, area.lo.y});
       if (ImGui::InvisibleButton("##preview", {preview_end - begin, area.hi.y - area.lo.y - px(2)}))
-        ui.toggle("overlay.former");
+        actions.toggle("overlay.former");
       tooltip(
           (s->shown_error
                ? fmt::format("Estimated error of the displayed picture, of the median tile and of the worst "
@@ -579,15 +584,15 @@ void draw_menu_bar(Ui& ui, const Area& area) {
       right -= text_width(device) + px(24);
     }
   }
-  if (ui.open.scene) {
-    const std::string name = elided((ui.work.scene_file.unsaved() ? "*" : "") + ui.open.scene->name,
+  if (work.open.scene) {
+    const std::string name = elided((work.scene_file.unsaved() ? "*" : "") + work.open.scene->name,
                                     std::max(0.0f, right - left), theme().fonts.strong);
     draw_text(list, {left, area.lo.y}, {right, area.hi.y}, name, colour::text, Align::left,
               theme().fonts.strong);
   }
   // Progress of the picture as a thin line under its state.
   list->AddRectFilled({area.lo.x, area.hi.y - 1}, area.hi, colour::hairline);
-  if (s && ui.open.scene && s->max_samples > 0 && !s->finished) {
+  if (s && work.open.scene && s->max_samples > 0 && !s->finished) {
     const float done = done_part(*s);
     list->AddRectFilled({state_left, area.hi.y - px(2)},
                         {state_left + done * (area.hi.x - px(16) - state_left), area.hi.y},

@@ -65,22 +65,23 @@ Json read_state() {
   return {};
 }
 
-Json state_of(const Ui& ui) {
+Json state_of(const Remembered& window) {
   Json json;
-  json["recent"] = ui.recent;
-  json["left"] = ui.layout.left, json["right"] = ui.layout.right, json["bottom"] = ui.layout.bottom;
-  json["strip"] = {{"passes", ui.layout.passes_share}, {"log", ui.layout.log_share}};
-  json["left_open"] = ui.layout.left_open, json["right_open"] = ui.layout.right_open,
-  json["bottom_open"] = ui.layout.bottom_open;
-  json["arranged"] = {{"left", ui.layout.left_arranged},
-                      {"right", ui.layout.right_arranged},
-                      {"bottom", ui.layout.bottom_arranged}};
-  json["welcomed"] = ui.welcomed;
+  json["recent"] = window.recent;
+  json["left"] = window.layout.left, json["right"] = window.layout.right,
+  json["bottom"] = window.layout.bottom;
+  json["strip"] = {{"passes", window.layout.passes_share}, {"log", window.layout.log_share}};
+  json["left_open"] = window.layout.left_open, json["right_open"] = window.layout.right_open,
+  json["bottom_open"] = window.layout.bottom_open;
+  json["arranged"] = {{"left", window.layout.left_arranged},
+                      {"right", window.layout.right_arranged},
+                      {"bottom", window.layout.bottom_arranged}};
+  json["welcomed"] = window.welcomed;
   auto& bookmarks = json["bookmarks"] = Json::object();
-  for (const auto& [scene, views] : ui.camera.bookmarks)
+  for (const auto& [scene, views] : window.bookmarks)
     if (!views.empty()) bookmarks[scene] = views;
-  json["sections"] = Json(ui.sections);
-  if (ui.sections.empty()) json["sections"] = Json::object();
+  json["sections"] = Json(window.sections);
+  if (window.sections.empty()) json["sections"] = Json::object();
   return json;
 }
 
@@ -108,9 +109,11 @@ Lists lists_of(const Json& json) {
   return lists;
 }
 
-void take(const Lists& lists, Ui& ui) { ui.recent = lists.recent, ui.camera.bookmarks = lists.bookmarks; }
+void take(const Lists& lists, const Remembered& window) {
+  window.recent = lists.recent, window.bookmarks = lists.bookmarks;
+}
 
-void take_panels(const Json& json, Ui& ui) {
+void take_panels(const Json& json, const Remembered& window) {
   try {
     Layout layout;
     layout.left = json.value("left", layout.left);
@@ -128,10 +131,10 @@ void take_panels(const Json& json, Ui& ui) {
     layout.left_arranged = arranged.value("left", !layout.left_open || layout.left != fresh.left);
     layout.right_arranged = arranged.value("right", !layout.right_open || layout.right != fresh.right);
     layout.bottom_arranged = arranged.value("bottom", !layout.bottom_open || layout.bottom != fresh.bottom);
-    ui.layout = layout;
-    ui.welcomed = json.value("welcomed", false);
+    window.layout = layout;
+    window.welcomed = json.value("welcomed", false);
     const auto sections = json.value("sections", Json::object());
-    for (const auto& [name, open] : sections.items()) ui.sections[name] = open.get<bool>();
+    for (const auto& [name, open] : sections.items()) window.sections[name] = open.get<bool>();
   } catch (const nlohmann::json::exception&) {
   }
 }
@@ -180,20 +183,20 @@ struct Memory::Kept {
   bool warned = false;
 };
 
-Memory::Memory(Ui& ui) : ui_(ui), kept_(std::make_unique<Kept>()) {
+Memory::Memory(const Remembered& window) : window_(window), kept_(std::make_unique<Kept>()) {
   const Json json = read_state();
-  if (json.is_object()) take(lists_of(json), ui_), take_panels(json, ui_);
-  kept_->saved = kept_->seen = state_of(ui_);
+  if (json.is_object()) take(lists_of(json), window_), take_panels(json, window_);
+  kept_->saved = kept_->seen = state_of(window_);
 }
 
 Memory::~Memory() {
   // Waits a limited time for another window that was stopped while holding the lock.
-  for (int i = 0; state_of(ui_) != kept_->saved && !save() && i < 100; ++i)
+  for (int i = 0; state_of(window_) != kept_->saved && !save() && i < 100; ++i)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
 }
 
 void Memory::follow(double now) {
-  const Json mine = state_of(ui_);
+  const Json mine = state_of(window_);
   if (mine == kept_->saved) return;
   if (mine != kept_->seen) kept_->changed_at = now, kept_->seen = mine;
   const auto differs = [&](const char* key) { return mine[key] != kept_->saved[key]; };
@@ -210,7 +213,7 @@ bool Memory::save() {
   if (!lock.held()) return false;
   Json theirs = read_state();
   if (!theirs.is_object()) theirs = kept_->saved;
-  const Json mine = state_of(ui_);
+  const Json mine = state_of(window_);
   Json all = merged(kept_->saved, mine, theirs);
   all["recent"] =
       merged_recent(lists_of(kept_->saved).recent, lists_of(mine).recent, lists_of(theirs).recent);
@@ -221,8 +224,8 @@ bool Memory::save() {
     kept_->saved = mine;  // not tried again for the same change
     return true;
   }
-  take(lists_of(all), ui_);
-  kept_->saved = kept_->seen = state_of(ui_);
+  take(lists_of(all), window_);
+  kept_->saved = kept_->seen = state_of(window_);
   return true;
 }
 

@@ -17,6 +17,7 @@
 #include "layout.h"
 #include "log_view.h"
 #include "paths_panel.h"
+#include "recall.h"
 #include "region_view.h"
 #include "requests.h"
 #include "scene_view.h"
@@ -34,8 +35,6 @@ using commands::Viewpoint;
 /// Name of the scene's panel on the right, beside the names of solvers.
 inline constexpr const char* k_scene_side = "scene";
 
-inline constexpr size_t k_recent_files = 8;  ///< number of recent files kept
-
 struct Dialog {
   enum class Purpose { none, open, save, scene, script, test, reference, held, solver_load, solver_save };
   Purpose purpose = Purpose::none;
@@ -47,6 +46,12 @@ struct Dialog {
   int marked = -1;        ///< entry of the completion list
   bool pictures = false;  ///< shows the program's scenes
   bool as_shown = true;   ///< a PNG is saved as the window shows it
+};
+
+/// The scene is to be left with edits that are not saved: a dialog asks what to do with them.
+struct Leaving {
+  enum class Step { no, asks, saves } step = Step::no;
+  std::string opens;  ///< the scene that follows; "": the window closes
 };
 
 /// OpenGL name of an image file's picture, created on first use; 0 if it cannot be read.
@@ -99,16 +104,14 @@ struct Ui {
   LogView log{actions};
   Dialog dialog;
   bool help = false;
-  /// The scene is to be left with edits that are not saved: a dialog asks what to do with them.
-  struct Leaving {
-    enum class Step { no, asks, saves } step = Step::no;
-    std::string opens;  ///< the scene that follows; "": the window closes
-  } leaving;
+  Leaving leaving;
   /// Leaves the scene for another one, or closes the window if `opens` is "". Asks before edits are lost.
   void leave(const std::string& opens);
   /// Leaves it, with or without edits, for leaving.opens.
   void finish_leaving();
-  std::vector<std::string> recent;  ///< files, newest first, from the root
+  std::vector<std::string> recent;  ///< files, newest first, from the root; at most k_recent_files
+  /// What is kept between runs.
+  Remembered remembered() { return {recent, camera.bookmarks, layout, sections, welcomed}; }
   Viewport viewport{controls, work, moves, scene_view, paths, region, compare, cards};
   PictureOf picture_of;  ///< null without a window
   /// Frames to draw until the picture's area reflects the commands so far.
@@ -145,7 +148,10 @@ std::string next_side(const commands::OpenScene& open, const std::string& side, 
 void draw_parts(Ui& ui);
 
 // The parts, each in its file; called once per frame in this order. Coordinates are window pixels.
-void draw_menu_bar(Ui& ui, const Area& area);
+/// `chosen`: the layout as chosen; `side`: content of the right panel.
+void draw_menu_bar(Viewport& view, AccuracyView& accuracy, LogView& log,
+                   const std::vector<std::string>& recent, const Layout& chosen, const std::string& side,
+                   const Areas& areas);
 void draw_light_panel(Controls& controls, bool expanded, const Area& area);
 /// The light mix, into a section of that panel.
 void draw_mix(Actions& actions, commands::OpenScene& open);
@@ -175,13 +181,16 @@ void draw_inspection(const session::Snapshot& picture, const Area& area, const A
 /// Bookmarks the view under the next free name, with a notice.
 void keep_view(Actions& actions, const commands::OpenScene& open, const commands::Navigation& camera,
                CardsView& cards);
-void draw_splitters(Ui& ui, const Areas& areas);
-void draw_dialogs(Ui& ui);
-/// Part of draw_dialogs. `escape`: Esc was pressed.
+void draw_splitters(Actions& actions, const Areas& areas);
+// Dialogs. `escape`: Esc was pressed.
 void draw_file_dialog(Actions& actions, const commands::OpenScene& open,
                       const std::vector<std::string>& recent, const PictureOf& picture_of, Dialog& dialog,
                       bool escape);
-void draw_leaving_dialog(Ui& ui);  ///< part of draw_dialogs
+/// True once the scene may be left: it is saved, or its edits are not wanted. `saves_to`: the scene's file.
+bool draw_leaving_dialog(Actions& actions, const commands::SavedFiles& files, const std::string& saves_to,
+                         Leaving& leaving, bool escape);
+/// Keys and mouse; `open` becomes false when it closes.
+void draw_key_page(bool& open);
 /// Keys of the window, whatever it shows. `panels`: they are shown; `dialog`: one is open. False if a dialog,
 /// a menu or a text field has the other keys.
 bool handle_window_keys(const Keys& keys, Actions& actions, const commands::History& history, bool panels,

@@ -15,6 +15,7 @@
 #include "setting_lines.h"
 #include "shown_lines.h"
 #include "solvers/registry.h"
+#include "state.h"
 #include "widgets.h"
 #include "window.h"
 
@@ -34,7 +35,7 @@ class Viewer {
         window_(options.width, options.height, options.hidden, options.scale) {
     ui_.scripted = !options.script.empty();
     if (remembers()) {
-      memory_.emplace(ui_);
+      memory_.emplace(ui_.remembered());
       ui_.cards.welcome = !std::exchange(ui_.welcomed, true);
     }
     if (!theme().font_note.empty()) log::warning("{}", theme().font_note);
@@ -291,6 +292,14 @@ void handle_keys(Ui& ui) {
   if (ui.keys.pressed(GLFW_KEY_K)) ui.act("window.side", next_side(ui.open, ui.side, ui.shown.right_open));
 }
 
+void draw_dialogs(Ui& ui) {
+  const bool escape = ui.keys.pressed(GLFW_KEY_ESCAPE);
+  draw_file_dialog(ui.actions, ui.open, ui.recent, ui.picture_of, ui.dialog, escape);
+  if (draw_leaving_dialog(ui.actions, ui.work.files, ui.work.scene_file.file(), ui.leaving, escape))
+    ui.finish_leaving();
+  draw_key_page(ui.help);
+}
+
 }  // namespace
 
 void draw_parts(Ui& ui) {
@@ -298,8 +307,8 @@ void draw_parts(Ui& ui) {
   const Areas areas = arrange(ui.layout, ImGui::GetIO().DisplaySize, theme().scale);
   ui.shown = areas.shown, ui.areas = areas;
   if (ui.layout.panels) {
-    draw_splitters(ui, areas);
-    draw_menu_bar(ui, areas.bar);
+    draw_splitters(ui.actions, areas);
+    draw_menu_bar(ui.viewport, ui.accuracy, ui.log, ui.recent, ui.layout, ui.side, areas);
     draw_light_panel(ui.controls, ui.shown.left_open, areas.left);
     draw_toolbar(ui.actions, ui.open, ui.viewport.dropper, areas.toolbar);
     const Area side =

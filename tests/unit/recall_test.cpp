@@ -1,14 +1,13 @@
 // links: ui
 // State that the window keeps between runs: bookmarks by scene, recent files, panels, and that the
 // introduction was shown. Several windows share it.
-#include "viewer/fake_session.h"
-
 #include <sys/stat.h>
 #include <catch2/catch.hpp>
 #include <cstdlib>
 #include <fstream>
 
 #include "base/file.h"
+#include "base/log.h"
 #include "support/folder.h"
 #include "ui/recall.h"
 
@@ -22,9 +21,12 @@ const std::string k_line = "camera.place 1,2,3 0,0,0 0,1,0 fov=40";
 
 /// The window's stored state, without a window.
 struct Window {
-  session::FakeSession session;
-  ui::Ui ui{session};
-  ui::Memory memory{ui};
+  std::vector<std::string> recent;
+  std::map<std::string, commands::Navigation::Bookmarks> bookmarks;
+  ui::Layout layout;
+  std::map<std::string, bool> sections;
+  bool welcomed = false;
+  ui::Memory memory{{recent, bookmarks, layout, sections, welcomed}};
 };
 
 struct StateFolder : test::Folder {
@@ -38,18 +40,18 @@ TEST_CASE("bookmarks and the state of the first steps survive a restart; a damag
   const StateFolder folder;
   {
     Window window;  // no file yet
-    CHECK_FALSE(window.ui.welcomed);
-    CHECK(window.ui.camera.bookmarks.empty());
-    window.ui.welcomed = true;
-    window.ui.camera.bookmarks["/a/hall.gltf"]["From the \"stage\""] = k_line;
-    window.ui.camera.bookmarks["/a/empty.gltf"];
-    window.ui.camera.bookmarks["/a/b\xFChne.gltf"]["\xE9"] = k_line;
+    CHECK_FALSE(window.welcomed);
+    CHECK(window.bookmarks.empty());
+    window.welcomed = true;
+    window.bookmarks["/a/hall.gltf"]["From the \"stage\""] = k_line;
+    window.bookmarks["/a/empty.gltf"];
+    window.bookmarks["/a/b\xFChne.gltf"]["\xE9"] = k_line;
   }
   {
     Window window;
-    CHECK(window.ui.welcomed);
-    CHECK(window.ui.camera.bookmarks.size() == 2);
-    CHECK(window.ui.camera.bookmarks["/a/hall.gltf"]["From the \"stage\""] == k_line);
+    CHECK(window.welcomed);
+    CHECK(window.bookmarks.size() == 2);
+    CHECK(window.bookmarks["/a/hall.gltf"]["From the \"stage\""] == k_line);
   }
   REQUIRE(std::filesystem::exists(folder.file()));
   for (const char* text :
@@ -59,10 +61,10 @@ TEST_CASE("bookmarks and the state of the first steps survive a restart; a damag
     INFO(text);
     CHECK_NOTHROW([] {
       Window damaged;
-      damaged.ui.camera.bookmarks["/a/hall.gltf"]["new"] = k_line;
+      damaged.bookmarks["/a/hall.gltf"]["new"] = k_line;
     }());
     Window after;
-    CHECK(after.ui.camera.bookmarks["/a/hall.gltf"]["new"] == k_line);
+    CHECK(after.bookmarks["/a/hall.gltf"]["new"] == k_line);
   }
 }
 
@@ -70,36 +72,36 @@ TEST_CASE("two windows keep each other's bookmarks, files and panels") {
   const StateFolder folder;
   {
     Window before;
-    before.ui.camera.bookmarks["/a"] = {{"old", k_line}, {"gone", k_line}};
-    before.ui.recent = {"/1", "/2", "/3"};
+    before.bookmarks["/a"] = {{"old", k_line}, {"gone", k_line}};
+    before.recent = {"/1", "/2", "/3"};
   }
   {
     Window first, second;
-    first.ui.camera.bookmarks["/a"]["first"] = k_line;
-    first.ui.camera.bookmarks["/a"].erase("gone");
-    first.ui.recent = {"/4", "/1", "/2", "/3"};
-    first.ui.layout.left = 300;
-    first.ui.sections["Camera"] = true;
+    first.bookmarks["/a"]["first"] = k_line;
+    first.bookmarks["/a"].erase("gone");
+    first.recent = {"/4", "/1", "/2", "/3"};
+    first.layout.left = 300;
+    first.sections["Camera"] = true;
     REQUIRE(first.memory.save());
-    second.ui.camera.bookmarks["/a"]["second"] = k_line;
-    second.ui.camera.bookmarks["/b"]["other"] = k_line;
-    second.ui.recent = {"/3", "/5", "/1", "/2"};
-    second.ui.layout.bottom = 200;
-    second.ui.sections["Render"] = false;
+    second.bookmarks["/a"]["second"] = k_line;
+    second.bookmarks["/b"]["other"] = k_line;
+    second.recent = {"/3", "/5", "/1", "/2"};
+    second.layout.bottom = 200;
+    second.sections["Render"] = false;
     REQUIRE(second.memory.save());
     // A window that saves merges the other's views; its own panels stay.
-    CHECK(second.ui.camera.bookmarks["/a"].size() == 3);
-    CHECK(second.ui.recent == std::vector<std::string>{"/3", "/5", "/4", "/1", "/2"});
-    CHECK(second.ui.layout.left == ui::Layout().left);
+    CHECK(second.bookmarks["/a"].size() == 3);
+    CHECK(second.recent == std::vector<std::string>{"/3", "/5", "/4", "/1", "/2"});
+    CHECK(second.layout.left == ui::Layout().left);
   }
   Window after;
   using Views = commands::Navigation::Bookmarks;
-  CHECK(after.ui.camera.bookmarks["/a"] == Views{{"first", k_line}, {"old", k_line}, {"second", k_line}});
-  CHECK(after.ui.camera.bookmarks["/b"] == Views{{"other", k_line}});
-  CHECK(after.ui.recent == std::vector<std::string>{"/3", "/5", "/4", "/1", "/2"});
-  CHECK(after.ui.layout.left == 300);
-  CHECK(after.ui.layout.bottom == 200);
-  CHECK(after.ui.sections == std::map<std::string, bool>{{"Camera", true}, {"Render", false}});
+  CHECK(after.bookmarks["/a"] == Views{{"first", k_line}, {"old", k_line}, {"second", k_line}});
+  CHECK(after.bookmarks["/b"] == Views{{"other", k_line}});
+  CHECK(after.recent == std::vector<std::string>{"/3", "/5", "/4", "/1", "/2"});
+  CHECK(after.layout.left == 300);
+  CHECK(after.layout.bottom == 200);
+  CHECK(after.sections == std::map<std::string, bool>{{"Camera", true}, {"Render", false}});
 }
 
 TEST_CASE("bookmarks are saved immediately, panels once they stop moving, and nothing without a change") {
@@ -107,13 +109,13 @@ TEST_CASE("bookmarks are saved immediately, panels once they stop moving, and no
   Window window;
   window.memory.follow(1);
   CHECK_FALSE(std::filesystem::exists(folder.file()));
-  window.ui.camera.bookmarks["/a"]["x"] = k_line;
+  window.bookmarks["/a"]["x"] = k_line;
   window.memory.follow(2);
   CHECK_THAT(read_file(folder.file()), Catch::Contains("\"x\""));
 
-  window.ui.layout.left = 400;
+  window.layout.left = 400;
   window.memory.follow(3);
-  window.ui.layout.left = 401;
+  window.layout.left = 401;
   window.memory.follow(3.4);
   window.memory.follow(3.8);
   CHECK_THAT(read_file(folder.file()), !Catch::Contains("401"));
@@ -140,7 +142,7 @@ TEST_CASE("a failed save is reported once") {
   {
     Window window;
     for (const char* name : {"x", "y"}) {
-      window.ui.camera.bookmarks["/a"][name] = k_line;
+      window.bookmarks["/a"][name] = k_line;
       window.memory.follow(1);
     }
   }

@@ -484,15 +484,15 @@ TEST_CASE("closing asks if there is something to save") {
   walk.keys = {{'Q', 2}};
   walk.frames(3);
   CHECK_FALSE(walk.ui().requests.status);
-  REQUIRE(walk.ui().leaving.step == ui::Ui::Leaving::Step::asks);
+  REQUIRE(walk.ui().leaving.step == ui::Leaving::Step::asks);
   use(walk, "##stay");
-  CHECK(walk.ui().leaving.step == ui::Ui::Leaving::Step::no);
+  CHECK(walk.ui().leaving.step == ui::Leaving::Step::no);
   CHECK_FALSE(walk.ui().requests.status);
   // It cannot be saved: the window stays, with the reason.
   walk.act("window.close");
   use(walk, "##save_scene");
   const auto begin = std::chrono::steady_clock::now();
-  while (walk.ui().leaving.step != ui::Ui::Leaving::Step::no) {
+  while (walk.ui().leaving.step != ui::Leaving::Step::no) {
     REQUIRE(std::chrono::steady_clock::now() - begin < std::chrono::seconds(20));
     walk.frames(1);
   }
@@ -510,21 +510,21 @@ TEST_CASE("opening another scene asks if there is something to save") {
   walk.act("light.set 1 intensity=2");
   walk.ui().drop("sheen-other.gltf");
   walk.frames(3);
-  REQUIRE(steps() == ui::Ui::Leaving::Step::asks);
+  REQUIRE(steps() == ui::Leaving::Step::asks);
   CHECK(walk.ui().leaving.opens == "sheen-other.gltf");
   // A second file while the question is open does not answer it.
   walk.act("window.open other.gltf");
   walk.frames(2);
-  REQUIRE(steps() == ui::Ui::Leaving::Step::asks);
+  REQUIRE(steps() == ui::Leaving::Step::asks);
   CHECK(walk.ui().leaving.opens == "other.gltf");
   CHECK(walk.ui().open.scene->name == before);
   use(walk, "##stay");
-  CHECK(steps() == ui::Ui::Leaving::Step::no);
+  CHECK(steps() == ui::Leaving::Step::no);
   CHECK(walk.ui().open.scene->name == before);
   CHECK_FALSE(walk.ui().requests.status);
   walk.act("window.open other.gltf");
   use(walk, "##discard");
-  CHECK(steps() == ui::Ui::Leaving::Step::no);
+  CHECK(steps() == ui::Leaving::Step::no);
   const auto begin = std::chrono::steady_clock::now();
   while (walk.ui().open.scene->name == before) {
     REQUIRE(std::chrono::steady_clock::now() - begin < std::chrono::seconds(20));
