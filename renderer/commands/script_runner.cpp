@@ -60,6 +60,7 @@ void ScriptRunner::advance() {
   while (running()) {
     // A script may insert steps behind the one that is running.
     const Step step = steps_.front();
+    work_.script_line = step.where;
     if (!current_.command && waits_for_earlier(step)) {
       if (host_.wake) host_.wake(2);
       return;
@@ -94,7 +95,7 @@ bool ScriptRunner::waits_for_earlier(const Step& step) const {
 
 bool ScriptRunner::carry_out(const Step& step) {
   if (!current_.command) {
-    began_ = work_.now, frames_ = 0, limit_ = 0;
+    began_ = work_.now, frames_ = 0, limit_ = 0, ended_ = false;
     verdict_.reset();
     in_script_ = true;
     try {
@@ -111,6 +112,8 @@ bool ScriptRunner::carry_out(const Step& step) {
   } else {
     try {
       if (!current_.command->done(current_.arguments)) return false;
+      // What it has logged arrives with the next call: while this line still runs.
+      if (current_.command->needs_outcome && !verdict_ && !std::exchange(ended_, true)) return false;
     } catch (const Error& error) {
       const std::string head = current_.command->name + ": ", what = error.what();
       throw Error(step.where, what.starts_with(head) ? what : head + what);
@@ -166,7 +169,8 @@ void ScriptRunner::run_script(const std::string& file) {
 std::vector<std::string> ScriptRunner::unexpected_errors(uint64_t since) const {
   std::vector<std::string> texts;
   for (const LoggedProblem& line : work_.problems)
-    if (line.error > since && !line.expected) texts.push_back(line.text);
+    if (line.error > since && !line.expected)
+      texts.push_back(line.text + (line.during.empty() ? "" : " (logged during " + line.during + ")"));
   return texts;
 }
 

@@ -93,6 +93,7 @@ class ScriptRunner {
   double began_ = 0;  ///< when
   double limit_ = 0;  ///< of the current wait; 0: the usual one
   int frames_ = 0;
+  bool ended_ = false;  ///< it was found done once
   bool in_script_ = false;
   int settled_ = 0;  ///< consecutive calls without pending work
   Check check_;      ///< of the current expectation

@@ -53,7 +53,7 @@ void Workspace::note_log(log::Level level, const std::string& text) {
   constexpr size_t k_kept = 1000;
   if (level == log::Level::error) ++error_count;
   if (level != log::Level::error && level != log::Level::warning) return;
-  problems.push_back({text, level == log::Level::error ? error_count : 0, false});
+  problems.push_back({text, level == log::Level::error ? error_count : 0, false, script_line});
   if (problems.size() > k_kept) problems.pop_front();
 }
 

@@ -49,6 +49,7 @@ struct LoggedProblem {
   std::string text;
   uint64_t error = 0;     ///< its number among the errors, from 1; 0: a warning
   bool expected = false;  ///< a script has stated it
+  std::string during;     ///< place of the script's line that was running; "": none
 };
 
 /// A pixel that is being reported, or has been.
@@ -80,6 +81,7 @@ class Workspace {
   double now = 0;                      ///< seconds on the caller's clock
   uint64_t error_count = 0;            ///< number of logged errors so far, counted by note_log()
   std::deque<LoggedProblem> problems;  ///< the latest errors and warnings
+  std::string script_line;             ///< place of the script's line that is running; "": none
   std::optional<PixelInquiry> pixel;   ///< by inspect.pixel
   std::optional<PathInquiry> traced;   ///< by inspect.trace
   std::optional<NoiseInquiry> noise;   ///< by inspect.noise

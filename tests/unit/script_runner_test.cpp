@@ -16,6 +16,7 @@ namespace script_runner_tests {
 using namespace lucerna;
 using namespace lucerna::commands;
 using Catch::Contains;
+using Catch::EndsWith;
 using Outcome = ScriptCase::Outcome;
 
 namespace {
@@ -138,6 +139,10 @@ TEST_CASE("a wait ends, or fails after its limit with its place") {
 TEST_CASE("errors of the log fail a script unless it states them, and refusals can be stated") {
   CHECK_THAT(failure("reference.load missing.exr\n", Outcome::error),
              Contains("that no 'expect log' states") && Contains("missing.exr"));
+  // The report names the line that was running, though the file is read on a thread.
+  const std::string no_picture = std::string(LUCERNA_SOURCE_DIR) + "/README.md";
+  CHECK_THAT(failure("wait samples 2\ncompare.load " + no_picture + "\nwait samples 2\n", Outcome::error),
+             Contains("README.md: cannot read this image") && EndsWith("s.lucerna:4)"));
   Bench b;
   CHECK(b.run("reference.load missing.exr\nexpect log missing.exr\nfails \"no light 9\" light.set 9 on=off\n")
             .passed());
