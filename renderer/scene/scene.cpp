@@ -14,12 +14,17 @@ const std::vector<Primitive>& shown_parts(const Scene& scene, const Instance& in
                                                                  : scene.meshes[instance.mesh].primitives;
 }
 
+Box bounds(const Scene& scene, const Instance& instance) {
+  Box box;
+  for (const Primitive& p : shown_parts(scene, instance))
+    for (const uvec3& t : p.triangles)
+      for (int k = 0; k < 3; ++k) box.grow(vec3(instance.to_world * vec4(p.positions[t[k]], 1)));
+  return box;
+}
+
 Box bounds(const Scene& scene) {
   Box box;
-  for (const Instance& instance : scene.instances)
-    for (const Primitive& p : shown_parts(scene, instance))
-      for (const uvec3& t : p.triangles)
-        for (int k = 0; k < 3; ++k) box.grow(vec3(instance.to_world * vec4(p.positions[t[k]], 1)));
+  for (const Instance& instance : scene.instances) box.grow(bounds(scene, instance));
   return box;
 }
 

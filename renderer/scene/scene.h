@@ -314,6 +314,8 @@ const std::vector<Primitive>& shown_parts(const Scene& scene, const Instance& in
 
 /// World-space bounds of all shown instances; empty for a scene without triangles.
 Box bounds(const Scene& scene);
+/// ... of one instance; empty if it is hidden.
+Box bounds(const Scene& scene, const Instance& instance);
 /// Triangles of all shown instances.
 uint64_t count_triangles(const Scene& scene);
 /// The camera of a scene that has none: looks at the bounds' centre from the front, slightly above.

@@ -19,8 +19,8 @@ void Display::restart(const scene::Changes& changes, const vec3& scale, bool sam
   const auto is = [&](scene::Change c) { return changes.edits.contains(c); };
   const bool repainted =
       is(scene::Change::colour) || is(scene::Change::material) || is(scene::Change::shaders);
-  if (repainted || is(scene::Change::shape)) sight_.forget();
-  if (is(scene::Change::shape) || is(scene::Change::size))
+  if (repainted || changes.other_surfaces()) sight_.forget();
+  if (changes.other_surfaces() || is(scene::Change::size))
     preview_.forget();
   else
     preview_.keep(scale, repainted, same_light);

@@ -229,6 +229,7 @@ void Engine::begin(const PictureView& picture, const scene::Changes& changes,
         since.edits.insert(missed->second.edits.begin(), missed->second.edits.end());
       } else {
         own.light_factors = light_factors;
+        own.moved = since.moved;
       }
       solver->begin(own, solvers::invalidated_by(solver->info(), since));
     });

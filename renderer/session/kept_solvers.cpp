@@ -6,6 +6,7 @@ namespace lucerna::session {
 namespace {
 
 bool invalidates_all(const solvers::SolverInfo& info, const std::set<scene::Change>& edits) {
+  if (edits.contains(scene::Change::place)) return true;  // where is not noted
   scene::Changes changes;
   changes.edits = edits;
   return solvers::invalidated_by(info, changes).places;
@@ -31,6 +32,7 @@ void KeptSolvers::note(const std::set<scene::Change>& edits) {
 std::vector<Predecessor> KeptSolvers::predecessors(const plan::Settings& settings,
                                                    const std::set<scene::Change>& edits) const {
   std::vector<Predecessor> all;
+  if (edits.contains(scene::Change::place)) return all;
   for (const Kept& k : kept_) {
     Predecessor p{.solver = k.solver, .made_for = k.made_for, .since = {}, .kept = true};
     p.since.edits = k.edits;

@@ -158,7 +158,7 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
   mix_.restart();
   sampling_.restart();
   output_.restart(changes, factor.value_or(vec3(1)), known);
-  if (changes.edits.contains(scene::Change::shape) || changes.edits.contains(scene::Change::shaders))
+  if (changes.other_surfaces() || changes.edits.contains(scene::Change::shaders))
     overlays_.forget_surfaces();
   begun_lens_ = setup_.camera.lens;
   previews_.restart(known);

@@ -127,11 +127,16 @@ void Renderer::set_instances(const std::vector<ObjectEdit>& edits, const Progres
     return x.to_world == y.to_world && x.hidden == y.hidden;
   };
   const std::vector<scene::Instance>& before = setup_.world.scene->instances;
-  if (std::equal(before.begin(), before.end(), edited->instances.begin(), same_place)) return;
+  scene::Changes changes = scene::Change::place;
+  for (size_t i = 0; i < before.size(); ++i)
+    if (!same_place(before[i], edited->instances[i]))
+      for (const Box& box : {bounds(*setup_.world.scene, before[i]), bounds(*edited, edited->instances[i])})
+        changes.moved.push_back(box);
+  if (changes.moved.empty()) return;
   Transaction::Target target(setup_);
   // What stood in a window may be gone.
   target.scene = with_portals(edited, loaded_->portals, setup_.settings.text("lights.portals"), progress);
-  install(std::move(target), progress, scene::Change::shape);
+  install(std::move(target), progress, changes);
   overlays_.show_paths({});
 }
 

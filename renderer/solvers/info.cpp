@@ -18,6 +18,7 @@ std::span<const ChangeRow> default_changes() {
       {Change::colour, k_invalidates_light,
        "of a material, or its emission: other light on the same surfaces"},
       {Change::material, k_invalidates_light, "other light on the same surfaces"},
+      {Change::place, k_invalidates_all, "other surfaces"},
       {Change::shape, k_invalidates_all, "other surfaces"},
       {Change::shaders, k_invalidates_all, "whatever they compute"},
       {Change::restart, k_invalidates_all, "the user asks for everything from scratch"},

@@ -68,6 +68,8 @@ struct Picture {
   /// For begin(), display only: factor on the light of each group, or on all light, since the last begin(),
   /// if known.
   std::optional<std::vector<vec3>> light_factors;
+  /// For begin(): world-space boxes that objects have left or entered since the last begin().
+  std::vector<Box> moved{};
   /// path_frame() of the solver's own paths from the same camera.
   shared::Frame frame_for(const Routing& routing, uint32_t enabled) const {
     return path_frame({task.automaton, task.settings, flat, camera, width, height}, routing, enabled);

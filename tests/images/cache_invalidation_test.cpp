@@ -141,6 +141,7 @@ TEST_CASE("every kind of change invalidates what its row says, and nothing else"
     const auto* head = std::get_if<std::string_view>(&row.change);
     INFO((edit ? "edit " + std::to_string(int(*edit)) : "setting " + std::string(*head)) << ": " << row.why);
     if (edit && *edit == Change::shape) continue;  // see below
+    if (edit && *edit == Change::place) continue;  // some places go: objects_test.cpp
     if (head && settings.contains(*head) && settings.at(*head).empty()) continue;
     bed.r.solver_load("cache", file);
     REQUIRE(test::cache(bed.r)->ready());

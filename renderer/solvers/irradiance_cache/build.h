@@ -87,6 +87,7 @@ struct Cache::Impl {
   bool relight_first_places();
   /// Starts relighting the next pass's records; after the last pass, building continues from before.
   void relight_pass();
+  void drop_near(std::span<const Box> moved);
   /// Replaces all records by complete ones from elsewhere.
   void replace_records(const RawRecords& raw);
 

@@ -8,7 +8,8 @@ namespace {
 using scene::Change;
 using namespace solvers;
 
-/// Lights and materials do not move surfaces, so geometric measurements stay valid. `components.*`
+/// Lights and materials do not move surfaces, so geometric measurements stay valid; moved objects invalidate
+/// those around them (Cache::drop_near). `components.*`
 /// invalidates nothing here: what records lack for new lookups is known when the cache is made for them
 /// (Cache::adopt). A test checks all rows.
 std::vector<ChangeRow> change_rows() {
@@ -18,6 +19,7 @@ std::vector<ChangeRow> change_rows() {
       {Change::size, k_invalidates_coverage, "other places become visible"},
       {Change::material, k_invalidates_light_and_coverage,
        "a former mirror may be diffuse now and need records"},
+      {Change::place, k_invalidates_light_and_coverage, "records near the objects are dropped"},
       {"components.", k_invalidates_nothing, "handled by Cache::adopt"},
       {"relight.", k_invalidates_nothing, "a mix that changes record light arrives as an edit of the lamps"},
       {"camera", k_invalidates_coverage, "records do not depend on the view; other surfaces become visible"},

@@ -22,6 +22,50 @@ void Cache::Impl::replace_records(const RawRecords& raw) {
   status.records = raw.size();
 }
 
+namespace {
+
+/// Share of its radius that a record may lose before it is dropped.
+constexpr float k_lost_radius = 0.2f;
+
+/// True if an object in the box determines or would determine the radius of a record there: as the nearest
+/// geometry, or by the mean of 1 / r over the hemisphere, 1 / `mean_distance`. At a distance d, its bounding
+/// sphere covers at most (radius / d)^2 of the cosine-weighted hemisphere, and so adds at most (radius / d)^2
+/// / d.
+bool limits(const Box& box, const vec3& position, float validity, float mean_distance,
+            const RadiusOptions& options) {
+  if (box.empty()) return false;
+  const float d = glm::distance(position, glm::clamp(position, box.lo, box.hi));
+  if (options.nearest * d <= validity) return true;
+  if (options.metric != Metric::split_sphere) return false;  // relighting measures the ellipse again
+  // A radius at its minimum is beyond that of the distances.
+  const float kept = (1 - k_lost_radius) * std::min(validity, options.error * mean_distance);
+  const float seen = box.radius() / d;
+  return options.error < kept * (1 / mean_distance + std::min(1.0f, seen * seen) / d);
+}
+
+}  // namespace
+
+void Cache::Impl::drop_near(std::span<const Box> moved) {
+  if (status.relighting.records == 0 && ranges.complete_pass()) ++status.pass;
+  RawRecords raw = tables.records.raw(ranges.complete());
+  std::vector<uint32_t> kept;
+  for (uint32_t r = 0; r < raw.size(); ++r) {
+    const vec4* const texels = &raw.places[size_t{r} * k_record_texels];
+    if (std::none_of(moved.begin(), moved.end(), [&](const Box& box) {
+          return limits(box, vec3(texels[0]), raw.spheres[r].w, texels[1].w, options.radius);
+        }))
+      kept.push_back(r);
+  }
+  if (kept.empty()) return clear();
+  forget_refining();
+  drop_pass();
+  if (kept.size() == raw.size()) return;
+  raw.keep(kept);
+  replace_records(raw);
+}
+
+void Cache::drop_near(std::span<const Box> moved) { impl_->drop_near(moved); }
+
 bool Cache::Impl::relight_first_places() {
   if (ranges.placed() > 0 || status.relighting.records > 0 || progress.stage == Stage::done) return false;
   if (progress.stage >= Stage::measure && radii.by_light()) {

@@ -173,6 +173,7 @@ void CacheSolver::begin(const Picture& picture, solvers::Invalidation invalidate
     cache_.clear();
     return;
   }
+  if (!picture.moved.empty()) cache_.drop_near(picture.moved);
   if (invalidated.light) cache_.relight(picture.light_factors, picture.frame.sky_group);
   if (invalidated.coverage) cache_.extend();
 }
