@@ -65,6 +65,11 @@ Place place_of(const fs::path& file) {
     place.path = folder_of(place.path) / next;  // an absolute `next` stands alone
   }
   if (place.mode && S_ISDIR(*place.mode)) throw_error(where, "is a folder, expected a file name");
+  // Renaming would replace such a file all the same, and root may write into any.
+  if (place.mode && S_ISREG(*place.mode) &&
+      ((*place.mode & 0222) == 0 || access(place.path.c_str(), W_OK) != 0))
+    throw_error(where,
+                "cannot be written: the file is read-only; choose another name, or allow writing to it");
   const fs::path folder = folder_of(place.path);
   if (stat(folder.c_str(), &status) != 0) {
     const int code = errno;

@@ -9,7 +9,7 @@ namespace lucerna {
 /// An output file:
 /// - A regular or new file is written under a temporary name beside it, flushed to disk, and renamed by
 ///   commit(). Until then, and if commit() is never called, the old file stays. The new file gets the old
-///   one's permissions.
+///   one's permissions. A read-only file is refused, also for root.
 /// - For a symbolic link the same applies to its target; the link stays.
 /// - Into a pipe, a device or a descriptor (/dev/stdout, /dev/fd/3) bytes are written directly, in order;
 ///   bytes written before a failure stay.

@@ -69,6 +69,23 @@ TEST_CASE("an output follows symbolic links, which stay") {
   CHECK(entries(folder) == 8);
 }
 
+TEST_CASE("a read-only file is refused, also through a link, and stays") {
+  const test::Folder folder;
+  write_file(folder / "locked", "precious");
+  REQUIRE(chmod((folder / "locked").c_str(), 0444) == 0);
+  fs::create_symlink("locked", folder / "link");
+  for (const char* name : {"locked", "link"}) {
+    const std::string said = std::string(folder / name) + ": cannot be written: the file is read-only";
+    CHECK_THROWS_WITH(write_file(folder / name, "new"), Contains(said));
+    CHECK_THROWS_WITH(check_writable(folder / name), Contains(said));
+  }
+  CHECK(read_file(folder / "locked") == "precious");
+  CHECK(entries(folder) == 2);
+  REQUIRE(chmod((folder / "locked").c_str(), 0644) == 0);
+  write_file(folder / "link", "new");
+  CHECK(read_file(folder / "locked") == "new");
+}
+
 TEST_CASE("a new file has the permissions of the one that it replaces; a failed write keeps the old one") {
   const test::Folder folder;
   write_file(folder / "secret", "old");
