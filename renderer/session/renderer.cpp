@@ -12,6 +12,7 @@
 #include "scene/light_factor.h"
 #include "scene/range.h"
 #include "session/found_portals.h"
+#include "shaders/shared/preview.h"
 
 namespace lucerna::session {
 namespace {
@@ -137,14 +138,26 @@ void Renderer::reload_shaders() {
 
 uint32_t Renderer::enabled_components() const { return setup_.engine ? setup_.engine->plan().enabled() : 0; }
 
+namespace {
+
+/// True if the picture before, times these factors, is a picture of the new light.
+bool shows_light(const std::vector<vec3>& factors) {
+  return std::all_of(factors.begin(), factors.end(), [](const vec3& f) {
+    return std::max({f.x, f.y, f.z}) <= shared::k_preview_most_growth;
+  });
+}
+
+}  // namespace
+
 void Renderer::restart(const scene::Changes& changes, const std::optional<std::vector<vec3>>& factors) {
   if (!setup_.engine || !setup_.film) return;
   setup_.kept.note(changes.edits);
   pilot_.reset();  // of another view, or of other light
   setup_.engine->begin(picture_view(), changes, factors);
   transport::Wavefront& wavefront = setup_.engine->wavefront();
-  const std::optional<vec3> factor = factors ? scene::common_factor(*factors) : std::nullopt;
-  const bool by_group = factors && !factor && setup_.film->groups() == factors->size();
+  const bool shown = factors && shows_light(*factors);
+  const std::optional<vec3> factor = shown ? scene::common_factor(*factors) : std::nullopt;
+  const bool by_group = shown && !factor && setup_.film->groups() == factors->size();
   bool known = factor || keeps_light(changes);
   if (samples() > 0) {
     const bool taken = output_.keep_former(by_group ? &*factors : nullptr);
@@ -158,8 +171,7 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
   mix_.restart();
   sampling_.restart();
   output_.restart(changes, factor.value_or(vec3(1)), known);
-  if (changes.other_surfaces() || changes.edits.contains(scene::Change::shaders))
-    overlays_.forget_surfaces();
+  if (changes.other_surfaces() || changes.edits.contains(scene::Change::shaders)) overlays_.forget_surfaces();
   begun_lens_ = setup_.camera.lens;
   previews_.restart(known);
   ++restarts_;

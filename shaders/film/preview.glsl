@@ -111,7 +111,9 @@ vec2 preview_projection(PreviewCamera camera, uint projection, vec3 point, vec2 
 // Depth of a point where there is no surface.
 const float k_preview_far = 1e8;
 
-// Change of light by component, interpolated between the centres of blocks (film/preview_change.comp); 1 without blocks.
+// Change of light by component, interpolated between the centres of blocks (film/preview_change.comp); 1 without blocks. Above
+// k_preview_most_growth: beside a block with k_preview_other_light.
+const float k_preview_other_light = 1e9;
 vec4 preview_change(samplerBuffer ratios, uvec2 blocks, vec2 cell) {
   if (blocks.x == 0u) return vec4(1.0);
   vec2 p = (cell + 0.5) / float(k_preview_change_step) - 0.5;

@@ -11,7 +11,6 @@ layout(scalar) buffer Sums { vec4 sums[]; };
 // Per block: light now over light before; then, for the picture, the variance of a sample over the square of its light.
 layout(scalar) writeonly buffer Ratios { vec4 ratios[]; };
 
-const float k_most_ratio = 16.0;  // maximum growth of light
 const float k_unusual = 2.0;  // expected maximum of a block's noise over that of the picture
 const float k_least_noise = 1.0, k_most_noise = 1e4;  // squared noise of a sample over the square of its light
 const uint k_cells = k_preview_change_step * k_preview_change_step / 64u;  // per lane
@@ -23,10 +22,19 @@ vec4 belief(vec4 off, vec4 spread, vec4 expected) {
   return found * smoothstep(4.0 * expected, 9.0 * expected + 1e-20, off);
 }
 
-// Estimate of the ratio from sums and the prior estimate `known`.
+// Estimate of the ratio from sums and the prior estimate `known`. Light that has grown by more than k_preview_most_growth,
+// such as from none, is not that from before, however scaled: k_preview_other_light.
 vec4 ratio_of(vec4 now, vec4 before, vec4 spread, vec4 expected, vec4 known) {
-  vec4 off = now - known * before, measured = min(now / max(before, vec4(1e-20)), vec4(k_most_ratio));
-  return mix(known, mix(known, measured, belief(off * off, spread, expected)), greaterThan(before, vec4(0.0)));
+  vec4 scaled = min(known, vec4(k_preview_most_growth));
+  vec4 off = now - scaled * before, measured = min(now / max(before, vec4(1e-20)), vec4(k_preview_most_growth));
+  vec4 ratio = mix(scaled, mix(scaled, measured, belief(off * off, spread, expected)), greaterThan(before, vec4(0.0)));
+  vec4 grown = max(now - k_preview_most_growth * before, vec4(0.0));
+  // A block without evidence of its own follows the picture.
+  vec4 less = max(k_preview_most_growth * before - now, vec4(0.0));
+  uvec4 other = uvec4(greaterThan(belief(grown * grown, spread, expected), vec4(0.5)));
+  uvec4 follows = uvec4(greaterThan(known, vec4(k_preview_most_growth))) &
+                  uvec4(lessThan(belief(less * less, spread, square(k_preview_most_growth) * expected), vec4(0.5)));
+  return mix(ratio, vec4(k_preview_other_light), bvec4(other | follows));
 }
 
 void main() {

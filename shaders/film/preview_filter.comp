@@ -130,7 +130,8 @@ void main() {
   if (push.blocks_across > 0u) {
     // Few paths that find almost no light underestimate the noise: then that of samples of the expected light is used.
     uvec2 blocks = uvec2(push.blocks_across, push.blocks_down);
-    vec4 expected = texelFetch(before_texels, int(cell)) * preview_change(change_texels, blocks, vec2(xy));
+    vec4 change = preview_change(change_texels, blocks, vec2(xy));
+    vec4 expected = texelFetch(before_texels, int(cell)) * mix(change, vec4(0.0), greaterThan(change, vec4(k_preview_most_growth)));
     vec4 dark = k_preview_by_way * (1.0 - smoothstep(vec4(k_dark), vec4(k_not_dark), mean / max(expected, vec4(1e-6))));
     vec4 noise = texelFetch(change_texels, int(blocks.x * blocks.y));
     // Probability that all paths around missed the light if one path in 1 + noise finds it.

@@ -261,6 +261,7 @@ void main() {
     PreviewLight old;
     for (uint c = 0u; c < k_component_count; ++c) old.of[c] = vec4(0.0);
     bool has_old = false;
+    bvec4 other_light = bvec4(false);
     if (push.history != 0u) {
       old = preview_light(history_texels, int(pixel));
       PreviewSurface was = preview_surface(texelFetch(history_surfaces, int(pixel)));
@@ -271,6 +272,8 @@ void main() {
       vec3 colour = here.depth >= 0.0 ? preview_modulation(here) : modulation;
       vec3 repaint = (push.recoloured != 0u || finer) && was.depth > 0.0 ? min(colour / preview_modulation(was), vec3(8.0)) : vec3(1.0);
       vec4 change = preview_change(change_texels, uvec2(push.blocks_across, push.blocks_down), p);
+      other_light = greaterThan(change, vec4(k_preview_most_growth));
+      change = min(change, vec4(k_preview_most_growth));
       before_smooth *= change;
       for (uint c = 0u; c < k_component_count; ++c) old.of[c] *= change[c] * vec4(repaint, luminance(repaint));
     }
@@ -303,8 +306,9 @@ void main() {
       vec3 now = mix(own.of[c].rgb, smooth_light, amount);
       float smooth_error = luminance(modulation) * max(light[c].w, 0.0) * inverse + k_filter_error * smooth_luminance;
       float error = mix(noise[c], smooth_error, amount);
-      vec3 before = has_old ? old.of[c].rgb * push.history_scale : vec3(0.0);
-      float u = has_old ? square(old.of[c].w) : 0.0, v = square(error) + 1e-8;
+      bool kept = has_old && !other_light[c];
+      vec3 before = kept ? old.of[c].rgb * push.history_scale : vec3(0.0);
+      float u = kept ? square(old.of[c].w) : 0.0, v = square(error) + 1e-8;
       // Paths that have found no light yet seem noise-free: older light shows how much to expect.
       float unsure = rough;
       if (push.same_light != 0u) {
@@ -315,21 +319,21 @@ void main() {
       float difference = luminance(modulation) * before_smooth[c] * inverse - smooth_luminance;
       // Chance alone must not count as change: it would show as specks.
       float change = max(square(difference) - by_chance * (u + v), 0.0);
-      float keep = has_old ? unsure * v / (v + u + change) : 0.0;
+      float keep = kept ? unsure * v / (v + u + change) : 0.0;
       bool nothing = weights <= 1e-5 && here.samples <= 0.0;
-      if (nothing) keep = has_old ? 1.0 : 0.0;
+      if (nothing) keep = kept ? 1.0 : 0.0;
       now = mix(now, before, keep);
       // Where light has changed, the reported error counts all that samples hold against the old, chance or not.
       float doubt = push.same_light != 0u ? change : max(square(difference) - u - v, 0.0);
       float of_before = keep * keep * (u + doubt), left = sqrt(square((1.0 - keep) * error) + of_before);
-      result.of[c] = vec4(now, nothing && !has_old ? -1.0 : left);
+      result.of[c] = vec4(now, nothing && !kept ? -1.0 : left);
       if ((push.show >> c & 1u) != 0u) color += now;
       float showing = float(push.show >> c & 1u), shown = luminance(now) * showing;
       former += keep * shown;
       totals.xyz += vec3(shown, keep * shown, amount * (1.0 - keep) * shown);
       // Pixels' own samples are independent; what is filtered, or was there before, errs alike in pixels side by side.
       variance += showing * (square(1.0 - keep) * (square((1.0 - amount) * noise[c]) / 9.0 + square(amount * smooth_error)) + of_before);
-      unknown = unknown || (nothing && !has_old);
+      unknown = unknown || (nothing && !kept);
     }
     totals.xyz = min(totals.xyz, vec3(4.0));
     totals.w = unknown ? 1.0 : min(k_mean_deviation * sqrt(variance) / max(luminance(color), k_preview_dark), 1.0);

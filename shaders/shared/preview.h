@@ -128,6 +128,10 @@ struct PreviewTile {
   float noise;   ///< relative variance of the tile's mean of these samples; below 0: there are none
 };
 
+/// Maximum factor on light from before an edit. A darker picture is no picture of the new light: its noise was not filtered,
+/// as too dark to be seen.
+LUCERNA_CONST float k_preview_most_growth = 16.0f;
+
 /// Minimum luminance, of white, by which errors are divided.
 LUCERNA_CONST float k_preview_dark = 0.02f;
 /// Sums of luminance over a workgroup's pixels: all, older light, filtered light.

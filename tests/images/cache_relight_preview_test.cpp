@@ -144,6 +144,27 @@ TEST_CASE("a few preview samples show the final brightness, whatever has changed
   CHECK(early == Approx(finally).epsilon(0.08));
 }
 
+TEST_CASE("a picture of almost no light is none of the light that returns") {
+  Bed bed(true, "hessian");
+  bed.r.set_scene(std::make_shared<scene::Scene>(test::block_room()));  // no sky
+  bed.r.set_size(96, 96);
+  test::set(bed.r, {{"components.primary", "path"},
+                    {"components.secondary", "path"},
+                    {"components.tertiary", "path"},
+                    {"samples", "4"}});
+  const scene::Light lamp = bed.r.scene()->lights[0];
+  for (const float dimmed : {0.2f, 1e-4f}) {
+    bed.set_lamp(lamp.intensity * dimmed, lamp.position);
+    test::finish(bed.r);
+    bed.shown();
+    bed.set_lamp(lamp.intensity, lamp.position);
+    while (bed.r.samples() < 1) REQUIRE(bed.r.step());
+    bed.shown();
+    INFO("dimmed to " << dimmed << ": " << bed.r.output().preview_shares().stale << " from before");
+    CHECK((bed.r.output().preview_shares().stale > 0.5) == (dimmed > 0.1f));
+  }
+}
+
 TEST_CASE("a lamp in its own group is dimmed and tinted in the preview immediately, without a ray") {
   Bed bed(true, "hessian");
   auto scene = std::make_shared<scene::Scene>(*bed.r.scene());

@@ -147,6 +147,31 @@ TEST_CASE("the previous picture is scaled by the change that few samples of many
   CHECK(fine > 0.025);
 }
 
+TEST_CASE("light that returns after darkness does not wait behind the dark picture") {
+  for (const float former : {0.0f, 0.004f}) {
+    INFO("former light " << former);
+    Stage stage(192, 192);
+    stage.sample(stage.film, 8, [&](uint32_t, uint32_t) { return Sample{.light = vec3(former)}; });
+    stage.show();
+    stage.preview.keep();
+    stage.film.clear(stage.stream);
+    // One in 200 paths finds it.
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> any(0, 1);
+    stage.sample(stage.film, 1,
+                 [&](uint32_t, uint32_t) { return Sample{.light = vec3(any(random) < 0.005f ? 60.0f : 0)}; });
+    const film::PreviewShares shares = stage.show();
+    const std::vector<float> shown = stage.shown();
+    const double mean = std::accumulate(shown.begin(), shown.end(), 0.0) / double(shown.size());
+    const auto dark = std::count_if(shown.begin(), shown.end(), [](float v) { return v < 0.05f; });
+    INFO("mean " << mean << " (.3), " << dark << " of " << shown.size() << " pixels dark, former share "
+                 << shares.stale);
+    CHECK(mean == Approx(0.3).epsilon(0.2));
+    CHECK(dark < 100);
+    CHECK(shares.stale < 0.1);
+  }
+}
+
 TEST_CASE("where few samples find no light the previous picture does not go dark, except direct light") {
   for (const uint32_t component : {0u, 1u}) {
     Stage stage(192, 96);
