@@ -128,8 +128,6 @@ void draw_object_rows(Controls& controls, const commands::Navigation& camera, Sc
     gap(6);
     hairline();
     gap(4);
-  } else if (reveal) {
-    show_row(ImGui::GetCursorScreenPos().y);
   }
   // Long lists draw only the visible rows.
   ImGuiListClipper clipper;

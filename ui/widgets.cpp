@@ -392,7 +392,11 @@ bool colour_field(const char* id, const std::string& name, vec3& linear, const s
   if (!note.empty())
     draw_text(list, {lo.x + px(8), lo.y}, {inner.x - px(8), hi.y}, note, colour::text_faint, Align::right);
   bool changed = false;
-  ImGui::SetNextWindowPos({hi.x, hi.y + px(2)}, 0, {1, 0});
+  // Below the field, or as low as the window allows. Before it is drawn, its height is estimated.
+  static float height = 0;
+  if (height <= 0) height = px(24 + 190 + 18) + 3 * (row_height() + px(6)) + ImGui::GetFontSize();
+  const float lowest = ImGui::GetIO().DisplaySize.y - height - px(4);
+  ImGui::SetNextWindowPos({hi.x, std::max(0.0f, std::min(hi.y + px(2), lowest))}, 0, {1, 0});
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(12), px(12)});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {px(8), px(6)});
   if (ImGui::BeginPopup("##picker", ImGuiWindowFlags_NoMove)) {
@@ -417,6 +421,7 @@ bool colour_field(const char* id, const std::string& name, vec3& linear, const s
         shown = {encoded(linear.x), encoded(linear.y), encoded(linear.z)};
       }
     label("Linear Rec.709; double-click to type", colour::text_faint, theme().fonts.small);
+    height = ImGui::GetWindowHeight();
     ImGui::EndPopup();
   }
   ImGui::PopStyleVar(2);

@@ -90,7 +90,7 @@ scene::Light new_light(Workspace& work, const Arguments& a) {
   const std::vector<scene::Light>& lights = work.open.edit().lights;
   light.name = free_name(lights, kind.name);
   if (a.has("name")) check_name(lights, a.text("name")), light.name = a.text("name");
-  place_new(room_of(work), light);
+  place_new(room_of(work), lights, light);
   if (a.text("kind") == "profile") {
     if (!a.has("profile")) throw Error("", "profile: its file is missing");
     const vec3 way = looked_at(room_of(work)).point - light.position;

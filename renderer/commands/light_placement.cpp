@@ -38,7 +38,29 @@ vec3 off_surface(const Room& room) {
 
 vec3 beside(const Room& room) { return 0.1f * radius_of(room) * right_of(room.view.camera); }
 
-void place_new(const Room& room, scene::Light& light) {
+namespace {
+
+/// `place`, or the nearest of some places beside it that no lamp is near.
+vec3 free_place(const Room& room, const std::vector<scene::Light>& lamps, const vec3& place) {
+  constexpr int k_tried = 8;
+  const vec3 step = beside(room);
+  const float least = 0.5f * glm::length(step);
+  for (int k = 0; k <= k_tried; ++k) {
+    const vec3 way = float((k + 1) / 2) * (k % 2 ? step : -step);
+    const bool taken = std::any_of(lamps.begin(), lamps.end(), [&](const scene::Light& other) {
+      return other.kind != scene::LightKind::directional &&
+             glm::distance(other.position, place + way) < least;
+    });
+    const float length = glm::length(way);
+    if (!taken && (k == 0 || !room.look || !room.look(place, way / length, length + least)))
+      return place + way;
+  }
+  return place;
+}
+
+}  // namespace
+
+void place_new(const Room& room, const std::vector<scene::Light>& others, scene::Light& light) {
   // Radiance 0.5 after exposure, of reflectance 0.5: irradiance pi.
   const float irradiance = k_pi * std::exp2(-room.ev);
   if (light.kind == scene::LightKind::directional) {
@@ -46,7 +68,7 @@ void place_new(const Room& room, scene::Light& light) {
     light.intensity = vec3(irradiance);
     return;
   }
-  light.position = off_surface(room);
+  light.position = free_place(room, others, off_surface(room));
   const float distance = 0.25f * radius_of(room);
   light.intensity = vec3(irradiance * distance * distance);
   if (light.kind == scene::LightKind::point) return;

@@ -26,10 +26,11 @@ vec3 off_surface(const Room& room);
 vec3 beside(const Room& room);
 
 /// Gives a new light of its kind a place, a direction, cones of 20 and 35 degrees, and a white intensity. A
-/// lamp stands off_surface(), a spot is aimed at the surface; a sun comes from 45 degrees above, 135 degrees
-/// on the compass. The intensity is that by which a diffuse surface of reflectance 0.5 that faces the light
-/// is shown at half of white: a quarter of the scene's radius away from a lamp. Shapes are a tenth of that
-/// radius large, a tube a third long, level, and face the surface like a spot.
-void place_new(const Room& room, scene::Light& light);
+/// lamp stands off_surface(), or beside() that where one of the `others` is near and no wall between; a spot
+/// is aimed at the surface; a sun comes from 45 degrees above, 135 degrees on the compass. The intensity is
+/// that by which a diffuse surface of reflectance 0.5 that faces the light is shown at half of white: a
+/// quarter of the scene's radius away from a lamp. Shapes are a tenth of that radius large, a tube a third
+/// long, level, and face the surface like a spot.
+void place_new(const Room& room, const std::vector<scene::Light>& others, scene::Light& light);
 
 }  // namespace lucerna::commands

@@ -99,6 +99,9 @@ TEST_CASE("a new lamp stands before the surface that is looked at, strong enough
   CHECK(lamp.intensity.x == Approx(k_pi / 4 * quarter * quarter));
   b.run("light.add point");
   CHECK(b.work.open.lights().back().name == "Lamp 2");
+  // Not into the first one, but beside it.
+  const float way = glm::distance(b.work.open.lights().back().position, lamp.position);
+  CHECK(way == Approx(0.1f * b.work.camera.core.radius()));
   b.run("light.add spot");
   const scene::Light spot = b.work.open.lights().back();
   CHECK(glm::length(spot.direction) == Approx(1));

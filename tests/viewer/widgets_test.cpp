@@ -422,7 +422,11 @@ TEST_CASE("the panel's buttons add, copy, move and delete lights, each in one st
   const auto& open = walk.ui().open;
   const auto count = [&] { return open.lights().size(); };
   REQUIRE(count() == 3);
+  // The list of objects is open below: the panel stays where the new light's row is.
+  walk.ui().sections["Objects"] = true;
   use(walk, "##add_spot");
+  CHECK(ImGui::FindWindowByName("##scene")->Scroll.y < 300);
+  walk.ui().sections["Objects"] = false;
   REQUIRE(count() == 4);
   CHECK(walk.ui().camera.selection == commands::Selection{commands::Kind::light, 3});
   const vec3 place = open.light(3).position;
