@@ -113,7 +113,13 @@ const std::array<plan::Choice, paths::k_component_count>& Renderer::choices() co
 
 void Renderer::commit(Transaction& transaction) {
   const std::vector<std::string> messages = new_messages(transaction.relight(), setup_.relight);
-  if (transaction.has_films()) output_.forget_filtered();
+  if (transaction.has_films()) {
+    // The former picture goes with its film, such as when a lamp is the second light group.
+    const Transaction::Target& target = transaction.target();
+    if (samples() > 0 && target.width == setup_.width && target.height == setup_.height)
+      output_.keep_former(nullptr);
+    output_.forget_filtered();
+  }
   transaction.commit();
   for (const std::string& message : messages) log::warning("{}", message);
 }

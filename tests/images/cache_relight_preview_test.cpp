@@ -144,6 +144,31 @@ TEST_CASE("a few preview samples show the final brightness, whatever has changed
   CHECK(early == Approx(finally).epsilon(0.08));
 }
 
+TEST_CASE("a lamp that makes a second light group leaves the picture until it shines") {
+  Bed bed(true, "hessian");
+  bed.r.set_scene(std::make_shared<scene::Scene>(test::block_room()));
+  bed.r.set_size(96, 96);
+  test::set(bed.r, {{"components.primary", "path"},
+                    {"components.secondary", "path"},
+                    {"components.tertiary", "path"},
+                    {"samples", "16"}});
+  for (const bool filtered : {false, true}) {
+    INFO((filtered ? "filtered" : "unfiltered"));
+    test::finish(bed.r);
+    if (filtered) {
+      while (bed.r.output().filter_due()) bed.r.output().step_filter({});
+      bed.shown();
+      REQUIRE(bed.r.output().preview_shares().filtered > 0.5);
+    }
+    const double before = bed.shown();
+    std::vector<scene::Light> lights = bed.r.scene()->lights;
+    lights.push_back(lights[0]);
+    lights.back().intensity *= 0.01f, lights.back().group = filtered ? "first" : "second";
+    bed.r.set_light_list(lights);
+    CHECK(bed.shown() == Approx(before).epsilon(0.05));
+  }
+}
+
 TEST_CASE("a picture of almost no light is none of the light that returns") {
   Bed bed(true, "hessian");
   bed.r.set_scene(std::make_shared<scene::Scene>(test::block_room()));  // no sky
