@@ -233,8 +233,8 @@ void add_material_commands(Registry& registry, OpenScene& open) {
              take(a, "iridescence", m.iridescence);
              take(a, "film_thickness", m.iridescence_maximum);
              take(a, "emission", m.emission);
-             float strength = strength_of(m.emission);
              const vec3 tint = requested_tint(a, "emission_color", tint_of(m.emission));
+             float strength = strength_in(a, tint, m.emission);
              take(a, "strength", strength);
              if (a.has("strength") || a.has("emission_color") || a.has("kelvin"))
                m.emission = strength * tint;

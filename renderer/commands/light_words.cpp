@@ -146,8 +146,8 @@ void shape(const Arguments& a, scene::Light& light) {
 
 /// Applies the requested strength, colour and switch. `distance`: of lux, if not given.
 void shine(const Arguments& a, scene::Light& light, float distance) {
-  float strength = strength_of(light.intensity);
   const vec3 tint = requested_tint(a, "color", tint_of(light.intensity));
+  float strength = strength_in(a, tint, light.intensity);
   take(a, "intensity", strength);
   if (a.has("power")) strength = a.number("power") / std::max(float(scene::solid_angle(light)), 1e-9f);
   if (a.has("intensity") || a.has("power") || a.has("color") || a.has("kelvin"))
@@ -168,7 +168,7 @@ void shine(const Arguments& a, scene::Light& light, float distance) {
 Parameter kelvin() {
   return {.name = "kelvin",
           .type = Type::real,
-          .help = "colour of a black body of that temperature",
+          .help = "colour of a black body of that temperature, at equal luminous intensity",
           .lo = k_coolest_kelvin,
           .hi = k_hottest_kelvin,
           .unit = "K",
@@ -196,6 +196,10 @@ vec3 requested_tint(const Arguments& a, const char* color, const vec3& before) {
   if (strength_of(a.vector(color)) <= 0)
     throw Error("", fmt::format("{}: at least one channel must be above 0", color));
   return tint_of(a.vector(color));
+}
+
+float strength_in(const Arguments& a, const vec3& tint, const vec3& before) {
+  return a.has("kelvin") ? luminance(before) / luminance(tint) : strength_of(before);
 }
 
 const char* kind_of(const scene::Light& light) {

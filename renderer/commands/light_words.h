@@ -22,6 +22,9 @@ void take(const Arguments& a, const char* name, bool& value);
 /// The requested colour, its strongest channel 1, from the parameter of that name or in kelvin; else
 /// `before`.
 vec3 requested_tint(const Arguments& a, const char* color, const vec3& before);
+/// The strength of light of that tint in place of `before`: a temperature keeps the luminance, a colour the
+/// strongest channel.
+float strength_in(const Arguments& a, const vec3& tint, const vec3& before);
 
 /// "sun", "spot lamp", "point lamp", "sphere lamp", "rectangle lamp", "disk lamp" or "tube lamp".
 const char* kind_of(const scene::Light& light);
