@@ -143,7 +143,7 @@ void Preview::make_room(uint32_t width, uint32_t height, const Film* draft) {
 }
 
 void Preview::pack(gpu::Stream& stream, const Film& film, const Pixels& to, const View& view,
-                   const gpu::Buffer* guide, const gpu::Buffer& sums, float noise) {
+                   const gpu::Buffer* guide, const gpu::Buffer& sums, float noise, bool taken) {
   film.bind(resources_);
   resources_.set("guide_surfaces", guide ? *guide : history_.pixels.surfaces);
   resources_.set("Packed", to.light);
@@ -151,7 +151,7 @@ void Preview::pack(gpu::Stream& stream, const Film& film, const Pixels& to, cons
   resources_.set("PackedSums", sums);
   stream.dispatch(pack_, resources_,
                   PreviewPackPush{film.width(), film.height(), view.exposure, guide != nullptr,
-                                  shown_components(view), noise},
+                                  shown_components(view), noise, taken},
                   groups(uint64_t{film.width()} * film.height()));
 }
 
@@ -278,7 +278,7 @@ void Preview::recall_on(gpu::Stream& stream, const Film& film, const View& view,
 void Preview::take(gpu::Stream& stream, const Film& film, const View& view, const PreviewCamera& camera,
                    float noise, const gpu::Buffer* seen) {
   make_room(film.width(), film.height(), nullptr);
-  pack(stream, film, now_, view, seen, sums_[0], noise);
+  pack(stream, film, now_, view, seen, sums_[0], noise, true);
   stream.run();
   camera_ = camera, exposure_ = view.exposure;
   surfaces_known_ = true;

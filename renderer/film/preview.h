@@ -112,7 +112,7 @@ class Preview {
   void make_pixels(Pixels& to);
   void make_room(uint32_t width, uint32_t height, const Film* draft);
   void pack(gpu::Stream& stream, const Film& film, const Pixels& to, const View& view,
-            const gpu::Buffer* guide, const gpu::Buffer& sums, float noise = 1);
+            const gpu::Buffer* guide, const gpu::Buffer& sums, float noise = 1, bool taken = false);
   /// Records; the tiles can be read after the stream has run. Returns whether the previous picture is
   /// measured too.
   bool judge(gpu::Stream& stream, const Film& by, const View& view);

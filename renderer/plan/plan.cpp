@@ -86,7 +86,8 @@ std::vector<std::string> unreachable_light(const Plan& plan, const scene::Scene&
   // Words that end in D[DGS]*SL: of primary light lamps without size have none, and secondary light reaches
   // its lamp from a diffuse vertex.
   size_t lamps = 0;
-  for (const scene::Light& light : scene.lights) lamps += light.enabled && light.intensity != vec3(0);
+  for (const scene::Light& light : scene.lights)
+    lamps += light.enabled && light.intensity != vec3(0) && !(scene::has_shape(light.kind) && light.visible);
   const std::vector<std::string> materials = polished_materials(scene);
   if (lamps == 0 || materials.empty()) return {};
   std::vector<std::string> missing, settings, lines;
@@ -110,10 +111,12 @@ std::vector<std::string> unreachable_light(const Plan& plan, const scene::Scene&
   const std::string &material = materials.front(), others = std::to_string(materials.size() - 1);
   lines.insert(
       lines.begin(),
-      fmt::format("{}: {} light is incomplete: paths from the eye cannot find the light of {} point, spot or "
-                  "directional light{} by way of polished surfaces (material '{}'{}); set {} to compute it",
-                  scene.file, joined(missing, " and "), lamps, lamps == 1 ? "" : "s", material,
-                  materials.size() > 1 ? " and " + others + " more" : "", joined(settings, " and ")));
+      fmt::format(
+          "{}: {} light is incomplete: paths from the eye cannot find the light of {} lamp{} that they "
+          "cannot hit (point, spot, sun, invisible) by way of polished surfaces (material '{}'{}); set "
+          "{} to compute it",
+          scene.file, joined(missing, " and "), lamps, lamps == 1 ? "" : "s", material,
+          materials.size() > 1 ? " and " + others + " more" : "", joined(settings, " and ")));
   return lines;
 }
 

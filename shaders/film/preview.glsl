@@ -73,6 +73,12 @@ vec4 preview_texel(PreviewSurface s) {
   return vec4(s.depth, uintBitsToFloat(preview_normal(s.normal)), uintBitsToFloat(packUnorm4x8(vec4(s.albedo, covered))), s.samples);
 }
 
+// How a surface that a ray has hit is seen, of PreviewSurface::samples; both false: unknown.
+bool preview_beyond(PreviewSurface s) { return s.samples == k_preview_beyond; }
+bool preview_direct(PreviewSurface s) { return s.samples < 0.0 && s.samples > k_preview_beyond; }
+// Share of the light that another camera sees from another place, 0..1.
+float preview_mirrors(PreviewSurface s) { return preview_beyond(s) ? 0.5 : preview_direct(s) ? clamp(2.0 * (k_preview_direct - s.samples), 0.0, 1.0) : 0.0; }
+
 // Whether a pixel has information about the light: it was shown or has samples.
 bool preview_lit(PreviewLight l, PreviewSurface s) { return l.of[0].w >= 0.0 || s.samples > 0.0; }
 

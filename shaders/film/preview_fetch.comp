@@ -23,7 +23,8 @@ void add(PreviewSurface here, vec3 point, float far, ivec2 at, float weight) {
   if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) return;
   int pixel = at.y * size.x + at.x;
   PreviewSurface was = preview_surface(texelFetch(from_surfaces, pixel));
-  if (was.depth < 0.0) return;
+  // What a pane or a mirror shows of a place is no light of that place.
+  if (was.depth < 0.0 || (preview_beyond(was) && preview_direct(here)) || (preview_direct(was) && preview_beyond(here))) return;
   // A film's picture does not say which surfaces emit.
   was.emits = here.emits;
   vec2 p = preview_position(uvec2(at), vec2(size));

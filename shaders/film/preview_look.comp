@@ -39,7 +39,7 @@ void main() {
     vec3 first = camera_direction(camera_shift(vec2(path.pixel % frame.width, path.pixel / frame.width) + 0.5)), turned = first - ray.direction;
     if ((path.nulls & 1u) != 0u && dot(turned, turned) > 0.0) normal = reflect(normal, normalize(turned));
     float found = float(k_sight_met | (path_depth(path) > 0u ? k_sight_beyond : 0u) | (emits(surface) ? k_sight_emits : 0u));
-    features[2u * slot] = vec4(path.throughput * surface.parameters.base, found);
+    features[2u * slot] = vec4(path.throughput * surface.parameters.base, found + k_sight_mirrors * on.mirrors);
     features[2u * slot + 1u] = vec4(normal, camera_depth(travelled * first));
     return;
   }

@@ -44,6 +44,8 @@ void main() {
     s = seen;
     s.samples = samples;
   }
+  // As in preview_resolve.comp.
+  if (push.taken != 0u && push.guided != 0u && seen.samples < 0.0 && count > 1u) s.samples = seen.samples;
   vec4 texel = count > 0u ? preview_texel(s) : vec4(guide.xyz, 0.0);
   packed_surfaces[pixel] = texel;
 }

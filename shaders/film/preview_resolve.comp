@@ -24,6 +24,7 @@ layout(scalar) writeonly buffer Shown { uint shown_pixels[]; };
 // Maximum squared difference, over its variance, that counts as chance: noise of few paths has far outliers, and without a
 // change of light almost all differences are outliers.
 const float k_by_chance = 3.0, k_by_chance_same = 16.0;
+const float k_mirrored = 2.0;  // light in mirrors over that of diffuse surfaces: windows and lamps are brighter
 const float k_least_noise = 0.5;  // minimum relative noise of a sample where light has not changed
 // Relative noise of a pixel up to which it is shown unfiltered, and from which it is fully filtered.
 const float k_clean = 0.02, k_noisy = 0.08;
@@ -279,7 +280,12 @@ void main() {
     }
     // For later camera positions.
     if (here.depth < 0.0 && nearest_depth >= 0.0) surface = vec4(k_preview_about - nearest_depth, 0.0, 0.0, 0.0);
+    PreviewSurface seen = preview_surface(texelFetch(guide_surfaces, int(pixel)));
+    if (push.surfaces != k_preview_surface_seen) seen.samples = 0.0;
+    // A previous picture needs to know how a ray has hit the surface, and not the number of samples.
+    if (seen.samples < 0.0) surface.w = seen.samples;
     packed_surfaces[pixel] = surface;
+    float mirrors = push.moved != 0u ? min(k_mirrored * preview_mirrors(seen), 1.0) : 0.0;
     float by_chance = push.same_light != 0u ? k_by_chance_same : k_by_chance;
     PreviewLight result;
     vec3 color = vec3(0.0);
@@ -308,7 +314,7 @@ void main() {
       float error = mix(noise[c], smooth_error, amount);
       bool kept = has_old && !other_light[c];
       vec3 before = kept ? old.of[c].rgb * push.history_scale : vec3(0.0);
-      float u = kept ? square(old.of[c].w) : 0.0, v = square(error) + 1e-8;
+      float u = kept ? square(old.of[c].w) + square(mirrors * luminance(before)) : 0.0, v = square(error) + 1e-8;
       // Paths that have found no light yet seem noise-free: older light shows how much to expect.
       float unsure = rough;
       if (push.same_light != 0u) {

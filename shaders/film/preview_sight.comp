@@ -15,5 +15,5 @@ void main() {
   bool met = (found & k_sight_met) != 0u;
   surfaces[push.first + slot] =
       preview_texel(PreviewSurface(met ? facing.w : 0.0, met ? normalize(facing.xyz) : vec3(0.0), colour.rgb,
-                                   (found & k_sight_beyond) != 0u ? k_preview_beyond : 0.0, (found & k_sight_emits) != 0u, 1.0));
+                                   (found & k_sight_beyond) != 0u ? k_preview_beyond : k_preview_direct - 0.5 * fract(colour.w) / k_sight_mirrors, (found & k_sight_emits) != 0u, 1.0));
 }

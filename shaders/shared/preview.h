@@ -4,7 +4,7 @@
 // luminance (negative: unknown), in units of display white; and one texel of its surface: depth along the view axis [m] (0: no
 // surface; negative: unknown, or, if known from a preview sample, k_preview_about minus the approximate depth), bits
 // packSnorm2x16(octahedral normal), bits packUnorm4x8(albedo, share of the samples that hit it, or 0 if it is known to emit
-// light), number of samples, or for a ray's hit: 0, or k_preview_beyond.
+// light), number of samples, or for a ray's hit: k_preview_beyond or k_preview_direct.
 #ifndef LUCERNA_SHARED_PREVIEW_H
 #define LUCERNA_SHARED_PREVIEW_H
 #include "shaders/shared/compat.h"
@@ -14,8 +14,11 @@ LUCERNA_CONST uint k_preview_texels = 2u;
 LUCERNA_CONST uint k_preview_none = 0xffffffffu;  ///< no pixel
 LUCERNA_CONST float k_preview_about = -2.0f;
 LUCERNA_CONST float k_preview_beyond = -1.0f;  ///< surface seen in a mirror or through glass
+/// ... seen directly: k_preview_direct minus half of SightStep::mirrors.
+LUCERNA_CONST float k_preview_direct = -0.25f;
 /// Result of a ray through a pixel, as bits (film/preview_look.comp).
 LUCERNA_CONST uint k_sight_met = 1u, k_sight_beyond = 2u, k_sight_emits = 4u;
+LUCERNA_CONST float k_sight_mirrors = 0.5f;  ///< times SightStep::mirrors, added to these
 LUCERNA_CONST uint k_preview_step = 2u;  ///< pixels along the side of a cell of the filtered grid
 LUCERNA_CONST uint k_preview_first_step = 4u;  ///< ... with only a preview sample of a quarter of the resolution
 
@@ -34,6 +37,7 @@ struct PreviewPackPush {
   uint guided;  ///< not 0: surfaces of pixels without samples are known from the guide
   uint show;    ///< bit i: component i is shown
   float noise;  ///< factor on the standard errors that the halves of the samples give
+  uint taken;   ///< not 0: the result is a previous picture
 };
 
 struct PreviewHalvePush {

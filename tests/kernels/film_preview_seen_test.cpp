@@ -263,4 +263,62 @@ TEST_CASE("while the camera moves, visible surfaces show the previous picture's 
     }
 }
 
+namespace {
+
+/// Shows a wall at 5 m whose picture is taken from the origin, then from a camera four pixels to the right,
+/// with the noise-free or noisy new light of a half-size film.
+std::vector<float> shown_aside(Stage& stage, const Source& former,
+                               const std::function<Seen(uint32_t x)>& then,
+                               const std::function<Seen(uint32_t x)>& now, const Source& light) {
+  stage.sample(stage.film, 8, former);
+  const gpu::Buffer seen = surfaces_of(stage, [&](uint32_t x, uint32_t) { return then(x); });
+  stage.preview.take(stage.stream, stage.film, stage.view, stage.camera, 1, &seen);
+  stage.preview.keep({1, 1, 1}, false, true);
+  stage.film.clear(stage.stream);
+  stage.camera.axes.origin.x = 4 * 2 * 5 / float(stage.width);
+  const gpu::Buffer surfaces = surfaces_of(stage, [&](uint32_t x, uint32_t) { return now(x); });
+  Film draft(stage.device, stage.width / 2, stage.height / 2);
+  draft.clear(stage.stream);
+  stage.sample(draft, 4, light);
+  stage.preview.develop(stage.stream, stage.film, &draft, stage.view, stage.camera, true, film::Sampled::none,
+                        &surfaces);
+  return stage.shown();
+}
+
+double mean_of(const std::vector<float>& shown, uint32_t width, uint32_t from, uint32_t to) {
+  double sum = 0;
+  for (size_t i = 0; i < shown.size(); ++i)
+    if (i % width >= from && i % width < to) sum += shown[i];
+  return sum / (double(shown.size()) * (to - from) / width);
+}
+
+}  // namespace
+
+TEST_CASE("what a pane or a mirror has shown of a wall is not taken for the wall's own light") {
+  Stage stage(96, 64);
+  const auto pane = [](uint32_t x) { return x >= 40 && x < 56; };
+  const std::vector<float> shown = shown_aside(
+      stage, [&](uint32_t x, uint32_t) { return Sample{.light = vec3(pane(x) ? 0.9f : 0.3f)}; },
+      [&](uint32_t x) { return Seen{.beyond = pane(x)}; }, [](uint32_t) { return Seen{}; },
+      [](uint32_t, uint32_t) { return Sample{.light = vec3(0.3f)}; });
+  for (size_t i = 0; i < shown.size(); ++i) {
+    INFO(i % 96 << ": " << shown[i]);
+    REQUIRE(shown[i] == Approx(0.3f).margin(0.03));
+  }
+}
+
+TEST_CASE("from another place, polished surfaces soon show new light, others keep theirs until it differs") {
+  Stage stage(96, 64);
+  std::mt19937 random(5);
+  const std::vector<float> shown = shown_aside(
+      stage, [](uint32_t, uint32_t) { return Sample{.light = vec3(0.6f)}; },
+      [](uint32_t x) { return Seen{.mirrors = x < 48 ? 1.0f : 0.0f}; },
+      [](uint32_t x) { return Seen{.mirrors = x < 48 ? 1.0f : 0.0f}; },
+      [&](uint32_t, uint32_t) { return Sample{.light = vec3(random() % 4 == 0 ? 1.6f : 0)}; });
+  const double polished = mean_of(shown, 96, 8, 40), dull = mean_of(shown, 96, 56, 88);
+  INFO("new .4, before .6; polished " << polished << ", dull " << dull);
+  CHECK(polished < 0.5);
+  CHECK(dull > 0.55);
+}
+
 }  // namespace film_preview_seen_tests

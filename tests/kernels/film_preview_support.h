@@ -97,6 +97,7 @@ struct Stage {
 struct Seen {
   float albedo = 1, depth = 5;
   bool emits = false, beyond = false;
+  float mirrors = 0;
 };
 
 /// Surfaces of so many pixels, or a stage's, that face the camera, in the format of shaders/shared/preview.h.
@@ -109,7 +110,8 @@ inline gpu::Buffer surfaces_of(Stage& stage, uint32_t width, uint32_t height,
       const auto byte = uint32_t(std::lround(s.albedo * 255));
       // A normal towards the camera is 0 on the octahedron.
       const uint32_t bits[2] = {0, byte * 0x010101u | (s.emits ? 0 : 0xff000000u)};
-      vec4 texel(s.depth, 0, 0, s.beyond ? shared::k_preview_beyond : 0);
+      vec4 texel(s.depth, 0, 0,
+                 s.beyond ? shared::k_preview_beyond : shared::k_preview_direct - 0.5f * s.mirrors);
       std::memcpy(&texel.y, bits, sizeof bits);
       texels.push_back(texel);
     }

@@ -138,7 +138,7 @@ std::vector<SharedStruct> structs() {
       SHARED("film.h", TonePush, width, height, layer, show, curve, exposure, scale, coarse_width,
              coarse_height, use_coarse_film),
       SHARED("preview.h", PreviewCamera, origin, right, up, forward),
-      SHARED("preview.h", PreviewPackPush, width, height, exposure, guided, show, noise),
+      SHARED("preview.h", PreviewPackPush, width, height, exposure, guided, show, noise, taken),
       SHARED("preview.h", PreviewHalvePush, width, height, across, down, draft_width, draft_height, history,
              repainted, history_scale, draft_share, step, sampled, surfaces, moved),
       SHARED("preview.h", PreviewFilterPush, across, down, step, projection, history, blocks_across,

@@ -90,6 +90,13 @@ TEST_CASE("light that the chosen solvers cannot find causes a warning, and nothi
   s.materials[0].roughness = 0;
   REQUIRE(plan::unreachable_light(p, s).size() == 1);
   CHECK(plan::unreachable_light(p, s)[0].find("one.gltf: tertiary and caustic light") == 0);
+  // Paths can hit a lamp with a size, unless it is invisible to them.
+  for (scene::Light& light : s.lights) light.kind = scene::LightKind::sphere;
+  CHECK(plan::unreachable_light(p, s).empty());
+  s.lights[1].visible = false;
+  REQUIRE(plan::unreachable_light(p, s).size() == 1);
+  CHECK(plan::unreachable_light(p, s)[0].find("the light of 1 lamp") != std::string::npos);
+  for (scene::Light& light : s.lights) light = {};
   s.materials[0].transmission = 0, s.materials[0].thickness = 0, s.materials[0].metallic = 1;
   CHECK(plan::unreachable_light(p, s).size() == 1);
   s.materials[0].metallic = 0;

@@ -156,8 +156,8 @@ class Cache {
   /// Continues building with the present records for another camera or size; passes are counted from 0 again.
   /// Work in progress is finished first; a pause stays.
   void extend();
-  /// Objects have left or entered these boxes (world space): drops the records whose radii they determine, and
-  /// work in progress. Call relight() and extend() next.
+  /// Objects have left or entered these boxes (world space): drops the records whose radii they determine,
+  /// and work in progress. Call relight() and extend() next.
   void drop_near(std::span<const Box> moved);
   /// Recomputes all light on the same surfaces; if diffuse surfaces have changed, call extend() too. Places
   /// and radii stay. Light is gathered again pass by pass; then building continues from, or is complete as,
