@@ -90,10 +90,11 @@ scene::Light new_light(Workspace& work, const Arguments& a) {
   const std::vector<scene::Light>& lights = work.open.edit().lights;
   light.name = free_name(lights, kind.name);
   if (a.has("name")) check_name(lights, a.text("name")), light.name = a.text("name");
-  place_new(room_of(work), lights, light);
+  const Room room = room_of(work);
+  place_new(room, lights, light);
   if (a.text("kind") == "profile") {
     if (!a.has("profile")) throw Error("", "profile: its file is missing");
-    const vec3 way = looked_at(room_of(work)).point - light.position;
+    const vec3 way = looked_at(room).point - light.position;
     if (glm::length(way) > 0) light.direction = vec3(glm::normalize(glm::dvec3(way)));
   }
   apply_light_words(a, light, work.open.light_unit.distance);

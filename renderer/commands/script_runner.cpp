@@ -83,6 +83,7 @@ void ScriptRunner::advance() {
     steps_.pop_front();
     if (host_.wake) host_.wake(3);
   }
+  work_.script_line.clear();
 }
 
 bool ScriptRunner::waits_for_earlier(const Step& step) const {
