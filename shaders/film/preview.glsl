@@ -73,7 +73,8 @@ vec4 preview_texel(PreviewSurface s) {
   return vec4(s.depth, uintBitsToFloat(preview_normal(s.normal)), uintBitsToFloat(packUnorm4x8(vec4(s.albedo, covered))), s.samples);
 }
 
-// How a surface that a ray has hit is seen, of PreviewSurface::samples; both false: unknown.
+// How a surface that a ray has hit is seen, in place of PreviewSurface::samples. Both of the next two false: unknown.
+float preview_seen(bool beyond, float mirrors) { return beyond ? k_preview_beyond : k_preview_direct - 0.5 * mirrors; }
 bool preview_beyond(PreviewSurface s) { return s.samples == k_preview_beyond; }
 bool preview_direct(PreviewSurface s) { return s.samples < 0.0 && s.samples > k_preview_beyond; }
 // Share of the light that another camera sees from another place, 0..1.

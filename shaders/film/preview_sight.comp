@@ -13,7 +13,7 @@ void main() {
   vec4 colour = texelFetch(feature_texels, int(2u * slot)), facing = texelFetch(feature_texels, int(2u * slot + 1u));
   uint found = uint(colour.w);
   bool met = (found & k_sight_met) != 0u;
-  surfaces[push.first + slot] =
-      preview_texel(PreviewSurface(met ? facing.w : 0.0, met ? normalize(facing.xyz) : vec3(0.0), colour.rgb,
-                                   (found & k_sight_beyond) != 0u ? k_preview_beyond : k_preview_direct - 0.5 * fract(colour.w) / k_sight_mirrors, (found & k_sight_emits) != 0u, 1.0));
+  float seen = preview_seen((found & k_sight_beyond) != 0u, fract(colour.w) / k_sight_mirrors);
+  surfaces[push.first + slot] = preview_texel(
+      PreviewSurface(met ? facing.w : 0.0, met ? normalize(facing.xyz) : vec3(0.0), colour.rgb, seen, (found & k_sight_emits) != 0u, 1.0));
 }
