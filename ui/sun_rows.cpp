@@ -76,7 +76,7 @@ void sun_details(Controls& controls, size_t i, const scene::Light& light) {
   if (button("##daylight", "Colour and strength by the air", false, ImGui::CalcItemWidth()))
     controls.act("sun.set", i + 1,
                  named("turbidity", controls.open.sky().value_or(scene::SkyModel()).turbidity));
-  tooltip("Sets both by the way of the light through the air, for the turbidity of the sky; in kilolux.");
+  tooltip("Sets both by the way of the light through the air, for the turbidity of the sky; in lux.");
 }
 
 void sky_rows(Controls& controls) {

@@ -12,11 +12,21 @@
 
 namespace lucerna::commands {
 
-void Exposure::measure(std::optional<vec2> at) { measure(at, false); }
+void Exposure::measure(std::optional<vec2> at) { measure(at, Reason::request); }
 
-void Exposure::measure(std::optional<vec2> at, bool of_load) {
+void Exposure::measure(std::optional<vec2> at, Reason reason, uint64_t step) {
   failure_.clear();
-  measuring_ = Measuring{open_.session.measure(at, open_.id()), at.has_value(), of_load, camera_.view_scene};
+  measuring_ = Measuring{open_.session.measure(at, open_.id()), at.has_value(),         reason, step,
+                         camera_.view_scene,                    open_.setting("film.ev")};
+}
+
+bool Exposure::allowed(bool interactive) const {
+  const std::string& when = open_.setting("film.exposure_at_load");
+  return interactive ? when != "never" : when == "always";
+}
+
+void Exposure::daylight_replaced(bool interactive, uint64_t step) {
+  if (camera_.view_scene == open_.id() && allowed(interactive)) measure(std::nullopt, Reason::daylight, step);
 }
 
 bool Exposure::done() const {
@@ -34,11 +44,10 @@ void Exposure::begin_scene() {
   due_ = sets_exposure || std::exchange(given_, false) ? 0 : camera_.view_scene;
 }
 
-void Exposure::follow(bool interactive, const std::function<void(float ev, bool of_load)>& found) {
+void Exposure::follow(bool interactive, const std::function<void(const Found&)>& found) {
   if (due_ != 0 && due_ == camera_.view_scene && open_.snapshot && !open_.snapshot->rgba.empty() &&
       !measuring_) {
-    const std::string& when = open_.setting("film.exposure_at_load");
-    if (interactive ? when != "never" : when == "always") measure(std::nullopt, true);
+    if (allowed(interactive)) measure(std::nullopt, Reason::load);
     due_ = 0;
   }
   if (!measuring_ || !is_ready(measuring_->result)) return;
@@ -50,13 +59,19 @@ void Exposure::follow(bool interactive, const std::function<void(float ev, bool 
     if (!brightness.ev)
       throw Error("", requested.at_point ? "it is black there: no exposure makes it grey"
                                          : "the picture is black: no exposure shows it");
-    // A value that the user has set meanwhile stays.
-    if (requested.of_load && open_.setting("film.ev") != plan::find_option("film.ev")->fallback) return;
     const float ev = std::round(*brightness.ev * 100) / 100;
-    if (number_text(ev) != open_.setting("film.ev")) found(ev, requested.of_load);
+    // A value that the user has set meanwhile stays.
+    if (requested.reason == Reason::load &&
+        open_.setting("film.ev") != plan::find_option("film.ev")->fallback)
+      return;
+    if (requested.reason == Reason::daylight &&
+        (open_.setting("film.ev") != requested.ev ||
+         std::abs(ev - float(open_.setting_real("film.ev"))) <= k_tolerated_ev))
+      return;
+    if (number_text(ev) != open_.setting("film.ev")) found({ev, requested.reason, requested.step});
   } catch (const std::exception& error) {
     failure_ = error.what();
-    if (!requested.of_load) log::error("exposure: {}", error.what());
+    if (requested.reason == Reason::request) log::error("exposure: {}", error.what());
   }
 }
 

@@ -59,6 +59,18 @@ void History::add_edit(const Executed& executed, const Document& before, const D
   forget_oldest();
 }
 
+void History::join_latest(uint64_t position) {
+  if (undo_.size() < 2) return;
+  const Step &last = undo_.back(), &whole = undo_[undo_.size() - 2];
+  if (last.move || whole.move || position == 0 || whole.position != position) return;
+  Step joined = whole;
+  joined.after = last.after;
+  joined.sent.last = std::max(whole.sent.last, last.sent.last);
+  if (last.position != 0) joined.position = last.position;
+  undo_.pop_back();
+  undo_.back() = std::move(joined);
+}
+
 void History::forget_oldest() {
   if (undo_.size() <= k_steps) return;
   if (undo_.front().position != 0) base_ = undo_.front().position;

@@ -76,6 +76,8 @@ class History {
   void add_edit(const Executed& executed, const Document& before, const Document& after, bool merges);
   /// Adds a step if the camera has moved from there. Moves of one gesture are one step.
   void add_move(const Executed& executed, const Viewpoint& before, int camera_before);
+  /// Makes the latest step part of the one before it, if position() was `position` after that one.
+  void join_latest(uint64_t position);
   void forget_redo() { redo_.clear(); }
   /// Another scene: nothing can be undone.
   void forget_steps() { undo_.clear(), redo_.clear(), base_ = ++positions_; }

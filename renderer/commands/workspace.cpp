@@ -66,14 +66,7 @@ void Workspace::refresh(double time) {
       camera.follow(*open.snapshot) && events.size_refused)
     events.size_refused(open.snapshot->width, open.snapshot->height);
   open.follow_load(camera.view_scene == open.id());
-  exposure.follow(events.exposes_at_load && events.exposes_at_load(), [&](float ev, bool of_load) {
-    const bool clean = !scene_file.unsaved();
-    run(line("set", "film.ev", ev));
-    if (of_load && clean) scene_file.note_clean();
-    if (events.measured)
-      events.measured(of_load ? fmt::format("The scene names no exposure; {:+.1f} EV was found for it", ev)
-                              : fmt::format("Exposure {:+.2f} EV", ev));
-  });
+  exposure.follow(interactive(), [&](const Exposure::Found& found) { expose(found); });
   scene_file.follow();
   if (pixel) pixel->follow(open, camera);
   if (traced) traced->refresh();
@@ -81,6 +74,18 @@ void Workspace::refresh(double time) {
   compare.refresh(open);
   for (const std::string& name : files.take_written())
     if (events.written) events.written(name);
+}
+
+bool Workspace::interactive() const { return events.exposes_at_load && events.exposes_at_load(); }
+
+void Workspace::expose(const Exposure::Found& found) {
+  const bool clean = !scene_file.unsaved(), of_load = found.reason == Exposure::Reason::load;
+  run(line("set", "film.ev", found.ev));
+  if (of_load && clean) scene_file.note_clean();
+  if (found.reason == Exposure::Reason::daylight) history.join_latest(found.step);
+  if (!events.measured) return;
+  events.measured(of_load ? fmt::format("The scene names no exposure; {:+.1f} EV was found for it", found.ev)
+                          : fmt::format("Exposure {:+.2f} EV", found.ev));
 }
 
 void Workspace::follow_scene() {
@@ -158,6 +163,9 @@ void Workspace::execute_edit(const Line& line, uint64_t gesture, const std::stri
     return;
   history.forget_redo();
   record(line, executed);
+  // While a value is dragged the exposure stays.
+  if (gesture == 0 && line.command->replaces_daylight && line.command->replaces_daylight(line.arguments))
+    exposure.daylight_replaced(interactive(), history.position());
 }
 
 void Workspace::record(const Line& line, History::Executed executed) {

@@ -110,6 +110,8 @@ class Workspace {
   }
 
  private:
+  bool interactive() const;
+  void expose(const Exposure::Found& found);
   void follow_scene();
   void carry_out(const Line& line, uint64_t gesture, const std::string& where);
   void execute_edit(const Line& line, uint64_t gesture, const std::string& where);

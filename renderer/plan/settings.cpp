@@ -145,8 +145,10 @@ void add_display_options(std::vector<OptionInfo>& list) {
   list.push_back(
       without_restart(choice_option("film.exposure_at_load", "window", {"window", "always", "never"}, "",
                                     "When the exposure of a scene without one is measured from its first "
-                                    "image: in the window without a script, in batch renders too, or never.",
-                                    "Exposure at load")));
+                                    "image: in the window without a script, in batch renders too, or never. "
+                                    "Where it is, a new sky, environment image or sun sets it again if it is "
+                                    "more than 2 EV off.",
+                                    "Automatic exposure")));
   list.push_back(choice_option("film.background", "shown", {"shown", "hidden"}, "",
                                "Shows or hides the environment behind the scene. Hidden, it still lights the "
                                "scene, and mirrors and glass show it.",

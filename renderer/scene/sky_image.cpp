@@ -132,14 +132,14 @@ Sky::Sky(const SkyModel& model) : model_(model), to_sun_(glm::normalize(dvec3(mo
   if (model_.kind != SkyKind::preetham) {
     const double elevation = to_sun_.y;  // its sine
     const double wanted =
-        model_.kind == SkyKind::cie_clear ? 0.8 + 15.5 * std::sqrt(elevation) : 0.3 + 21 * elevation;
+        model_.kind == SkyKind::cie_clear ? 800 + 15500 * std::sqrt(elevation) : 300 + 21000 * elevation;
     scale_ = wanted / over_horizontal([&](const dvec3& d) { return cie_relative(model_.kind, d, to_sun_); });
   }
   ground_ = model_.ground / k_pi * horizontal_irradiance();
 }
 
 vec3 Sky::above(const dvec3& direction) const {
-  if (model_.kind == SkyKind::preetham) return preetham(model_, direction, to_sun_);
+  if (model_.kind == SkyKind::preetham) return 1000.0f * preetham(model_, direction, to_sun_);
   return vec3(float(scale_ * cie_relative(model_.kind, direction, to_sun_)));
 }
 

@@ -172,11 +172,11 @@ vec3 sunlight(double elevation, double turbidity, const SunTime& time) {
   if (!(elevation > 0)) return vec3(0);
   // Dominant wavelengths of Rec.709's primaries [micrometres], and ozone's absorption there [1/cm].
   constexpr std::array<double, 3> wavelengths{0.6114, 0.5491, 0.4643}, ozone{0.120, 0.085, 0.010};
-  constexpr double k_ozone = 0.35, k_klx = 127.5;
+  constexpr double k_ozone = 0.35, k_outside = 127500;
   const double mass = air_mass(elevation), aerosols = 0.04608 * turbidity - 0.04586;
   const double distance = apparent_sun(days_since_epoch(time)).distance;
   vec3 light = blackbody_color(5778);
-  light *= float(k_klx / (double{luminance(light)} * distance * distance));
+  light *= float(k_outside / (double{luminance(light)} * distance * distance));
   for (int k = 0; k < 3; ++k) {
     const double w = wavelengths[size_t(k)];
     const double depth = 0.008735 * std::pow(w, -4.08) + std::max(aerosols, 0.0) * std::pow(w, -1.3) +

@@ -33,7 +33,7 @@ SunPosition sun_position(const SunTime& time);
 /// Direction, unit, in which the sun's light travels in the scene (Y up; SunTime::north).
 vec3 sun_direction(const SunTime& time);
 
-/// Illuminance of the sun on a plane that faces it, as linear Rec.709 whose luminance is in kilolux; 0 below
+/// Illuminance of the sun on a plane that faces it, as linear Rec.709 whose luminance is in lux; 0 below
 /// the horizon. The light of a black body of 5778 K, 127.5 klx outside of the air at the mean distance (IES
 /// Lighting Handbook), at the present distance, through the air: Rayleigh scattering, aerosols of that
 /// turbidity (2 to 10), 0.35 cm of ozone (Preetham et al. 1999, appendix A.1; Iqbal 1983), evaluated at the

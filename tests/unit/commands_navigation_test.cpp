@@ -165,4 +165,36 @@ TEST_CASE("exposure is measured by command, at a point, and on loading if set") 
   CHECK_FALSE(b.until([&] { return b.work.open.setting_real("film.ev") != -1; }, 0.5));
 }
 
+TEST_CASE("exposure follows replaced daylight, as part of its step") {
+  WorkspaceBench b;
+  b.open();
+  const auto ev = [&] { return b.work.open.setting_real("film.ev"); };
+  b.run("sun.set Sun date=2024-06-21 time=10:00 zone=2 latitude=48.1 longitude=11.6");
+  b.run("environment.sky preetham");  // exposure is not automatic in scripts
+  CHECK_FALSE(b.until([&] { return ev() != 0; }, 0.3));
+  b.run("environment.own");
+  b.run("set film.exposure_at_load always");
+  const Document before = b.work.open.document();
+  b.run("environment.sky preetham");
+  REQUIRE(b.until([&] { return ev() == 2.5; }));
+  CHECK(b.work.history.script().back() == "set film.ev 2.5");
+  b.run("undo");
+  CHECK(b.work.open.document() == before);
+  b.run("redo");
+  CHECK(ev() == 2.5);
+  CHECK(b.work.open.sky());
+
+  b.run("sun.set Sun turbidity=4");  // the exposure is right
+  b.run("set film.ev 1");            // and less than 2 EV off
+  b.run("environment.sky cie_clear");
+  CHECK_FALSE(b.until([&] { return ev() != 1; }, 0.3));
+  b.run("set film.ev -1");
+  b.run("sun.set Sun time=11");  // the hour is no reason
+  b.run("environment.sky cie_clear ground=0.3", 5);  // while a value is dragged it stays
+  CHECK_FALSE(b.until([&] { return ev() != -1; }, 0.3));
+  b.work.run("sun.set Sun turbidity=5");
+  b.work.run("set film.ev -2");  // the user's own value
+  CHECK_FALSE(b.until([&] { return ev() != -2; }, 0.3));
+}
+
 }  // namespace commands_navigation_tests

@@ -612,6 +612,48 @@ TEST_CASE("environment and settings are in the file, over settings.json") {
   CHECK(back.environment.scale == 2);
   REQUIRE(back.environment.image != k_none);
   CHECK(std::as_const(back.images)[back.environment.image].floats == sky_image(*back.environment.sky).floats);
+  // The first versions wrote kcd/m2, and no unit.
+  json old = json::parse(read_file(b.folder / "d.gltf"));
+  json& environment = old["scenes"][0]["extras"]["lucerna"]["environment"];
+  environment["sky"].erase("unit");
+  write(b.folder / "old.gltf", old.dump());
+  CHECK(load(b.folder / "old.gltf").environment.scale == Approx(0.002f));
+}
+
+TEST_CASE("an environment that the file names is not named twice") {
+  for (const bool ours : {false, true}) {
+    Asset a = room();
+    const json named{{"radiance", {0.25, 0.5, 1}}, {"scale", 2}};
+    a.doc["scenes"][0]["extras"]["environment"] = named;
+    if (ours) a.doc["scenes"][0]["extras"]["lucerna"]["environment"] = {{"radiance", {1, 1, 1}}};
+    Bench b(a);
+    b.read();
+    std::filesystem::create_directory(b.folder / "other");
+    const Scene back = b.saved(b.folder / "other/c.gltf");
+    CHECK(back.environment.radiance == (ours ? vec3(1) : vec3(0.25f, 0.5f, 1)));
+    CHECK(b.document("other/c.gltf")["scenes"][0]["extras"] == b.document("a.gltf")["scenes"][0]["extras"]);
+    // Beside a settings.json that overrides it, elsewhere that one is kept.
+    if (ours) continue;
+    write(b.folder / "settings.json", std::string(R"({"environment": {"radiance": [1, 2, 3]}})"));
+    b.read();
+    CHECK(b.saved(b.folder / "other/d.gltf").environment.radiance == vec3(1, 2, 3));
+  }
+}
+
+TEST_CASE("a moved lamp that is off is off for other programs too") {
+  // The first versions left its intensity in the definition.
+  Asset a = room();
+  for (json& node : a.doc["nodes"])
+    if (node.value("name", "") == "table lamp") node["extras"]["lucerna"]["enabled"] = false;
+  Bench b(a);
+  b.read();
+  Light& lamp = *std::find_if(b.edited->lights.begin(), b.edited->lights.end(),
+                              [](const Light& l) { return !l.enabled; });
+  lamp.position.x += 1;
+  const Scene back = b.saved(b.folder / "b.gltf");
+  check_equal(b.edited->lights, back.lights);
+  for (const json& light : b.document("b.gltf")["extensions"]["KHR_lights_punctual"]["lights"])
+    if (light["type"] == "point") CHECK(light["intensity"] == 0);
 }
 
 TEST_CASE("references stay right in another folder") {
@@ -706,6 +748,9 @@ TEST_CASE("damaged extras are refused or ignored where they stand") {
   a.doc["scenes"][0]["extras"]["lucerna"]["environment"] = {
       {"sky", {{"kind", "preetham"}, {"turbidity", 99}, {"to_sun", {0, 1, 0}}}}};
   CHECK_THAT(failure(a), Contains("the turbidity is 99"));
+  a.doc["scenes"][0]["extras"]["lucerna"]["environment"] = {
+      {"sky", {{"kind", "preetham"}, {"to_sun", {0, 1, 0}}, {"unit", "nit"}}}};
+  CHECK_THAT(failure(a), Contains("sky.unit: 'nit', expected cd/m2 or kcd/m2"));
   a.doc["scenes"][0]["extras"]["lucerna"] = {{"settings", {{"film.ev", json::array()}}}};
   CHECK_THAT(failure(a), Contains("extras.lucerna.settings.film.ev: expected a number"));
 }

@@ -44,6 +44,7 @@ void read_environment(Document& document, Scene& scene, const Item& item, bool s
     scene.images.push_back(std::move(image));
   } else if (sky) {
     environment.sky = read_sky(*sky);
+    environment.scale *= sky_unit(*sky);
     environment.image = static_cast<Id>(scene.images.size());
     scene.images.push_back(sky_image(*environment.sky));
   } else {

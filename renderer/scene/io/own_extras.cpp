@@ -146,6 +146,13 @@ SkyModel read_sky(const Item& item) {
   return sky;
 }
 
+float sky_unit(const Item& item) {
+  const auto unit = item.find("unit");
+  if (!unit || unit->text() == "kcd/m2") return 0.001f;
+  if (unit->text() != "cd/m2") unit->fail("'{}', expected cd/m2 or kcd/m2", unit->text());
+  return 1;
+}
+
 std::optional<Item> own_environment(const Document& document) {
   const auto source = default_scene(document);
   const auto own = source ? own_extras(*source) : std::nullopt;

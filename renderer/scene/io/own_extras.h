@@ -36,8 +36,11 @@ void read_own_emission(const Item& item, Material& material);
 /// Of a camera: {"section": {"normal": [x, y, z], "offset": metres}}, in the file's coordinates.
 void read_own_section(const Item& camera, Camera& result);
 
-/// {"kind": "preetham", "turbidity": 3, "ground": 0.2, "to_sun": [x, y, z]}; "cie_clear", "cie_overcast".
+/// {"kind": "preetham", "turbidity": 3, "ground": 0.2, "to_sun": [x, y, z], "unit": "cd/m2"}; "cie_clear",
+/// "cie_overcast".
 SkyModel read_sky(const Item& item);
+/// Factor on Sky::radiance() by its "unit": 1 for "cd/m2"; 0.001 for "kcd/m2", and without one, as first versions wrote it.
+float sky_unit(const Item& item);
 /// Its name in files and commands.
 const char* name_of(SkyKind kind);
 

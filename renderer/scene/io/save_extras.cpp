@@ -19,7 +19,8 @@ EditedJson environment_json(const Environment& e, const Environment& loaded, con
     json["sky"] = {{"kind", name_of(e.sky->kind)},
                    {"turbidity", number_json(e.sky->turbidity)},
                    {"ground", number_json(e.sky->ground)},
-                   {"to_sun", vector_json(e.sky->to_sun)}};
+                   {"to_sun", vector_json(e.sky->to_sun)},
+                   {"unit", "cd/m2"}};
   else if (e.image != k_none && e.image == loaded.image)
     json["file"] = moved_uri(e.file, folders);  // as the scene names it
   else if (e.image != k_none)
@@ -29,6 +30,23 @@ EditedJson environment_json(const Environment& e, const Environment& loaded, con
   json["scale"] = number_json(e.scale);
   json["rotation"] = number_json(e.rotation);
   return json;
+}
+
+/// True if the file itself says the same, in a way that holds in every folder.
+bool says(const EditedJson& scene, const EditedJson& environment) {
+  const auto extras = scene.find("extras");
+  if (extras == scene.end() || !extras->is_object()) return false;
+  const auto own = extras->find("lucerna");
+  const bool ours = own != extras->end() && own->is_object() && own->contains("environment");
+  const EditedJson& holder = ours ? *own : *extras;
+  if (!holder.contains("environment")) return false;
+  EditedJson named = holder["environment"];
+  if (!named.is_object() || named.contains("file")) return false;
+  if (!named.contains("scale")) named["scale"] = 1;
+  if (!named.contains("rotation")) named["rotation"] = 0;
+  return std::all_of(environment.items().begin(), environment.items().end(), [&](const auto& item) {
+    return named.contains(item.key()) && named[item.key()] == item.value();
+  });
 }
 
 /// The settings that reading gives without extras.lucerna.settings.
@@ -44,9 +62,12 @@ std::map<std::string, std::string> settings_beside(const SaveRequest& request, c
 void write_scene_extras(EditedJson& root, const SaveRequest& request, const Folders& folders) {
   const Environment &before = request.loaded->environment, &after = request.edited->environment;
   // Elsewhere there is no settings.json to name it.
-  const bool named = after.given && !folders.same();
-  if (named || !same_environment(before, after))
-    set_own(default_scene(root), "environment", environment_json(after, before, folders));
+  const bool elsewhere = after.given && !folders.same();
+  if (elsewhere || !same_environment(before, after)) {
+    EditedJson environment = environment_json(after, before, folders);
+    if (!elsewhere || !says(default_scene(root), environment))
+      set_own(default_scene(root), "environment", std::move(environment));
+  }
   const auto beside = settings_beside(request, folders);
   EditedJson settings = EditedJson::object();
   for (const auto& [key, value] : request.settings)

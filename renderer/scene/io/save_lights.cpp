@@ -128,9 +128,12 @@ class LightWriter {
     if (turned) turn(node(index), parent, after);
     if (moved) place(node(index), parent, after);
     if (before.group != after.group) regroup(index, after.group);
-    const bool shown = tree_.is_visible(index), switched = before.enabled != after.enabled;
+    const bool shown = tree_.is_visible(index), off = shown && !after.enabled;
+    // The first versions left the intensity of a light that is off in its definition.
+    const bool lit_elsewhere =
+        off && !node(index).contains(EditedJson::json_pointer("/extras/lucerna/off_intensity"));
+    const bool switched = before.enabled != after.enabled || lit_elsewhere;
     write_own(node(index), after, shown);
-    const bool off = shown && !after.enabled;
     if (has_profile(after)) {
       if (before.name != after.name) node(index)["name"] = after.name;
       if (switched || before.intensity != after.intensity || before.profile != after.profile)
