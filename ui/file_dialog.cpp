@@ -28,7 +28,8 @@ struct Question {
   std::string title, note;
   std::string command, answer;  ///< run with the file; label of its button
   std::vector<std::string> endings;
-  bool reads = false;  ///< the file must exist
+  bool reads = false;       ///< the file must exist
+  bool thumbnails = false;  ///< its files are images
 };
 
 Question question(const Dialog& dialog) {
@@ -85,6 +86,22 @@ Question question(const Dialog& dialog) {
               .answer = "Hold",
               .endings = {".exr", ".hdr", ".png"},
               .reads = true};
+    case Purpose::environment:
+      return {.title = "Light the scene by an image",
+              .note = "A latitude-longitude image, twice as wide as high (.exr or .hdr).",
+              .command = "environment.load",
+              .answer = "Load",
+              .endings = {".exr", ".hdr"},
+              .reads = true,
+              .thumbnails = true};
+    case Purpose::value:
+      return {.title = dialog.title,
+              .note = fmt::format("A file that ends in {}.", fmt::join(dialog.endings, " or ")),
+              .command = dialog.line,
+              .answer = "Choose",
+              .endings = dialog.endings,
+              .reads = true,
+              .thumbnails = dialog.endings.front() == ".png"};
     case Purpose::solver_load:
       return {.title = "Load a " + uncapitalised(dialog.solver->label),
               .note = fmt::format("A {} file {}.", dialog.solver->file->extension, dialog.solver->file->fits),
@@ -242,8 +259,41 @@ void pictures(const PictureOf& picture_of, std::string& chosen) {
   }
 }
 
+/// The images of a list as pictures with their names, below its folders.
+void thumbnails(const std::vector<Completion>& list, int marked, const PictureOf& thumbnail_of,
+                std::string& chosen) {
+  const float space = px(8), all = ImGui::GetContentRegionAvail().x - px(8);
+  const float across = std::max(1.0f, std::floor((all + space) / (px(120) + space)));
+  const float w = std::floor((all + space) / across) - space, h = std::floor(0.6f * w);
+  ImDrawList* draw = ImGui::GetWindowDrawList();
+  int column = 0;
+  for (int i = 0; i < static_cast<int>(list.size()); ++i) {
+    const Completion& c = list[static_cast<size_t>(i)];
+    if (c.folder) continue;
+    if (column % int(across) != 0) ImGui::SameLine(0, space);
+    ++column;
+    const ImVec2 lo = ImGui::GetCursorScreenPos(), hi(lo.x + w, lo.y + h);
+    ImGui::PushID(i);
+    if (ImGui::InvisibleButton("##thumbnail", {w, h + px(24)})) chosen = c.path;
+    const bool shown = ImGui::IsItemVisible(), hovered = ImGui::IsItemHovered();
+    tooltip(c.path);
+    if (i == marked) ImGui::SetScrollHereY(0.5f);
+    ImGui::PopID();
+    if (!shown) continue;
+    if (const unsigned texture = thumbnail_of ? thumbnail_of(c.path) : 0)
+      draw->AddImageRounded(reinterpret_cast<ImTextureID>(static_cast<uintptr_t>(texture)), lo, hi, {0, 0},
+                            {1, 1}, IM_COL32_WHITE, px(2));
+    else
+      draw->AddRectFilled(lo, hi, colour::field, px(2));
+    if (hovered || i == marked) draw->AddRect(lo, hi, colour::accent, px(2), 0, px(1.5f));
+    draw_text(draw, {lo.x, hi.y}, {hi.x, hi.y + px(22)}, elided(c.name, w),
+              hovered || i == marked ? colour::text : colour::text_dim);
+  }
+}
+
 /// Files and folders that begin with the typed text, below the parent folder.
-void files(Dialog& dialog, const Question& asked, const std::vector<Completion>& list, std::string& chosen) {
+void files(Dialog& dialog, const Question& asked, const std::vector<Completion>& list,
+           const PictureOf& thumbnail_of, std::string& chosen) {
   const fs::path here = folder_of(expanded(dialog.path));
   std::error_code error;
   if (here.has_relative_path() &&
@@ -263,12 +313,14 @@ void files(Dialog& dialog, const Question& asked, const std::vector<Completion>&
   }
   for (int i = 0; i < static_cast<int>(list.size()); ++i) {
     const Completion& c = list[static_cast<size_t>(i)];
+    if (asked.thumbnails && !c.folder) continue;
     ImGui::PushID(i);
     if (row("##entry", c.name, i == dialog.marked, c.folder ? colour::text_dim : colour::text))
       chosen = c.path;
     if (i == dialog.marked) ImGui::SetScrollHereY(0.5f);
     ImGui::PopID();
   }
+  if (asked.thumbnails) thumbnails(list, dialog.marked, thumbnail_of, chosen);
 }
 
 /// The way a PNG is saved.
@@ -285,7 +337,8 @@ void way_of_saving(Dialog& dialog) {
 }  // namespace
 
 void draw_file_dialog(Actions& actions, const commands::OpenScene& open,
-                      const std::vector<std::string>& recent, const PictureOf& picture_of, Dialog& dialog,
+                      const std::vector<std::string>& recent, std::map<std::string, std::string>& folders,
+                      const PictureOf& picture_of, const PictureOf& thumbnail_of, Dialog& dialog,
                       bool escape) {
   if (dialog.purpose == Dialog::Purpose::none) return;
   const Question asked = question(dialog);
@@ -330,7 +383,7 @@ void draw_file_dialog(Actions& actions, const commands::OpenScene& open,
     }
     // The list takes the rest of the window's height.
     const float above = ImGui::GetCursorScreenPos().y, below = px(56);
-    const float most = dialog.purpose == Dialog::Purpose::open ? 13 : 9;
+    const float most = dialog.purpose == Dialog::Purpose::open || asked.thumbnails ? 13 : 9;
     const float rows = std::clamp(window.y - above - below - px(24), 3 * px(24), most * px(24));
     std::string chosen;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0, 0});
@@ -344,7 +397,7 @@ void draw_file_dialog(Actions& actions, const commands::OpenScene& open,
     if (dialog.pictures)
       pictures(picture_of, chosen);
     else
-      files(dialog, asked, list, chosen);
+      files(dialog, asked, list, thumbnail_of, chosen);
     ImGui::EndChild();
     ImGui::PopStyleVar();
     gap(4);
@@ -378,8 +431,12 @@ void draw_file_dialog(Actions& actions, const commands::OpenScene& open,
         else if (dialog.purpose == Dialog::Purpose::scene)
           actions.act(asked.command, named("file", file),
                       named("replace", fs::is_regular_file(file, ignored)));
+        else if (dialog.purpose == Dialog::Purpose::value)
+          actions.act_line(dialog.line + commands::quote(fs::absolute(file, ignored).string()));
         else
           actions.act(asked.command, file);
+        if (asked.thumbnails || dialog.purpose == Dialog::Purpose::value)
+          folders[asked.endings.front()] = as_typed(folder_of(file));
         done = true;
       }
     }
@@ -392,7 +449,13 @@ void draw_file_dialog(Actions& actions, const commands::OpenScene& open,
   ImGui::PopStyleVar(4);
 }
 
-void Ui::start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver) {
+void Ui::choose_file(const std::string& line, const std::string& what,
+                     const std::vector<std::string>& endings) {
+  start_dialog(Dialog::Purpose::value, nullptr, line, what, endings);
+}
+
+void Ui::start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver, const std::string& line,
+                      const std::string& what, const std::vector<std::string>& endings) {
   dialog = {};
   dialog.purpose = purpose;
   dialog.solver = solver;
@@ -408,6 +471,14 @@ void Ui::start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver
                                std::any_of(gallery().begin(), gallery().end(), [&](const GalleryScene& own) {
                                  return fs::equivalent(own.file, open.scene->file, error);
                                }));
+  } else if (purpose == Dialog::Purpose::environment || purpose == Dialog::Purpose::value) {
+    dialog.line = line, dialog.title = what, dialog.endings = endings;
+    const auto last = folders.find(question(dialog).endings.front());
+    const fs::path own =
+        open.scene && !open.scene->file.empty() ? folder_of(open.scene->file) : fs::current_path(error);
+    dialog.path =
+        as_typed(last != folders.end() && fs::is_directory(last->second, error) ? fs::path(last->second)
+                                                                                : fs::absolute(own, error));
   } else if (purpose == Dialog::Purpose::reference || purpose == Dialog::Purpose::held ||
              purpose == Dialog::Purpose::solver_load) {
     dialog.path = fs::current_path(error).string() + "/";

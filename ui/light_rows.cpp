@@ -186,11 +186,21 @@ void shape_rows(Actions& actions, size_t i, const scene::Light& light) {
   }
 }
 
+/// A button that opens the dialog for a file of the light: its "profile" or its "picture".
+void file_button(Actions& actions, size_t i, const char* kind, const char* text) {
+  if (button((std::string("##") + kind).c_str(), text, false, ImGui::CalcItemWidth()))
+    actions.act("dialog.light_file", i + 1, kind);
+  tooltip(std::string_view(kind) == "profile"
+              ? "Chooses a measured distribution: IES LM-63 or EULUMDAT. The lamp keeps its power."
+              : "Chooses an image that the spot projects.");
+}
+
 /// The distribution of a selected lamp: its web in two planes, and its numbers.
 void profile_rows(Actions& actions, size_t i, const scene::Light& light) {
   const scene::LightProfile& p = *light.profile;
   value_row("Distribution", p.name.empty() ? "unnamed" : p.name,
             "File of the measured distribution (light.set profile=FILE).");
+  file_button(actions, i, "profile", "Other distribution\xE2\x80\xA6");
   value_row("In the file", fmt::format("{:.0f} lm, {:.0f} cd", p.lumens(), p.peak),
             "Flux and largest intensity that the file states.");
   const float size = std::min(ImGui::CalcItemWidth(), px(150)), half = 0.5f * size;
@@ -262,6 +272,7 @@ void picture_rows(Actions& actions, size_t i, const scene::Light& light) {
   value_row("Picture",
             fmt::format("{}, {} \xC3\x97 {}", p.name.empty() ? "unnamed" : p.name, p.width, p.height),
             "Image that the spot projects (light.set picture=FILE). Its corners are on the cone.");
+  file_button(actions, i, "picture", "Other picture\xE2\x80\xA6");
   roll_row(actions, i, light, "the picture");
 }
 
@@ -301,6 +312,11 @@ void light_details(Actions& actions, const Box& core, size_t i, const scene::Lig
       tooltip("Angle from the axis at which the light begins to fade.");
     }
   }
+  const bool spot = light.kind == scene::LightKind::spot;
+  if (!light.profile && !light.picture && (spot || light.kind == scene::LightKind::point))
+    file_button(actions, i, "profile", "Measured distribution\xE2\x80\xA6");
+  if (!light.profile && !light.picture && spot)
+    file_button(actions, i, "picture", "Project a picture\xE2\x80\xA6");
 }
 
 /// A row of the list of lights with its switch, and its properties if selected. Returns true if its switch

@@ -80,6 +80,9 @@ Json state_of(const Remembered& window) {
   auto& bookmarks = json["bookmarks"] = Json::object();
   for (const auto& [scene, views] : window.bookmarks)
     if (!views.empty()) bookmarks[scene] = views;
+  json["swatches"] = Json::object(), json["folders"] = Json::object();
+  for (const auto& [name, words] : window.swatches) json["swatches"][name] = words;
+  for (const auto& [ending, folder] : window.folders) json["folders"][ending] = folder;
   json["sections"] = Json(window.sections);
   if (window.sections.empty()) json["sections"] = Json::object();
   return json;
@@ -88,6 +91,7 @@ Json state_of(const Remembered& window) {
 struct Lists {
   Files recent;
   std::map<std::string, commands::Navigation::Bookmarks> bookmarks;
+  std::map<std::string, std::string> swatches, folders;
 };
 
 /// Values of another type are ignored: the file of another program or of an older version.
@@ -99,6 +103,13 @@ Lists lists_of(const Json& json) {
   Lists lists;
   for (const auto& file : part(json, "recent"))
     if (file.is_string() && lists.recent.size() < k_recent_files) lists.recent.push_back(file);
+  const auto read_texts = [&](const char* key, std::map<std::string, std::string>& into) {
+    const Json texts = part(json, key);
+    if (!texts.is_object()) return;
+    for (const auto& [name, text] : texts.items())
+      if (text.is_string()) into[name] = text;
+  };
+  read_texts("swatches", lists.swatches), read_texts("folders", lists.folders);
   const Json scenes = part(json, "bookmarks");  // items() keeps no temporary alive
   if (!scenes.is_object()) return lists;
   for (const auto& [file, views] : scenes.items()) {
@@ -111,6 +122,7 @@ Lists lists_of(const Json& json) {
 
 void take(const Lists& lists, const Remembered& window) {
   window.recent = lists.recent, window.bookmarks = lists.bookmarks;
+  window.swatches = lists.swatches, window.folders = lists.folders;
 }
 
 void take_panels(const Json& json, const Remembered& window) {
@@ -200,7 +212,8 @@ void Memory::follow(double now) {
   if (mine == kept_->saved) return;
   if (mine != kept_->seen) kept_->changed_at = now, kept_->seen = mine;
   const auto differs = [&](const char* key) { return mine[key] != kept_->saved[key]; };
-  if (differs("bookmarks") || differs("recent") || differs("welcomed") || now - kept_->changed_at > k_lasts)
+  if (differs("bookmarks") || differs("swatches") || differs("recent") || differs("welcomed") ||
+      now - kept_->changed_at > k_lasts)
     save();
 }
 
@@ -220,7 +233,8 @@ bool Memory::save() {
   try {
     write_file(file, json_text(all, 2) + "\n");
   } catch (const Error& e) {
-    if (!std::exchange(kept_->warned, true)) log::warning("{}; bookmarks are not kept", e.what());
+    if (!std::exchange(kept_->warned, true))
+      log::warning("{}; bookmarks and swatches are not kept", e.what());
     kept_->saved = mine;  // not tried again for the same change
     return true;
   }

@@ -1,7 +1,8 @@
 #pragma once
-// State kept between runs: recent files, bookmarks, whether the first steps were shown, panel sizes. Stored
-// in the user's state folder ($XDG_STATE_HOME or ~/.local/state, lucerna/window.json). Several windows share
-// the file: each writes only its changes, under a lock, immediately. An unreadable file counts as none.
+// State kept between runs: recent files, bookmarks, swatches, whether the first steps were shown, panel
+// sizes. Stored in the user's state folder ($XDG_STATE_HOME or ~/.local/state, lucerna/window.json). Several
+// windows share the file: each writes only its changes, under a lock, immediately. An unreadable file counts
+// as none.
 #include <map>
 #include <memory>
 #include <string>
@@ -18,6 +19,8 @@ inline constexpr size_t k_recent_files = 8;  ///< number of recent files kept
 struct Remembered {
   std::vector<std::string>& recent;
   std::map<std::string, commands::Navigation::Bookmarks>& bookmarks;  ///< by the scene's file
+  std::map<std::string, std::string>& swatches;                       ///< words of material.set, by name
+  std::map<std::string, std::string>& folders;  ///< from which files were chosen last, by their ending
   Layout& layout;
   std::map<std::string, bool>& sections;  ///< open or not, by title
   bool& welcomed;                         ///< the first steps were shown

@@ -1,4 +1,5 @@
-// The panel on the right: cameras and navigation, lights, environment, materials.
+// The panel on the right: cameras and navigation, environment, and the lists of lights, materials and
+// objects.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,6 +11,7 @@
 #include "commands/light_edit.h"
 #include "emitters.h"
 #include "light_rows.h"
+#include "material_rows.h"
 #include "object_rows.h"
 #include "panel_block.h"
 #include "scene/display_name.h"
@@ -246,167 +248,15 @@ void environment(Controls& controls) {
   tooltip("Rotates the image counter-clockwise, seen from above. Ctrl + drag in the picture rotates it too.");
   ImGui::EndDisabled();
   ImGui::EndDisabled();
+  if (button("##image", "Image\xE2\x80\xA6", false, ImGui::CalcItemWidth()))
+    controls.act("dialog.environment");
+  tooltip("Chooses a latitude-longitude image (.exr or .hdr) in place of the environment.");
   sky_rows(controls);
   option_control(controls, "film.background", "Background");
   if (!controls.open.environment_file().empty() || controls.open.sky_replaces()) {
     if (button("##own", "Restore scene environment", false, ImGui::CalcItemWidth()))
       controls.act("environment.own");
     tooltip("Uses the environment from the scene file.");
-  }
-}
-
-// Coat, sheen, brushing and thin film: a row each for its strength, and the others once it is there.
-void material_layers(Controls& controls, uint32_t index, const scene::Material& m) {
-  if (m.unlit) return;
-  const auto textured = [](const scene::TextureUse& use) { return use ? " \xC3\x97 texture" : ""; };
-  const auto set = [&](const auto& value) { controls.act("material.set", index + 1, value); };
-  const auto share = [&](const char* id, const std::string& label, float value, const char* key,
-                         const char* help) {
-    if (slider(id, label, value, {.decimals = 3})) set(named(key, value));
-    tooltip(help);
-  };
-  share("##coat", std::string("Clear coat") + textured(m.clearcoat_texture), m.clearcoat, "clearcoat",
-        "Strength of a coat of varnish over the material.");
-  if (m.clearcoat > 0)
-    share("##coat_roughness", std::string("Coat roughness") + textured(m.clearcoat_roughness_texture),
-          m.clearcoat_roughness, "clearcoat_roughness", "0 is a glossy coat, 1 is matt.");
-  vec3 sheen = m.sheen_color;
-  if (colour_field("##sheen", "Sheen", sheen, textured(m.sheen_color_texture))) set(named("sheen", sheen));
-  tooltip("Reflectance of fibres that stand up, as of velvet; black is none. Press to choose a colour.");
-  if (m.sheen_color != vec3(0))
-    share("##sheen_roughness", std::string("Sheen roughness") + textured(m.sheen_roughness_texture),
-          m.sheen_roughness, "sheen_roughness", "0 shines at the rim alone, 1 all over.");
-  share("##anisotropy", std::string("Brushed") + textured(m.anisotropy_texture), m.anisotropy, "anisotropy",
-        "Stretches reflections along a direction of the surface, as on brushed metal.");
-  if (m.anisotropy > 0) {
-    float turn = glm::degrees(std::remainder(m.anisotropy_rotation, 2 * k_pi));
-    if (slider("##brushing", "Brushing direction", turn,
-               {.lo = -180, .hi = 180, .decimals = 1, .unit = "\xC2\xB0"}))
-      set(named("anisotropy_rotation", turn));
-    tooltip("Rotates that direction.");
-  }
-  if (m.transmission > 0 && m.thickness > 0) {
-    float dispersion = m.dispersion;
-    if (slider("##dispersion", "Dispersion", dispersion,
-               {.lo = 0, .hi = 2, .decimals = 2, .typed_hi = scene::k_max_dispersion}))
-      set(named("dispersion", dispersion));
-    tooltip(
-        "How much the refraction depends on the colour: 20 over the Abbe number. Crown glass .34, flint .6, "
-        "diamond .36.");
-  }
-  share("##film", std::string("Thin film") + textured(m.iridescence_texture), m.iridescence, "iridescence",
-        "Colours of interference, as on soap bubbles and tempered steel.");
-  if (m.iridescence > 0) {
-    float thick = m.iridescence_maximum;
-    if (slider("##film_thickness", std::string("Film thickness") + textured(m.iridescence_thickness_texture),
-               thick, {.lo = 0, .hi = 1500, .decimals = 0, .unit = "nm"}))
-      set(named("film_thickness", thick));
-    tooltip("Thickness of the film; it decides the colours.");
-  }
-}
-
-void material_details(Controls& controls, uint32_t index, const scene::Material& m) {
-  const auto colour_text = [](const vec3& c) { return fmt::format("{:.3f} {:.3f} {:.3f}", c.x, c.y, c.z); };
-  const auto textured = [](const scene::TextureUse& use) { return use ? " \xC3\x97 texture" : ""; };
-  const auto set = [&](const auto& value) { controls.act("material.set", index + 1, value); };
-  vec3 colour(m.base_color);
-  if (colour_field("##base", "Base colour", colour, m.base_color_texture ? "\xC3\x97 texture" : ""))
-    set(named("color", colour));
-  tooltip("Reflectance, linear. Press to choose a colour.");
-  float roughness = m.roughness, metallic = m.metallic;
-  if (slider("##roughness", std::string("Roughness") + textured(m.metallic_roughness_texture), roughness,
-             {.decimals = 3}))
-    set(named("roughness", roughness));
-  tooltip("Perceptual roughness: 0 is a mirror, 1 is matt.");
-  if (slider("##metallic", std::string("Metalness") + textured(m.metallic_roughness_texture), metallic,
-             {.decimals = 3}))
-    set(named("metallic", metallic));
-  tooltip("0 is a dielectric such as paint, stone or wood; 1 is metal.");
-  if (!m.unlit && strength_of(controls.open.emission(index)) > 0) {
-    emission_slider(controls, index);
-    emission_unit(controls, index);
-    colour_rows(controls.actions, "material.set", index + 1, "emission_color",
-                tint_of(controls.open.emission(index)), m.emission_texture ? "\xC3\x97 texture" : "");
-    if (button("##dark", "Remove emission", false, ImGui::CalcItemWidth())) set(named("strength", 0));
-    tooltip("Makes the surface non-emissive. Can be undone.");
-  } else if (!m.unlit) {
-    if (button("##glow", "Add emission", false, ImGui::CalcItemWidth())) set(named("strength", 1));
-    tooltip("Makes the surface a light of radiance 1; edit it here or under Lights.");
-  }
-  material_layers(controls, index, m);
-  if (m.transmission > 0)
-    value_row("Transmission", fmt::format("{:.3f}{}", m.transmission, textured(m.transmission_texture)),
-              "Share of light that is transmitted.");
-  if (m.transmission > 0 || m.ior != 1.5f)
-    value_row("Index of refraction", fmt::format("{:.3f}", m.ior),
-              "0 is a fully reflecting boundary (as in KHR_materials_ior).");
-  if (m.thickness > 0) {
-    value_row("Body", "solid", "A solid: light is refracted at the surface and absorbed inside.");
-    if (std::isfinite(m.attenuation_distance))
-      value_row("Absorbs to",
-                fmt::format("{} in {:.3g} m", colour_text(m.attenuation_color), m.attenuation_distance),
-                "Colour of white light after that distance.");
-  } else if (m.transmission > 0) {
-    value_row("Body", "thin wall", "No thickness: light passes without refraction.");
-  }
-  if (m.diffuse_transmission > 0)
-    value_row("Diffuse transmission", fmt::format("{:.3f}", m.diffuse_transmission),
-              "Share of light that is transmitted diffusely.");
-  if (m.alpha_mode != scene::AlphaMode::opaque)
-    value_row(
-        "Coverage",
-        m.alpha_mode == scene::AlphaMode::mask ? fmt::format("cut at {:.2f}", m.alpha_cutoff) : "blended",
-        "Meaning of alpha.");
-  if (m.normal_texture)
-    value_row("Normal texture", fmt::format("\xC3\x97 {:.2f}", m.normal_scale),
-              "Strength of the normal texture.");
-  if (m.unlit) value_row("Unlit", "yes", "Shown with its base colour; neither lit nor a light.");
-  if (m.double_sided) value_row("Double-sided", "yes", "The back side emits like the front side.");
-}
-
-// The file's variants of the materials, and clay.
-void material_sets(Controls& controls) {
-  const std::vector<std::string>& variants = controls.open.scene->variants;
-  if (!variants.empty()) {
-    std::vector<std::string> names{"default"};
-    names.insert(names.end(), variants.begin(), variants.end());
-    const auto found = std::find(names.begin() + 1, names.end(), controls.open.setting("scene.variant"));
-    int chosen = found == names.end() ? 0 : static_cast<int>(found - names.begin());
-    if (choice("##variant", "Variant", names, chosen))
-      controls.act("set", "scene.variant", chosen > 0 ? names[static_cast<size_t>(chosen)] : "");
-    tooltip("Sets of materials that the scene's file offers. The picture starts again.");
-  }
-  option_control(controls, "scene.clay", "Clay");
-}
-
-void materials(Controls& controls, const Selection& selection, SceneView& view, bool reveal) {
-  material_sets(controls);
-  const auto& list = controls.open.scene->materials;
-  for (size_t i = 0; i < list.size(); ++i) {
-    const auto index = static_cast<uint32_t>(i);
-    const scene::Material m = controls.open.material(index);
-    const bool chosen = selection == Selection{Kind::material, index};
-    if (chosen && reveal) show_row(ImGui::GetCursorScreenPos().y);
-    ImGui::PushID(static_cast<int>(i));
-    const bool emits = strength_of(m.emission) > 0;
-    const char* note = emits                                                ? "emits"
-                       : m.transmission > 0                                 ? "glass"
-                       : m.metallic > 0.5f && !m.metallic_roughness_texture ? "metal"
-                                                                            : "";
-    if (list_row("##material", chosen, display_name(m.name, "Material", i), note,
-                 display_colour(emits ? m.emission / strength_of(m.emission) : vec3(m.base_color)), 0))
-      choose(controls.actions, view, chosen, "material", index);
-    tooltip(fmt::format("{}. Press to select the material; F frames its objects.",
-                        display_name(m.name, "Material", i)));
-    if (chosen) {
-      ImGui::Indent(px(18));
-      ImGui::PushItemWidth(ImGui::CalcItemWidth() - px(18));
-      material_details(controls, index, controls.open.material(index));
-      ImGui::PopItemWidth();
-      ImGui::Unindent(px(18));
-      gap(4);
-    }
-    ImGui::PopID();
   }
 }
 
@@ -444,7 +294,7 @@ void draw_scene_panel(Controls& controls, const commands::Navigation& camera, Sc
         [&] { draw_light_rows(controls, camera, view, reveal); });
   block("Environment", 0, true, [&] { environment(controls); });
   block("Materials", controls.open.scene->materials.size(), true,
-        [&] { materials(controls, camera.selection, view, reveal); });
+        [&] { draw_material_rows(controls, camera.selection, view, reveal); });
   block("Objects", controls.open.scene->instances.size(), false,
         [&] { draw_object_rows(controls, camera, view, reveal); });
   hairline();

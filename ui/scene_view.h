@@ -1,5 +1,6 @@
 #pragma once
 // What the scene panel remembers from frame to frame, and shares with the picture.
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -29,7 +30,10 @@ struct SceneView {
   std::string light_name;                 ///< as typed so far
   GizmoMode gizmo = GizmoMode::move;      ///< handles of the selected object
   std::optional<TypedPlace> typed;
-  bool focusing = false;  ///< the next click in the picture sets the plane of focus
+  std::optional<uint32_t> copied_material;      ///< for Paste
+  std::map<std::string, std::string> swatches;  ///< the user's own: words of material.set, by name
+  std::string swatch_name;                      ///< of one to keep, as typed so far
+  bool focusing = false;                        ///< the next click in the picture sets the plane of focus
 
   /// True if the selection is new since the last call and was not made in the list: its row must be scrolled
   /// into view.

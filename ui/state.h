@@ -36,9 +36,24 @@ using commands::Viewpoint;
 inline constexpr const char* k_scene_side = "scene";
 
 struct Dialog {
-  enum class Purpose { none, open, save, scene, script, test, reference, held, solver_load, solver_save };
+  enum class Purpose {
+    none,
+    open,
+    save,
+    scene,
+    script,
+    test,
+    reference,
+    held,
+    environment,
+    value,
+    solver_load,
+    solver_save
+  };
   Purpose purpose = Purpose::none;
   const solvers::SolverInfo* solver = nullptr;  ///< for solver_load and solver_save
+  std::string line, title;           ///< for value: a command that ends in "WORD=", and what the file is for
+  std::vector<std::string> endings;  ///< for value: of its files
   std::string path;
   bool fresh = false;     ///< opens in the next frame
   bool focus = false;     ///< its field gets the keyboard in the next frame
@@ -111,9 +126,14 @@ struct Ui {
   void finish_leaving();
   std::vector<std::string> recent;  ///< files, newest first, from the root; at most k_recent_files
   /// What is kept between runs.
-  Remembered remembered() { return {recent, camera.bookmarks, layout, sections, welcomed}; }
+  Remembered remembered() {
+    return {recent, camera.bookmarks, scene_view.swatches, folders, layout, sections, welcomed};
+  }
+  /// Folders from which files were chosen last, by the first of their endings.
+  std::map<std::string, std::string> folders;
   Viewport viewport{controls, work, moves, scene_view, paths, region, compare, cards};
-  PictureOf picture_of;  ///< null without a window
+  PictureOf picture_of;    ///< null without a window
+  PictureOf thumbnail_of;  ///< likewise: small, made in the background; 0 until it is there
   /// Frames to draw until the picture's area reflects the commands so far.
   int frames_to_settle = 0;
   /// Size of the picture in pixels; none: as large as the window allows.
@@ -131,7 +151,11 @@ struct Ui {
 
   /// A file was dropped on the window.
   void drop(const std::string& file);
-  void start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver = nullptr);
+  void start_dialog(Dialog::Purpose purpose, const solvers::SolverInfo* solver = nullptr,
+                    const std::string& line = "", const std::string& what = "",
+                    const std::vector<std::string>& endings = {});
+  /// A dialog for a file that becomes the last word of `line`, which ends in "WORD="; `what`: what it is for.
+  void choose_file(const std::string& line, const std::string& what, const std::vector<std::string>& endings);
   void fail(const std::string& message);  ///< to the strip
 
  private:
@@ -184,7 +208,8 @@ void keep_view(Actions& actions, const commands::OpenScene& open, const commands
 void draw_splitters(Actions& actions, const Areas& areas);
 // Dialogs. `escape`: Esc was pressed.
 void draw_file_dialog(Actions& actions, const commands::OpenScene& open,
-                      const std::vector<std::string>& recent, const PictureOf& picture_of, Dialog& dialog,
+                      const std::vector<std::string>& recent, std::map<std::string, std::string>& folders,
+                      const PictureOf& picture_of, const PictureOf& thumbnail_of, Dialog& dialog,
                       bool escape);
 /// True once the scene may be left: it is saved, or its edits are not wanted. `saves_to`: the scene's file.
 bool draw_leaving_dialog(Actions& actions, const commands::SavedFiles& files, const std::string& saves_to,

@@ -16,6 +16,7 @@
 #include "shown_lines.h"
 #include "solvers/registry.h"
 #include "state.h"
+#include "thumbnails.h"
 #include "widgets.h"
 #include "window.h"
 
@@ -40,6 +41,7 @@ class Viewer {
     }
     if (!theme().font_note.empty()) log::warning("{}", theme().font_note);
     ui_.picture_of = [this](const std::string& file) { return texture_of(file); };
+    ui_.thumbnail_of = [this](const std::string& file) { return thumbnail_texture_of(file); };
     ui_.compare.pictures.texture = [this](const std::string& slot, const std::string& content, bool smooth,
                                           const std::function<PictureBytes()>& make) {
       return pictures_.get(slot, content, smooth, make);
@@ -239,6 +241,12 @@ class Viewer {
     }
   }
 
+  unsigned thumbnail_texture_of(const std::string& file) {
+    const PictureBytes* bytes = thumbnails_.get(file);
+    if (!bytes) return 0;
+    return pictures_.get("thumbnail of " + file, "made", true, [&] { return *bytes; });
+  }
+
   unsigned texture_of(const std::string& file) {
     const auto [known, fresh] = textures_.try_emplace(file, 0);
     if (!fresh) return known->second;
@@ -259,6 +267,7 @@ class Viewer {
   }
 
   ViewerOptions options_;
+  Thumbnails thumbnails_{[] { Window::wake(); }};
   std::map<std::string, unsigned> textures_;  ///< of image files; 0: cannot be read
   LogInbox inbox_;
   Ui ui_;
@@ -294,7 +303,8 @@ void handle_keys(Ui& ui) {
 
 void draw_dialogs(Ui& ui) {
   const bool escape = ui.keys.pressed(GLFW_KEY_ESCAPE);
-  draw_file_dialog(ui.actions, ui.open, ui.recent, ui.picture_of, ui.dialog, escape);
+  draw_file_dialog(ui.actions, ui.open, ui.recent, ui.folders, ui.picture_of, ui.thumbnail_of, ui.dialog,
+                   escape);
   if (draw_leaving_dialog(ui.actions, ui.work.files, ui.work.scene_file.file(), ui.leaving, escape))
     ui.finish_leaving();
   draw_key_page(ui.help);

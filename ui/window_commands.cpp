@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "scene/display_name.h"
 #include "solvers/registry.h"
 #include "state.h"
 
@@ -249,6 +250,11 @@ void add_picture_commands(Ui& ui, const Add& add) {
       [&ui](const Arguments& a) { ui.viewport.light_marks = a.boolean("on"); });
 }
 
+std::string spaced(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 void add_dialog_commands(Ui& ui, const Add& add) {
   add(
       "dialog.open", "Opens the dialog to open a scene.", {},
@@ -270,6 +276,45 @@ void add_dialog_commands(Ui& ui, const Add& add) {
       "window.open",
       "Opens a scene, as scene.open does; asks first what to do with edits that are not saved.", {{"file"}},
       [&ui](const Arguments& a) { ui.leave(a.text("file")); }, false);
+  add(
+      "dialog.environment", "Opens the dialog to light the scene by an image.", {},
+      [&ui](const Arguments&) {
+        ui.open.needs_scene();
+        ui.start_dialog(Dialog::Purpose::environment);
+      },
+      false);
+  std::vector<std::string> slots;
+  for (const scene::TextureSlot& slot : scene::k_texture_slots) slots.emplace_back(slot.name);
+  add(
+      "dialog.texture", "Opens the dialog to choose a file for a texture of a material.",
+      {{.name = "material", .help = "its name, or its number from 1"},
+       {.name = "slot", .type = Type::choice, .help = "what the image is for", .choices = slots}},
+      [&ui](const Arguments& a) {
+        const uint32_t index = ui.open.material_index(a.text("material"));
+        const std::string slot = a.text("slot");
+        ui.choose_file(
+            fmt::format("material.set {} {}_texture=", index + 1, slot),
+            fmt::format("A texture for '{}': {}",
+                        scene::display_name(ui.open.scene->materials[index].name, "Material", index),
+                        spaced(slot)),
+            {".png", ".jpg", ".jpeg"});
+      },
+      false);
+  add(
+      "dialog.light_file",
+      "Opens the dialog to choose a measured distribution for a light, or a picture that a spot projects.",
+      {{.name = "light", .help = "its name, or its number from 1"},
+       {.name = "kind", .type = Type::choice, .choices = {"profile", "picture"}}},
+      [&ui](const Arguments& a) {
+        const uint32_t index = ui.open.light_index(a.text("light"));
+        const bool profile = a.text("kind") == "profile";
+        ui.choose_file(
+            fmt::format("light.set {} {}=", index + 1, a.text("kind")),
+            profile ? "A measured distribution (IES or EULUMDAT)" : "A picture for the spot to project",
+            profile ? std::vector<std::string>{".ies", ".ldt"}
+                    : std::vector<std::string>{".png", ".jpg", ".jpeg", ".exr", ".hdr"});
+      },
+      false);
   add(
       "dialog.reference", "Opens the dialog to load a reference.", {},
       [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::reference); }, false);

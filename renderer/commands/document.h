@@ -9,6 +9,7 @@
 
 #include "scene/object_place.h"
 #include "scene/scene.h"
+#include "scene/texture_source.h"
 #include "session/session.h"
 
 namespace lucerna::commands {
@@ -17,26 +18,18 @@ namespace lucerna::commands {
 using Objects = std::map<uint32_t, scene::ObjectPlace>;
 
 struct Document {
-  struct Material {
-    vec3 color{1};  ///< all members as in scene::Material
-    float roughness = 1, metallic = 0;
-    vec3 emission{0};
-    float clearcoat = 0, clearcoat_roughness = 0;
-    vec3 sheen_color{0};
-    float sheen_roughness = 0;
-    float anisotropy = 0, anisotropy_rotation = 0;
-    float dispersion = 0;
-    float iridescence = 0, iridescence_maximum = 400;
+  struct Material : scene::MaterialFactors {
+    scene::TextureSources textures;
     bool emits = true;  ///< false: its emission is stored, but switched off
+    Material() = default;
+    explicit Material(const scene::MaterialFactors& factors) : MaterialFactors(factors) {}
     /// The values that the scene has.
     Material in_scene() const;
-    void put(scene::Material& material) const;
     bool operator==(const Material&) const = default;
   };
-  static Material of(const scene::Material& material);  ///< emits
-  std::map<std::string, std::string> settings;          ///< by key
-  std::vector<scene::Light> lights;                     ///< as commands number them
-  std::vector<Material> materials;                      ///< likewise
+  std::map<std::string, std::string> settings;  ///< by key
+  std::vector<scene::Light> lights;             ///< as commands number them
+  std::vector<Material> materials;              ///< likewise
   /// Only objects that are not where their file has them.
   Objects objects;
   float environment_scale = 1;

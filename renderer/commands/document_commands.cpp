@@ -1,13 +1,9 @@
-// Undoable commands that change the document: settings, environment, materials, display.
+// Undoable commands that change the document: settings, environment, display.
 #include <algorithm>
-#include <cmath>
 
-#include "base/color.h"
 #include "base/error.h"
 #include "commands/command_list.h"
-#include "commands/light_words.h"
 #include "commands/workspace.h"
-#include "scene/range.h"
 
 namespace lucerna::commands {
 namespace {
@@ -118,131 +114,6 @@ void add_environment_commands(Registry& registry, OpenScene& open) {
                       if (a.has("rotation")) open.edit().environment_rotation = a.number("rotation");
                     },
                 .undoable = true});
-}
-
-void add_material_commands(Registry& registry, OpenScene& open) {
-  const auto material_names = [&open](const std::vector<std::string>&) {
-    return open.scene ? given_names(open.scene->materials) : std::vector<std::string>();
-  };
-  std::vector<Parameter> parameters{
-      {.name = "material", .help = "its name, or its number from 1", .which = true, .names = material_names},
-      {.name = "color",
-       .type = Type::vector,
-       .help = "linear; reflectance",
-       .lo = 0,
-       .hi = 1,
-       .optional = true},
-      {.name = "roughness", .type = Type::real, .lo = 0, .hi = 1, .optional = true},
-      {.name = "metallic", .type = Type::real, .lo = 0, .hi = 1, .optional = true},
-      {.name = "emission",
-       .type = Type::vector,
-       .help = "linear; emitted radiance",
-       .lo = 0,
-       .hi = 1e9,
-       .optional = true},
-      {.name = "emission_color",
-       .type = Type::vector,
-       .help = "linear; its strongest channel is scaled to 1",
-       .lo = 0,
-       .hi = 1e9,
-       .optional = true},
-      kelvin(),
-      {.name = "strength",
-       .type = Type::real,
-       .help = "emitted radiance of the strongest channel, before the colour",
-       .lo = 0,
-       .hi = 1e9,
-       .unit = "cd/m2",
-       .optional = true},
-      {.name = "on", .type = Type::boolean, .help = "turns emission on or off", .optional = true},
-      {.name = "clearcoat",
-       .type = Type::real,
-       .help = "strength of a coat of varnish",
-       .lo = 0,
-       .hi = 1,
-       .optional = true},
-      {.name = "clearcoat_roughness", .type = Type::real, .lo = 0, .hi = 1, .optional = true},
-      {.name = "sheen",
-       .type = Type::vector,
-       .help = "linear; reflectance of fibres, as of velvet",
-       .lo = 0,
-       .hi = 1,
-       .optional = true},
-      {.name = "sheen_roughness", .type = Type::real, .lo = 0, .hi = 1, .optional = true},
-      {.name = "anisotropy",
-       .type = Type::real,
-       .help = "0: reflects equally in all directions, 1: most brushed",
-       .lo = 0,
-       .hi = 1,
-       .optional = true},
-      {.name = "anisotropy_rotation",
-       .type = Type::real,
-       .help = "of the brushing",
-       .lo = -360,
-       .hi = 360,
-       .unit = "degrees",
-       .optional = true},
-      {.name = "dispersion",
-       .type = Type::real,
-       .help = "of solid glass: 20 / Abbe number",
-       .lo = 0,
-       .hi = scene::k_max_dispersion,
-       .optional = true},
-      {.name = "iridescence",
-       .type = Type::real,
-       .help = "strength of a thin film",
-       .lo = 0,
-       .hi = 1,
-       .optional = true},
-      {.name = "film_thickness",
-       .type = Type::real,
-       .help = "of that film",
-       .lo = 0,
-       .hi = 1e5,
-       .unit = "nm",
-       .optional = true}};
-  using scene::LightUnit;
-  for (Parameter& p : strength_parameters({LightUnit::lumen, LightUnit::watt, LightUnit::nit}))
-    parameters.push_back(std::move(p));
-  registry.add(
-      {.name = "material.set",
-       .help =
-           "Changes a material of the scene; its textures still multiply it. Omitted values stay unchanged.",
-       .parameters = std::move(parameters),
-       .check =
-           [](const Arguments& a) {
-             for (const char* part : {"emission_color", "kelvin", "strength"}) exclude(a, "emission", part);
-             given_unit(a, {"emission", "strength"});
-             exclude(a, "emission_color", "kelvin");
-           },
-       .run =
-           [&open](const Arguments& a) {
-             const uint32_t index = open.material_index(a.text("material"));
-             Document::Material& m = open.edit().materials[index];
-             take(a, "color", m.color);
-             take(a, "roughness", m.roughness);
-             take(a, "metallic", m.metallic);
-             take(a, "clearcoat", m.clearcoat);
-             take(a, "clearcoat_roughness", m.clearcoat_roughness);
-             take(a, "sheen", m.sheen_color);
-             take(a, "sheen_roughness", m.sheen_roughness);
-             take(a, "anisotropy", m.anisotropy);
-             if (a.has("anisotropy_rotation"))
-               m.anisotropy_rotation = glm::radians(a.number("anisotropy_rotation"));
-             take(a, "dispersion", m.dispersion);
-             take(a, "iridescence", m.iridescence);
-             take(a, "film_thickness", m.iridescence_maximum);
-             take(a, "emission", m.emission);
-             const vec3 tint = requested_tint(a, "emission_color", tint_of(m.emission));
-             float strength = strength_in(a, tint, m.emission);
-             take(a, "strength", strength);
-             if (a.has("strength") || a.has("emission_color") || a.has("kelvin"))
-               m.emission = strength * tint;
-             if (const auto unit = given_unit(a, {}))
-               m.emission = given_strength(a, *unit, open.emission_factor(index, *unit), m.emission);
-             take(a, "on", m.emits);
-           },
-       .undoable = true});
 }
 
 void add_shown_commands(Registry& registry, OpenScene& open) {

@@ -92,7 +92,7 @@ Document OpenScene::document() const {
   d.lights = lights();
   if (scene)
     for (uint32_t i = 0; i < scene->materials.size(); ++i) {
-      d.materials.push_back(Document::of(material(i)));
+      d.materials.push_back(material_state(i));
       d.materials.back().emission = emission(i), d.materials.back().emits = emits(i);
     }
   d.objects = objects_;
@@ -120,10 +120,33 @@ const std::vector<scene::Light>& OpenScene::lights() const {
   return pending_lights_ ? pending_lights_->value : scene ? scene->lights : none;
 }
 
+Document::Material OpenScene::material_state(uint32_t index) const {
+  const auto found = pending_materials_.find(index);
+  if (found != pending_materials_.end()) return found->second.value;
+  Document::Material m(scene->materials.at(index));
+  m.textures = textures(index);
+  return m;
+}
+
+scene::TextureSources OpenScene::textures(uint32_t index) const {
+  const auto found = pending_materials_.find(index);
+  if (found != pending_materials_.end()) return found->second.value.textures;
+  return loaded ? scene::texture_sources(*loaded, *scene, index) : scene::TextureSources();
+}
+
 scene::Material OpenScene::material(uint32_t index) const {
   scene::Material m = scene->materials.at(index);
-  if (const auto found = pending_materials_.find(index); found != pending_materials_.end())
-    found->second.value.put(m);
+  const auto found = pending_materials_.find(index);
+  if (found == pending_materials_.end()) return m;
+  static_cast<scene::MaterialFactors&>(m) = found->second.value;
+  if (!loaded) return m;
+  for (uint32_t s = 0; s < std::size(scene::k_texture_slots); ++s) {
+    const scene::TextureSource& source = scene::source_of(found->second.value.textures, s);
+    scene::TextureUse& use = m.*scene::k_texture_slots[s].use;
+    use = scene::use_of(*loaded, index, s, source);
+    // The file is not read yet: some texture stands for it.
+    if (source.kind == scene::TextureSource::Kind::file && !use) use.texture = 0;
+  }
   return m;
 }
 
@@ -403,7 +426,7 @@ void OpenScene::send(const Document& before, const Document& after) {
       const Document::Material now_seen = after.materials[i].in_scene();
       if (i < before.materials.size() && before.materials[i].in_scene() == now_seen) continue;
       pending_materials_[i] = {now_seen, 0};
-      session.set_material(i, material(i), id_);
+      session.set_material(i, material(i), now_seen.textures, id_);
       pending_materials_[i].sent = session.commands();
     }
   send_environment(before, after);

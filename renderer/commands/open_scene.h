@@ -68,6 +68,10 @@ class OpenScene {
   const std::vector<scene::Light>& lights() const;
   const scene::Light& light(uint32_t index) const { return lights().at(index); }
   scene::Material material(uint32_t index) const;
+  /// The same as the document has it, but for emission that is switched off.
+  Document::Material material_state(uint32_t index) const;
+  /// Where its textures come from.
+  scene::TextureSources textures(uint32_t index) const;
   /// Where an object is, relative to where its file has it.
   scene::ObjectPlace object(uint32_t index) const;
   /// Its box in its own space; cached.

@@ -115,6 +115,10 @@ size_t name_end(const Word& word) {
 
 }  // namespace
 
+bool Parameter::names_file(const std::string& value) const {
+  return type == Type::file && std::find(words.begin(), words.end(), value) == words.end();
+}
+
 Parameter time_limit() {
   return {.name = "limit",
           .type = Type::real,
@@ -335,7 +339,8 @@ std::vector<std::string> Registry::complete(const std::string& line) const {
                           const std::vector<std::string>& before) {
     if (p.type == Type::boolean) offer({"true", "false"}, start, head);
     if (p.type == Type::choice) offer(p.choices, start, head);
-    if (p.type == Type::file) offer(paths_starting(start, p.choices), start, head);
+    if (p.type == Type::file)
+      offer(p.words, start, head), offer(paths_starting(start, p.choices), start, head);
     if (p.names) offer(p.names(before), start, head);
   };
   if (const size_t end = name_end(words.back()); end != std::string::npos) {

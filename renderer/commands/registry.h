@@ -37,15 +37,18 @@ struct Parameter {
   double lo =
       -std::numeric_limits<double>::infinity();  ///< integer, real and each part of a vector; inclusive
   double hi = std::numeric_limits<double>::infinity();
-  std::string unit;                  ///< "m", "EV", "degrees"; "" for none
-  std::vector<std::string> choices;  ///< of a choice; for a file: its endings (".png")
-  bool optional = false;             ///< optional
-  bool writes = false;               ///< a written file: its name must have one of its endings
+  std::string unit;                     ///< "m", "EV", "degrees"; "" for none
+  std::vector<std::string> choices;     ///< of a choice; for a file: its endings (".png")
+  std::vector<std::string> words = {};  ///< of a file: words that stand for none ("none")
+  bool optional = false;                ///< optional
+  bool writes = false;                  ///< a written file: its name must have one of its endings
   /// Identifies the object of the command: two commands that differ only in other parameters are steps of one
   /// drag.
   bool which = false;
   /// Suggested words for a text, given the values of the parameters before it.
   std::function<std::vector<std::string>(const std::vector<std::string>&)> names = {};
+  /// True if the value is a path.
+  bool names_file(const std::string& value) const;
 };
 
 /// Optional time limit of a waiting script command: "limit".
@@ -86,10 +89,11 @@ struct Command {
   /// For commands that take time: scripts call it after run() until it returns true; a console does not wait.
   std::function<bool(const Arguments&)> done = {};
   bool undoable = false;  ///< changes the document (workspace.h)
-  /// True if it can change daylight by orders of magnitude, so that the exposure is measured again; empty: never.
+  /// True if it can change daylight by orders of magnitude, so that the exposure is measured again; empty:
+  /// never.
   std::function<bool(const Arguments&)> replaces_daylight = {};
-  bool moves = false;     ///< moves the camera, which can be undone too
-  bool recorded = true;   ///< recorded in the script of a session
+  bool moves = false;    ///< moves the camera, which can be undone too
+  bool recorded = true;  ///< recorded in the script of a session
   /// It reads the results of earlier lines, or which of them were refused, so a script waits for those.
   bool needs_outcome = false;
   /// True if it needs a window on a display, not only the window's state; empty: never.

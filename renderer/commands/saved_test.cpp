@@ -27,7 +27,7 @@ std::string portable(const Registry& registry, const std::string& text, const fs
     if (!line.arguments.has(p.name)) continue;
     std::string value = line.arguments.text(p.name);
     std::string word = p.type == Type::rest ? value : quote(value);
-    if (p.type == Type::file) {
+    if (p.names_file(value)) {
       const fs::path relative = absolute_path(value).lexically_relative(folder);
       // "$${" keeps a "${" of the name.
       if (!relative.empty()) {

@@ -56,6 +56,9 @@ session::Saved SceneFile::save(const std::string& file, bool replace, std::vecto
   scene::SaveRequest request;
   request.loaded = open_.loaded;
   request.edited = std::make_shared<const scene::Scene>(open_.edited_scene());
+  for (uint32_t i = 0; i < open_.scene->materials.size(); ++i)
+    if (scene::TextureSources textures = open_.textures(i); !textures.empty())
+      request.textures[i] = std::move(textures);
   request.cameras = std::move(cameras);
   request.settings = kept_settings();
   request.file = absolute_path(file);

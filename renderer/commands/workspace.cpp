@@ -175,7 +175,7 @@ void Workspace::record(const Line& line, History::Executed executed) {
   for (const Parameter& p : line.command->parameters) {
     if (!line.arguments.has(p.name)) continue;
     std::string value = line.arguments.text(p.name);
-    if (p.type == Type::file) value = absolute_path(value).string();
+    if (p.names_file(value)) value = absolute_path(value).string();
     executed.line += " " + (p.optional ? p.name + "=" : "") + quote(value);
   }
   const bool writes = std::any_of(line.command->parameters.begin(), line.command->parameters.end(),

@@ -62,7 +62,7 @@ const Part<scene::Light> k_light_parts[] = {
 };
 
 const Part<Document::Material> k_material_parts[] = {
-    {"color", [](const Document::Material& m) { return word(m.color); }},
+    {"color", [](const Document::Material& m) { return word(vec3(m.base_color)); }},
     {"roughness", [](const Document::Material& m) { return word(m.roughness); }},
     {"metallic", [](const Document::Material& m) { return word(m.metallic); }},
     {"emission", [](const Document::Material& m) { return word(m.emission); }},

@@ -72,17 +72,12 @@ uint64_t geometry(const Scene& scene) {
 uint64_t materials(const Scene& scene, Images& images) {
   Hash hash;
   for (const Material& m : scene.materials) {
-    const auto& [name, base_color, base_color_texture, metallic, roughness, metallic_roughness_texture,
-                 normal_texture, normal_scale, emission, off_emission, emission_texture, alpha_mode,
-                 alpha_cutoff, double_sided, unlit, ior, specular, specular_texture, specular_color,
-                 specular_color_texture, transmission, transmission_texture, thickness, attenuation_color,
-                 attenuation_distance, dispersion, diffuse_transmission, diffuse_transmission_texture,
-                 diffuse_transmission_color, diffuse_transmission_color_texture, clearcoat, clearcoat_texture,
-                 clearcoat_roughness, clearcoat_roughness_texture, clearcoat_normal_texture,
-                 clearcoat_normal_scale, sheen_color, sheen_color_texture, sheen_roughness,
-                 sheen_roughness_texture, anisotropy, anisotropy_rotation, anisotropy_texture, iridescence,
-                 iridescence_texture, iridescence_ior, iridescence_minimum, iridescence_maximum,
-                 iridescence_thickness_texture, group] = m;
+    const auto& [base_color, metallic, roughness, normal_scale, emission, alpha_mode, alpha_cutoff,
+                 double_sided, unlit, ior, specular, specular_color, transmission, thickness,
+                 attenuation_color, attenuation_distance, dispersion, diffuse_transmission,
+                 diffuse_transmission_color, clearcoat, clearcoat_roughness, clearcoat_normal_scale,
+                 sheen_color, sheen_roughness, anisotropy, anisotropy_rotation, iridescence, iridescence_ior,
+                 iridescence_minimum, iridescence_maximum] = static_cast<const MaterialFactors&>(m);
     add_all(hash, base_color, metallic, roughness, normal_scale, emission, alpha_mode, alpha_cutoff,
             double_sided, unlit, ior, specular, specular_color, transmission, thickness, attenuation_color,
             attenuation_distance, dispersion, diffuse_transmission, diffuse_transmission_color, clearcoat,

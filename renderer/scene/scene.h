@@ -52,56 +52,61 @@ struct TextureUse {
 
 enum class AlphaMode : uint32_t { opaque, mask, blend };
 
-/// glTF metallic-roughness with the supported extensions. Textures multiply the factors as in glTF.
-struct Material {
-  std::string name;
-  vec4 base_color{1};             ///< rgb reflectance 0..1, a = coverage
-  TextureUse base_color_texture;  ///< rgba
+/// Numbers of a glTF metallic-roughness material with the supported extensions. Textures multiply them as in
+/// glTF.
+struct MaterialFactors {
+  vec4 base_color{1};  ///< rgb reflectance 0..1, a = coverage
   float metallic = 1, roughness = 1;
-  TextureUse metallic_roughness_texture;  ///< g = roughness, b = metallic
-  TextureUse normal_texture;
   float normal_scale = 1;
-  vec3 emission{0};      ///< emitted radiance: emissiveFactor * emissiveStrength
-  vec3 off_emission{0};  ///< kept while emission is switched off, and 0: extras.lucerna.off_emission
-  TextureUse emission_texture;
+  vec3 emission{0};  ///< emitted radiance: emissiveFactor * emissiveStrength
   AlphaMode alpha_mode = AlphaMode::opaque;
   float alpha_cutoff = 0.5f;
   bool double_sided = false;  ///< whether the back side emits; surfaces reflect on both sides anyway
   bool unlit = false;  ///< shows base_color as radiance on E[SG]*L alone; no light source, black otherwise
   float ior = 1.5f;    ///< KHR_materials_ior; 0 means F = 1 (as the extension says)
   float specular = 1;  ///< KHR_materials_specular; multiplies F0 and F90 of the dielectric
-  TextureUse specular_texture;  ///< a
   vec3 specular_color{1};
-  TextureUse specular_color_texture;  ///< rgb
-  float transmission = 0;             ///< KHR_materials_transmission
-  TextureUse transmission_texture;    ///< r
-  float thickness = 0;  ///< KHR_materials_volume; > 0: a solid that refracts and absorbs; 0: a thin wall
+  float transmission = 0;  ///< KHR_materials_transmission
+  float thickness = 0;     ///< KHR_materials_volume; > 0: a solid that refracts and absorbs; 0: a thin wall
   vec3 attenuation_color{1};
   float attenuation_distance = k_infinity;  ///< metres
   float dispersion = 0;            ///< KHR_materials_dispersion, of solids: 20 / Abbe number; 0: none
   float diffuse_transmission = 0;  ///< KHR_materials_diffuse_transmission
-  TextureUse diffuse_transmission_texture;  ///< a
   vec3 diffuse_transmission_color{1};
-  TextureUse diffuse_transmission_color_texture;  ///< rgb
-  float clearcoat = 0;                            ///< KHR_materials_clearcoat: strength of a coat of varnish
-  TextureUse clearcoat_texture;                   ///< r
+  float clearcoat = 0;  ///< KHR_materials_clearcoat: strength of a coat of varnish
   float clearcoat_roughness = 0;
-  TextureUse clearcoat_roughness_texture;  ///< g
-  TextureUse clearcoat_normal_texture;     ///< without it the coat follows the vertices' normals
   float clearcoat_normal_scale = 1;
-  vec3 sheen_color{0};             ///< KHR_materials_sheen: reflectance of fibres; 0: none
-  TextureUse sheen_color_texture;  ///< rgb
+  vec3 sheen_color{0};  ///< KHR_materials_sheen: reflectance of fibres; 0: none
   float sheen_roughness = 0;
-  TextureUse sheen_roughness_texture;  ///< a
-  float anisotropy = 0;            ///< KHR_materials_anisotropy: 0 equal in all directions, 1 most brushed
-  float anisotropy_rotation = 0;   ///< of the brushing, from the tangent towards the bitangent, radians
-  TextureUse anisotropy_texture;   ///< rg direction, b strength
-  float iridescence = 0;           ///< KHR_materials_iridescence: strength of a thin film
-  TextureUse iridescence_texture;  ///< r
+  float anisotropy = 0;           ///< KHR_materials_anisotropy: 0 equal in all directions, 1 most brushed
+  float anisotropy_rotation = 0;  ///< of the brushing, from the tangent towards the bitangent, radians
+  float iridescence = 0;          ///< KHR_materials_iridescence: strength of a thin film
   float iridescence_ior = 1.3f;
   /// Thickness of the film where the texture is 0 and 1; without a texture it is the maximum. Nanometres.
   float iridescence_minimum = 100, iridescence_maximum = 400;
-  TextureUse iridescence_thickness_texture;  ///< g
+  bool operator==(const MaterialFactors&) const = default;
+};
+
+struct Material : MaterialFactors {
+  std::string name;
+  vec3 off_emission{0};           ///< kept while emission is switched off, and 0: extras.lucerna.off_emission
+  TextureUse base_color_texture;  ///< rgba
+  TextureUse metallic_roughness_texture;  ///< g = roughness, b = metallic
+  TextureUse normal_texture;
+  TextureUse emission_texture;
+  TextureUse specular_texture;                    ///< a
+  TextureUse specular_color_texture;              ///< rgb
+  TextureUse transmission_texture;                ///< r
+  TextureUse diffuse_transmission_texture;        ///< a
+  TextureUse diffuse_transmission_color_texture;  ///< rgb
+  TextureUse clearcoat_texture;                   ///< r
+  TextureUse clearcoat_roughness_texture;         ///< g
+  TextureUse clearcoat_normal_texture;            ///< without it the coat follows the vertices' normals
+  TextureUse sheen_color_texture;                 ///< rgb
+  TextureUse sheen_roughness_texture;             ///< a
+  TextureUse anisotropy_texture;                  ///< rg direction, b strength
+  TextureUse iridescence_texture;                 ///< r
+  TextureUse iridescence_thickness_texture;       ///< g
   std::string group;  ///< light group, if it emits: extras.light_group; "": none given (light_groups.h)
   bool operator==(const Material&) const = default;
 };

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "scene/io/load.h"
+#include "scene/texture_source.h"
 #include "session/active_solvers.h"
 #include "session/choice_review.h"
 #include "session/lights_edit.h"
@@ -83,9 +84,12 @@ class Renderer {
                             std::optional<float> rotation_degrees = {});
   /// Replaces the scene's environment by a sky, not rotated, and this factor. Throws Error if it is invalid.
   void set_environment_sky(const scene::SkyModel& sky, float scale);
-  /// Throws Error if there is no such material, or if textures or transparency (alpha mode, transmission,
-  /// thickness) would change: rays depend on these.
-  void set_material(uint32_t index, const scene::Material& material);
+  /// Replaces a material; `textures`: where its textures come from, nullopt: they stay. If the flattened
+  /// scene depends on the change (needs_flattening), it is made again: seconds for a large scene. Throws
+  /// Error if there is no such material, or a texture cannot be read; `progress` cancels. Then nothing
+  /// changes.
+  void set_material(uint32_t index, const scene::Material& material,
+                    const std::optional<scene::TextureSources>& textures = {}, const Progress& progress = {});
   /// All of these as one edit. If the total light is unchanged, with the former group mix written into the
   /// lights or the reverse, the picture continues. Throws Error; then nothing changes.
   void set_lights(const LightsEdit& edit);

@@ -51,8 +51,6 @@ void Renderer::set_environment_file(const std::filesystem::path& file, std::opti
                                     std::optional<float> rotation_degrees) {
   if (!setup_.world.scene || !loaded_) throw_error(file.string(), "there is no scene to be lit");
   auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
-  // The images as loaded; those of earlier files are dropped.
-  edited->images = loaded_->images;
   scene::Environment environment = loaded_->environment;
   if (!file.empty()) {
     scene::Image image = scene::load_environment(file, options_.scenes.most_bytes);
@@ -71,7 +69,6 @@ void Renderer::set_environment_sky(const scene::SkyModel& sky, float scale) {
   if (!setup_.world.scene || !loaded_) throw_error("sky", "there is no scene to be lit");
   scene::check_range(sky);
   auto edited = std::make_shared<scene::Scene>(*setup_.world.scene);
-  edited->images = loaded_->images;
   scene::Environment environment;
   environment.image = scene::Id(edited->images.size());
   environment.scale = scale;
@@ -84,6 +81,7 @@ void Renderer::set_environment_sky(const scene::SkyModel& sky, float scale) {
 void Renderer::light_by(std::shared_ptr<scene::Scene> edited, const scene::Environment& environment) {
   scene::check_range(environment);
   edited->environment = environment;
+  scene::drop_unused_textures(*edited, *loaded_);
   std::shared_ptr<const scene::Scene> lit = std::move(edited);
   // The first sky of this scene.
   if (lit->portals.empty() && loaded_->portals.empty())
@@ -91,9 +89,20 @@ void Renderer::light_by(std::shared_ptr<scene::Scene> edited, const scene::Envir
   edit(lit, scene::Change::environment, false);
 }
 
-void Renderer::set_material(uint32_t index, const scene::Material& material) {
-  const EditedScene edited = with_material(setup_.world.scene, index, material);
-  const scene::Material& before = setup_.world.scene->materials[index];
+void Renderer::set_material(uint32_t index, const scene::Material& material,
+                            const std::optional<scene::TextureSources>& textures, const Progress& progress) {
+  const ScenePtr scene = setup_.world.scene;
+  const EditedScene edited = textures && loaded_ ? with_material(scene, *loaded_, index, material, *textures,
+                                                                 options_.scenes.most_bytes)
+                                                 : with_material(scene, index, material);
+  if (needs_flattening(*scene, *edited, index)) {
+    Transaction::Target target(setup_);
+    // A pane in a window may have become a wall.
+    target.scene = with_portals(edited, loaded_->portals, setup_.settings.text("lights.portals"), progress);
+    install(std::move(target), progress, scene::Change::shape);
+    return;
+  }
+  const scene::Material& before = scene->materials[index];
   // A diffuse colour remains, and no other lobe appears: lookups stay at the same places.
   const auto diffuse = [](const scene::Material& x) {
     return luminance(vec3(x.base_color)) > 0 && x.metallic < 1;

@@ -1,10 +1,14 @@
 #include "session/scene_edit.h"
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "base/error.h"
+#include "scene/io/texture_file.h"
 #include "scene/object_place.h"
 #include "scene/range.h"
+#include "scene/tangents.h"
 
 namespace lucerna::session {
 namespace {
@@ -19,6 +23,50 @@ T& checked_element(std::vector<T>& all, uint32_t index, const char* thing) {
 EditedScene copy_of(const ScenePtr& scene, const char* thing) {
   if (!scene) throw Error(thing, "there is no scene");
   return std::make_shared<scene::Scene>(*scene);
+}
+
+/// Tangents for the surfaces of a material that needs them, where the file had no reason to give any.
+void add_tangents(scene::Scene& scene, uint32_t index) {
+  const scene::Material& m = scene.materials[index];
+  if (!scene::needs_tangents(m)) return;
+  const auto lacks = [index](const scene::Primitive& p) {
+    const bool has_it =
+        p.material == index || std::find(p.variants.begin(), p.variants.end(), index) != p.variants.end();
+    return has_it && p.tangents.empty();
+  };
+  const scene::TextureUse& map = m.normal_texture             ? m.normal_texture
+                                 : m.clearcoat_normal_texture ? m.clearcoat_normal_texture
+                                                              : m.anisotropy_texture;
+  for (size_t i = 0; i < scene.meshes.size(); ++i)
+    for (size_t k = 0; k < std::as_const(scene.meshes)[i].primitives.size(); ++k)
+      if (lacks(std::as_const(scene.meshes)[i].primitives[k]))
+        scene::make_tangents(scene.meshes[i].primitives[k], map);
+}
+
+/// The texture of the edited scene that shows the file, read if there is none; wrapped as the own one.
+scene::Id texture_of_file(scene::Scene& edited, const scene::Scene& loaded, const std::string& file,
+                          const scene::TextureSlot& slot, const scene::TextureUse& own, uint64_t most_bytes) {
+  scene::Texture wanted;
+  if (own) wanted = loaded.textures[own.texture];
+  wanted.srgb = scene::is_colour(slot);
+  const std::vector<scene::Texture>& textures = std::as_const(edited.textures);
+  const std::vector<scene::Image>& images = std::as_const(edited.images);
+  std::optional<scene::Id> image;
+  for (size_t t = loaded.textures.size(); t < textures.size(); ++t) {
+    const scene::Texture& x = textures[t];
+    if (images[x.image].name != file || x.srgb != wanted.srgb) continue;
+    image = x.image;
+    if (x.wrap_u == wanted.wrap_u && x.wrap_v == wanted.wrap_v && x.nearest == wanted.nearest)
+      return static_cast<scene::Id>(t);
+  }
+  if (!image) {
+    scene::Image read = scene::load_texture(file, wanted.srgb, most_bytes);
+    image = static_cast<scene::Id>(images.size());
+    edited.images.push_back(std::move(read));
+  }
+  wanted.image = *image;
+  edited.textures.push_back(wanted);
+  return static_cast<scene::Id>(edited.textures.size() - 1);
 }
 
 }  // namespace
@@ -51,13 +99,39 @@ EditedScene with_material(const ScenePtr& scene, uint32_t index, const scene::Ma
   scene::Material& m = checked_element(edited->materials, index, "material");
   scene::check_range(material);
   const scene::Material before = std::exchange(m, material);
-  bool same = m.alpha_mode == before.alpha_mode && (m.transmission > 0) == (before.transmission > 0) &&
-              (m.thickness > 0) == (before.thickness > 0);
-  for (const auto& slot : scene::k_texture_slots) same &= m.*slot.use == before.*slot.use;
-  if (!same)
-    throw_error("material", "'{}': its textures, alpha mode, transmission and thickness cannot be changed",
-                before.name);
+  for (const auto& slot : scene::k_texture_slots) m.*slot.use = before.*slot.use;
+  add_tangents(*edited, index);
   return edited;
+}
+
+EditedScene with_material(const ScenePtr& scene, const scene::Scene& loaded, uint32_t index,
+                          const scene::Material& material, const scene::TextureSources& textures,
+                          uint64_t most_bytes) {
+  EditedScene edited = copy_of(scene, "material");
+  scene::Material& m = checked_element(edited->materials, index, "material");
+  scene::check_range(material);
+  m = material;
+  for (uint32_t s = 0; s < std::size(scene::k_texture_slots); ++s) {
+    const scene::TextureSource& source = scene::source_of(textures, s);
+    scene::TextureUse& use = m.*scene::k_texture_slots[s].use;
+    use = scene::use_of(loaded, index, s, source);
+    if (source.kind == scene::TextureSource::Kind::file)
+      use.texture = texture_of_file(*edited, loaded, source.file, scene::k_texture_slots[s], use, most_bytes);
+  }
+  scene::drop_unused_textures(*edited, loaded);
+  add_tangents(*edited, index);
+  return edited;
+}
+
+bool needs_flattening(const scene::Scene& before, const scene::Scene& after, uint32_t index) {
+  const scene::Material &x = before.materials.at(index), &y = after.materials.at(index);
+  for (const auto& slot : scene::k_texture_slots)
+    if (x.*slot.use != y.*slot.use) return true;
+  const bool alpha = y.alpha_mode != scene::AlphaMode::opaque &&
+                     (x.base_color.w != y.base_color.w || x.alpha_cutoff != y.alpha_cutoff);
+  return alpha || x.alpha_mode != y.alpha_mode || (x.transmission > 0) != (y.transmission > 0) ||
+         (x.thickness > 0) != (y.thickness > 0) || x.double_sided != y.double_sided ||
+         !before.meshes.shares_with(after.meshes);
 }
 
 EditedScene with_strengths(const ScenePtr& scene, const LightsEdit& edit) {

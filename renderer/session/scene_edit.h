@@ -3,6 +3,7 @@
 #include <memory>
 #include <vector>
 
+#include "scene/texture_source.h"
 #include "session/lights_edit.h"
 #include "session/object_edit.h"
 
@@ -17,9 +18,18 @@ EditedScene with_light(const ScenePtr& scene, uint32_t index, const scene::Light
 /// Replaces all lights.
 EditedScene with_light_list(const ScenePtr& scene, const std::vector<scene::Light>& lights);
 EditedScene with_environment(const ScenePtr& scene, float scale, float rotation_degrees);
-/// Throws Error also if textures or transparency (alpha mode, transmission, thickness) would change: rays
-/// depend on these.
+/// The material with its present textures.
 EditedScene with_material(const ScenePtr& scene, uint32_t index, const scene::Material& material);
+/// The material with textures from these sources; image files that the scene lacks are read. Surfaces get
+/// tangents if they need some. `loaded`: the scene as its file has it. Throws Error also as
+/// scene::load_texture.
+EditedScene with_material(const ScenePtr& scene, const scene::Scene& loaded, uint32_t index,
+                          const scene::Material& material, const scene::TextureSources& textures,
+                          uint64_t most_bytes);
+/// True if rays pass through the surfaces in another way, or shading reads other data of them, so that the
+/// flattened scene must be made again: other textures, alpha, transmission, solid instead of thin, emitting
+/// sides, tangents.
+bool needs_flattening(const scene::Scene& before, const scene::Scene& after, uint32_t material);
 /// Lights, emission and strength of the environment; the mix is not the scene's.
 EditedScene with_strengths(const ScenePtr& scene, const LightsEdit& edit);
 EditedScene with_objects(const ScenePtr& scene, const std::vector<ObjectEdit>& edits);

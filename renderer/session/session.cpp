@@ -121,12 +121,12 @@ class RenderSession final : public Session {
     thread_.post({.run = run, .subject = "the sky", .scene = scene});
   }
 
-  void set_material(uint32_t index, const scene::Material& material, SceneId scene) override {
-    const auto run = [s = &thread_, index, material](Renderer& r) {
-      r.set_material(index, material);
-      s->restarted();
-    };
-    thread_.post({.run = run, .subject = "a material", .scene = scene});
+  void set_material(uint32_t index, const scene::Material& material,
+                    const std::optional<scene::TextureSources>& textures, SceneId scene) override {
+    edit_surfaces("a material", "changing a material", "the material stays as it was", scene,
+                  [index, material, textures](Renderer& r, const Progress& progress) {
+                    r.set_material(index, material, textures, progress);
+                  });
   }
 
   void set_lights(const LightsEdit& edit, SceneId scene) override {
@@ -139,28 +139,8 @@ class RenderSession final : public Session {
   }
 
   void set_instances(const std::vector<ObjectEdit>& edits, SceneId scene) override {
-    const uint64_t number = ++thread_.loads;
-    const auto run = [s = &thread_, edits, number](Renderer& r) {
-      constexpr double k_silent_seconds = 0.3;
-      const Timer timer;
-      Timer since;
-      const uint64_t before = r.restarts();
-      try {
-        r.set_instances(edits, [&](float fraction, const std::string& what) {
-          if (timer.seconds() > k_silent_seconds && since.seconds() > 0.05) {
-            s->publish_activity("moving objects: " + what, fraction);
-            since.restart();
-          }
-          return number > s->given_up;
-        });
-      } catch (const Error&) {
-        if (number > s->given_up) throw;
-        log::info("the edit of objects was cancelled: they stay where they were");
-        throw Abandoned();
-      }
-      if (r.restarts() != before) s->restarted();
-    };
-    thread_.post({.run = run, .subject = "an object", .scene = scene});
+    edit_surfaces("an object", "moving objects", "they stay where they were", scene,
+                  [edits](Renderer& r, const Progress& progress) { r.set_instances(edits, progress); });
   }
 
   void set_paused(bool paused) override {
@@ -345,6 +325,34 @@ class RenderSession final : public Session {
   }
 
  private:
+  /// Posts an edit that may have to make the surfaces again: with progress in snapshots if it takes long, and
+  /// ended by cancel(). `otherwise`: what is so then.
+  void edit_surfaces(const char* subject, const std::string& doing, const std::string& otherwise,
+                     SceneId scene, const std::function<void(Renderer&, const Progress&)>& edit) {
+    const uint64_t number = ++thread_.loads;
+    const auto run = [s = &thread_, doing, otherwise, edit, number](Renderer& r) {
+      constexpr double k_silent_seconds = 0.3;
+      const Timer timer;
+      Timer since;
+      const uint64_t before = r.restarts();
+      try {
+        edit(r, [&](float fraction, const std::string& what) {
+          if (timer.seconds() > k_silent_seconds && since.seconds() > 0.05) {
+            s->publish_activity(doing + ": " + what, fraction);
+            since.restart();
+          }
+          return number > s->given_up;
+        });
+      } catch (const Error&) {
+        if (number > s->given_up) throw;
+        log::info("{} was cancelled: {}", doing, otherwise);
+        throw Abandoned();
+      }
+      if (r.restarts() != before) s->restarted();
+    };
+    thread_.post({.run = run, .subject = subject, .scene = scene});
+  }
+
   SessionThread thread_;
 };
 

@@ -20,6 +20,7 @@
 #include "recording/recording.h"
 #include "scene/io/load.h"
 #include "scene/scene.h"
+#include "scene/texture_source.h"
 #include "session/accuracy.h"
 #include "session/command_queue.h"
 #include "session/held_picture.h"
@@ -178,8 +179,10 @@ class Session {
                                     SceneId scene = k_any_scene) = 0;
   /// Renderer::set_environment_sky
   virtual void set_environment_sky(const scene::SkyModel& sky, float scale, SceneId scene = k_any_scene) = 0;
-  /// Renderer::set_material
-  virtual void set_material(uint32_t index, const scene::Material& material, SceneId scene = k_any_scene) = 0;
+  /// Renderer::set_material, with progress in snapshots if it takes long; cancel() ends it too.
+  virtual void set_material(uint32_t index, const scene::Material& material,
+                            const std::optional<scene::TextureSources>& textures = {},
+                            SceneId scene = k_any_scene) = 0;
   virtual void set_lights(const LightsEdit& edit, SceneId scene = k_any_scene) = 0;  ///< Renderer::set_lights
   /// Renderer::set_instances, with progress in snapshots if it takes long; cancel() ends it too.
   virtual void set_instances(const std::vector<ObjectEdit>& edits, SceneId scene = k_any_scene) = 0;

@@ -23,10 +23,11 @@ const std::string k_line = "camera.place 1,2,3 0,0,0 0,1,0 fov=40";
 struct Window {
   std::vector<std::string> recent;
   std::map<std::string, commands::Navigation::Bookmarks> bookmarks;
+  std::map<std::string, std::string> swatches, folders;
   ui::Layout layout;
   std::map<std::string, bool> sections;
   bool welcomed = false;
-  ui::Memory memory{{recent, bookmarks, layout, sections, welcomed}};
+  ui::Memory memory{{recent, bookmarks, swatches, folders, layout, sections, welcomed}};
 };
 
 struct StateFolder : test::Folder {
@@ -46,11 +47,15 @@ TEST_CASE("bookmarks and the state of the first steps survive a restart; a damag
     window.bookmarks["/a/hall.gltf"]["From the \"stage\""] = k_line;
     window.bookmarks["/a/empty.gltf"];
     window.bookmarks["/a/b\xFChne.gltf"]["\xE9"] = k_line;
+    window.swatches["Old brass"] = "metallic=1";
+    window.folders[".png"] = "/textures/";
   }
   {
     Window window;
     CHECK(window.welcomed);
     CHECK(window.bookmarks.size() == 2);
+    CHECK(window.swatches["Old brass"] == "metallic=1");
+    CHECK(window.folders[".png"] == "/textures/");
     CHECK(window.bookmarks["/a/hall.gltf"]["From the \"stage\""] == k_line);
   }
   REQUIRE(std::filesystem::exists(folder.file()));
@@ -137,7 +142,7 @@ TEST_CASE("a failed save is reported once") {
   std::ofstream(folder.path / "lucerna") << "a file where the folder should be";
   int warnings = 0;
   const int token = log::add_listener([&](log::Level, const std::string& line) {
-    warnings += line.find("bookmarks are not kept") != std::string::npos;
+    warnings += line.find("bookmarks and swatches are not kept") != std::string::npos;
   });
   {
     Window window;

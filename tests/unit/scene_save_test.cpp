@@ -620,6 +620,66 @@ TEST_CASE("environment and settings are in the file, over settings.json") {
   CHECK(load(b.folder / "old.gltf").environment.scale == Approx(0.002f));
 }
 
+TEST_CASE("numbers and textures of materials are saved") {
+  TempFolder elsewhere;
+  write_image<uint8_t>(elsewhere / "own.png", 1, 1, 4, {250, 240, 230, 255});
+  write_image<uint8_t>(elsewhere / "bumps.png", 1, 1, 4, {128, 100, 255, 255});
+  Asset a;
+  const std::string own_bytes = lucerna::read_file(elsewhere / "own.png");
+  const int image =
+      a.add("images", {{"uri", "data:image/png;base64," + base64({own_bytes.begin(), own_bytes.end()})}});
+  const int texture = a.add("textures", {{"source", image}});
+  a.textured_triangle(
+      {{"name", "paint"},
+       {"pbrMetallicRoughness", {{"baseColorTexture", {{"index", texture}, {"texCoord", 1}}}}}});
+  const int plain = a.add("materials", {{"name", "plain"}});
+  a.triangle({{"name", "second"}})["material"] = plain;
+  Bench b(a);
+  b.read();
+  REQUIRE(b.loaded->materials.size() == 2);
+  REQUIRE(b.loaded->materials[0].base_color_texture);
+  std::filesystem::create_directories(b.folder / "far");
+  write_image<uint8_t>(b.folder / "near.png", 1, 1, 4, {10, 20, 30, 255});
+  for (Material& m : b.edited->materials) {
+    m.ior = 1.7f, m.specular = 0.5f, m.specular_color = {1, 2, 0.5f}, m.transmission = 0.9f,
+    m.thickness = 0.02f;
+    m.attenuation_color = {0.5f, 0.9f, 0.7f}, m.attenuation_distance = 0.3f;
+    m.alpha_mode = AlphaMode::mask, m.base_color.w = 0.6f, m.alpha_cutoff = 0.3f, m.double_sided = true;
+    m.diffuse_transmission = 0.25f, m.diffuse_transmission_color = {0.1f, 0.2f, 0.3f};
+    m.iridescence_ior = 1.4f, m.iridescence_minimum = 50, m.iridescence_maximum = 300;
+  }
+  b.edited->materials[1].normal_scale = 0.5f;
+  using Kind = TextureSource::Kind;
+  const auto by_file = [](const std::filesystem::path& f) { return TextureSource{Kind::file, f.string()}; };
+  const uint32_t base = texture_slot("base_color"), normal = texture_slot("normal"),
+                 coat = texture_slot("clearcoat_normal"), sheen = texture_slot("sheen_color");
+  b.request.textures[0] = {{base, {.kind = Kind::none}}, {sheen, by_file(b.folder / "near.png")}};
+  b.request.textures[1] = {{base, {Kind::material, "", 0}},
+                           {normal, by_file(elsewhere / "bumps.png")},
+                           {coat, by_file(elsewhere / "bumps.png")}};
+  for (const char* name : {"b.gltf", "far/c.gltf", "d.glb"}) {
+    CAPTURE(name);
+    const Scene back = b.saved(b.folder / name);
+    for (uint32_t i = 0; i < 2; ++i)
+      CHECK(static_cast<const MaterialFactors&>(back.materials[i]) == b.edited->materials[i]);
+    const auto texel = [&](const TextureUse& use) {
+      REQUIRE(use);
+      const Image& image = std::as_const(back.images)[std::as_const(back.textures)[use.texture].image];
+      return std::vector<int>(image.bytes.begin(), image.bytes.begin() + 3);
+    };
+    CHECK_FALSE(back.materials[0].base_color_texture);
+    CHECK(texel(back.materials[0].sheen_color_texture) == std::vector<int>{10, 20, 30});
+    CHECK(texel(back.materials[1].normal_texture) == std::vector<int>{128, 100, 255});
+    CHECK(texel(back.materials[1].clearcoat_normal_texture) == std::vector<int>{128, 100, 255});
+    CHECK(texel(back.materials[1].base_color_texture) == std::vector<int>{250, 240, 230});
+    CHECK(back.materials[1].normal_texture.uv_set != back.materials[1].base_color_texture.uv_set);
+  }
+  const json doc = b.document("b.gltf");
+  CHECK(doc["images"].size() == 3);
+  CHECK(doc["images"][1]["uri"] == "near.png");
+  CHECK_THAT(doc["images"][2]["uri"].get<std::string>(), Contains("data:image/png;base64,"));
+}
+
 TEST_CASE("an environment that the file names is not named twice") {
   for (const bool ours : {false, true}) {
     Asset a = room();

@@ -46,6 +46,12 @@ struct WorkspaceBench {
       REQUIRE(until([&] { return done.command->done(done.arguments); }));
   }
   void open(const std::string& file = "hall.gltf") { run("scene.open " + file), run("wait_scene"); }
+  /// A material as the session has it.
+  commands::Document::Material session_material(const scene::Scene& scene, uint32_t index) const {
+    commands::Document::Material m(scene.materials[index]);
+    m.textures = scene::texture_sources(*work.open.loaded, scene, index);
+    return m;
+  }
   /// Every command has reached the session.
   bool settled() {
     return until([&] {
@@ -57,7 +63,7 @@ struct WorkspaceBench {
       for (size_t i = 0; i < scene->materials.size(); ++i) {
         commands::Document::Material m = d.materials[i];
         if (!std::exchange(m.emits, true)) m.emission = vec3(0);
-        if (!(commands::Document::of(scene->materials[i]) == m)) return false;
+        if (!(session_material(*scene, uint32_t(i)) == m)) return false;
       }
       for (uint32_t i = 0; i < scene->instances.size(); ++i)
         if (scene->instances[i].to_world != work.open.object_matrix(i) ||

@@ -87,8 +87,12 @@ class FakeSession final : public Session {
       return edited;
     });
   }
-  void set_material(uint32_t index, const scene::Material& material, SceneId scene) override {
-    edit(scene, [=](const ScenePtr& s) { return with_material(s, index, material); });
+  void set_material(uint32_t index, const scene::Material& material,
+                    const std::optional<scene::TextureSources>& textures, SceneId scene) override {
+    edit(scene, [=, this](const ScenePtr& s) {
+      return textures ? with_material(s, *now_.state.loaded, index, material, *textures, uint64_t(1) << 30)
+                      : with_material(s, index, material);
+    });
   }
   void set_lights(const LightsEdit& lights, SceneId scene) override {
     edit(

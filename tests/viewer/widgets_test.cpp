@@ -13,6 +13,7 @@
 #include <set>
 #include <thread>
 
+#include "commands/material_words.h"
 #include "commands/registry.h"
 #include "solvers/registry.h"
 #include "ui/assets.h"
@@ -447,11 +448,49 @@ TEST_CASE("the panel's buttons add, copy, move and delete lights, each in one st
   REQUIRE(open.light(4).sun);
   CHECK(open.light(4).sun->latitude == 48);
   use(walk, "##daylight");
-  CHECK(luminance(open.light(4).intensity) > 50);
+  CHECK(luminance(open.light(4).intensity) > 50e3);
   walk.act("environment.sky preetham");
   REQUIRE(open.sky());
   use(walk, "##own");
   CHECK_FALSE(open.sky());
+}
+
+TEST_CASE("the panel copies materials, gives them swatches, and keeps swatches") {
+  Walk walk;
+  open_hall(walk);
+  const auto& open = walk.ui().open;
+  const scene::Material first = open.material(0);
+  walk.act("select material 1");
+  use(walk, "##copy");
+  walk.act("select material 2");
+  CHECK_FALSE(static_cast<const scene::MaterialFactors&>(open.material(1)) == first);
+  use(walk, "##paste");
+  CHECK(static_cast<const scene::MaterialFactors&>(open.material(1)) == first);
+  CHECK(open.material(1).name != first.name);
+  use(walk, "##swatches");
+  use(walk, "##swatch");  // the first one
+  CHECK(walk.ui().history.undo_text() == "material.set 2 like=plain " + commands::swatches().front().words);
+  walk.act("material.set 2 roughness=0.125");
+  walk.ui().scene_view.swatch_name = "Mine";
+  use(walk, "##swatches");
+  use(walk, "##keep");
+  REQUIRE(walk.ui().scene_view.swatches.size() == 1);
+  CHECK_THAT(walk.ui().scene_view.swatches["Mine"], Catch::Contains("roughness=0.125"));
+  use(walk, "##forget");
+  CHECK(walk.ui().scene_view.swatches.empty());
+  walk.act("dismiss");
+  // Every swatch of the program can be carried out, and is the same when it is kept.
+  for (const commands::Swatch& swatch : commands::swatches()) {
+    INFO(swatch.name);
+    walk.act("material.set 2 like=plain " + swatch.words);
+    walk.settle();
+    const commands::Document::Material made = open.material_state(1);
+    walk.act("material.set 2 like=plain");
+    walk.act("material.set 2 like=plain " + commands::material_words(made));
+    walk.settle();
+    CHECK(open.material_state(1) == made);
+    CHECK(commands::material_words(made).size() > 5);
+  }
 }
 
 TEST_CASE("the panel of held results holds, compares, and forgets") {

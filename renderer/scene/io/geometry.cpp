@@ -365,7 +365,9 @@ bool PrimitiveLoader::load(MaterialLoader& materials, Primitive& primitive) {
   primitive.material = materials.material(source_.material);
   MaterialNeeds needs = materials.needs(primitive.material);
   read_variants(materials, primitive, needs);
-  if (needs.sets[0] >= 0) primitive.uv0 = read_uvs(fmt::format("TEXCOORD_{}", needs.sets[0]).c_str());
+  // The first set is read even if no texture of the file uses it: a material may get textures.
+  if (needs.sets[0] >= 0 || attribute("TEXCOORD_0") >= 0)
+    primitive.uv0 = read_uvs(fmt::format("TEXCOORD_{}", std::max(needs.sets[0], 0)).c_str());
   if (needs.sets[1] >= 0) primitive.uv1 = read_uvs(fmt::format("TEXCOORD_{}", needs.sets[1]).c_str());
   read_colors(primitive);
   primitive.triangles = std::move(triangles_);

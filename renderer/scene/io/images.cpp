@@ -168,6 +168,12 @@ Image decode_image(const std::vector<uint8_t>& bytes, const std::string& hint, c
   }
 }
 
+std::string mime_type(std::string_view bytes) {
+  if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return "image/png";
+  if (bytes.starts_with("\xFF\xD8\xFF")) return "image/jpeg";
+  return "";
+}
+
 void check_environment_shape(const Image& image, const std::string& where) {
   const double ratio = static_cast<double>(image.width) / image.height;
   if (std::abs(ratio / 2 - 1) > 0.02 && (image.width != 1 || image.height != 1))

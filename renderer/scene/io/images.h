@@ -2,6 +2,7 @@
 // Image files to texels, through OpenImageIO.
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "scene/io/document.h"
@@ -23,6 +24,9 @@ enum class Precision { keep, eight_bit, linear_floats };
 /// memory, if decoding fails, or if the image has no texels or more than 2^28; OverBudget as Budget::take.
 Image decode_image(const std::vector<uint8_t>& bytes, const std::string& hint, const std::string& where,
                    Precision precision, Budget& budget);
+
+/// "image/png" or "image/jpeg" by a file's first bytes; "" for others, which glTF does not have.
+std::string mime_type(std::string_view bytes);
 
 /// Throws an Error at `where` unless a latitude-longitude image is about twice as wide as high (within 2 %),
 /// or a single texel. Cube maps and mirror balls are neither.

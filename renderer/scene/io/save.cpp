@@ -104,7 +104,7 @@ SavedScene save(const SaveRequest& request) {
   SavedScene saved;
   write_lights(root, loaded, *request.edited);
   write_objects(root, loaded, *request.edited, saved.notes);
-  write_materials(root, loaded, *request.edited);
+  write_materials(root, request, folders);
   write_cameras(root, loaded.origin, request.cameras);
 
   std::vector<uint8_t> chunk;

@@ -9,21 +9,25 @@
 //   last digits (own_extras.h);
 // - extras.lucerna of the default scene: settings, and an environment that was edited;
 // - extras.lucerna of cameras: lens, shift, section plane.
+// - textures by file: a reference if the file lies in the saved scene's folder, else its bytes as a data URI.
 // Values that were not edited are not touched. Reading the file gives exactly the edited values (but for
 // positions in nodes whose parents are far from the origin).
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "scene/scene.h"
+#include "scene/texture_source.h"
 
 namespace lucerna::scene {
 
 struct SaveRequest {
   std::shared_ptr<const Scene> loaded;  ///< as load() gave it
   std::shared_ptr<const Scene> edited;  ///< the same with edited lights, materials, instances and environment
+  /// Where textures of materials come from, by material, instead of from the file.
+  std::map<uint32_t, TextureSources> textures = {};
   /// Cameras to add; one with the name of a camera of the file replaces it. In the scene's coordinates.
   std::vector<Camera> cameras = {};
   /// All settings that reading the file must give, whatever settings.json is beside it.

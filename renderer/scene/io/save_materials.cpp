@@ -1,5 +1,12 @@
 #include <algorithm>
+#include <cmath>
+#include <map>
 #include <utility>
+
+#include "base/base64.h"
+#include "base/file.h"
+#include "scene/io/document.h"
+#include "scene/io/images.h"
 
 #include "scene/io/save_parts.h"
 
@@ -7,6 +14,7 @@ namespace lucerna::scene {
 namespace {
 
 constexpr const char* k_emissive = "KHR_materials_emissive_strength";
+constexpr const char* k_alpha_modes[] = {"OPAQUE", "MASK", "BLEND"};
 
 void write_emission(EditedJson& root, EditedJson& m, const vec3& emission) {
   const bool strong = std::max({emission.x, emission.y, emission.z}) > 1;
@@ -28,6 +36,11 @@ void write_material(EditedJson& root, EditedJson& m, const Material& before, con
   }
   if (before.roughness != after.roughness) pbr()["roughnessFactor"] = number_json(after.roughness);
   if (before.metallic != after.metallic) pbr()["metallicFactor"] = number_json(after.metallic);
+  if (before.alpha_mode != after.alpha_mode) m["alphaMode"] = k_alpha_modes[size_t(after.alpha_mode)];
+  if (before.alpha_cutoff != after.alpha_cutoff) m["alphaCutoff"] = number_json(after.alpha_cutoff);
+  if (before.double_sided != after.double_sided) m["doubleSided"] = after.double_sided;
+  if (before.normal_scale != after.normal_scale && m.contains("normalTexture"))
+    m["normalTexture"]["scale"] = number_json(after.normal_scale);
   if (before.emission != after.emission) write_emission(root, m, after.emission);
   if (before.off_emission == after.off_emission) return;
   if (after.off_emission == vec3(0))
@@ -36,11 +49,41 @@ void write_material(EditedJson& root, EditedJson& m, const Material& before, con
     set_own(m, "off_emission", vector_json(after.off_emission));
 }
 
+/// What glass, liquids and leaves add: index of refraction, specular strength, transmission, volume.
+void write_dielectric(EditedJson& root, EditedJson& m, const Material& before, const Material& after) {
+  const auto differs = [&](auto... members) { return ((before.*members != after.*members) || ...); };
+  if (differs(&Material::ior)) extension_at(root, m, "KHR_materials_ior")["ior"] = number_json(after.ior);
+  if (differs(&Material::specular, &Material::specular_color)) {
+    EditedJson& e = extension_at(root, m, "KHR_materials_specular");
+    e["specularFactor"] = number_json(after.specular);
+    e["specularColorFactor"] = vector_json(after.specular_color);
+  }
+  if (differs(&Material::transmission))
+    extension_at(root, m, "KHR_materials_transmission")["transmissionFactor"] =
+        number_json(after.transmission);
+  if (differs(&Material::thickness, &Material::attenuation_color, &Material::attenuation_distance)) {
+    EditedJson& e = extension_at(root, m, "KHR_materials_volume");
+    e["thicknessFactor"] = number_json(after.thickness);
+    e["attenuationColor"] = vector_json(after.attenuation_color);
+    if (std::isfinite(after.attenuation_distance))
+      e["attenuationDistance"] = number_json(after.attenuation_distance);
+    else
+      e.erase("attenuationDistance");
+  }
+  if (differs(&Material::diffuse_transmission, &Material::diffuse_transmission_color)) {
+    EditedJson& e = extension_at(root, m, "KHR_materials_diffuse_transmission");
+    e["diffuseTransmissionFactor"] = number_json(after.diffuse_transmission);
+    e["diffuseTransmissionColorFactor"] = vector_json(after.diffuse_transmission_color);
+  }
+}
+
 /// Coat, sheen, brushing and thin film.
 void write_layers(EditedJson& root, EditedJson& m, const Material& before, const Material& after) {
   const auto differs = [&](auto... members) { return ((before.*members != after.*members) || ...); };
-  if (differs(&Material::clearcoat, &Material::clearcoat_roughness)) {
+  if (differs(&Material::clearcoat, &Material::clearcoat_roughness, &Material::clearcoat_normal_scale)) {
     EditedJson& e = extension_at(root, m, "KHR_materials_clearcoat");
+    if (e.contains("clearcoatNormalTexture"))
+      e["clearcoatNormalTexture"]["scale"] = number_json(after.clearcoat_normal_scale);
     e["clearcoatFactor"] = number_json(after.clearcoat);
     e["clearcoatRoughnessFactor"] = number_json(after.clearcoat_roughness);
   }
@@ -56,9 +99,12 @@ void write_layers(EditedJson& root, EditedJson& m, const Material& before, const
   }
   if (differs(&Material::dispersion))
     extension_at(root, m, "KHR_materials_dispersion")["dispersion"] = number_json(after.dispersion);
-  if (differs(&Material::iridescence, &Material::iridescence_maximum)) {
+  if (differs(&Material::iridescence, &Material::iridescence_ior, &Material::iridescence_minimum,
+              &Material::iridescence_maximum)) {
     EditedJson& e = extension_at(root, m, "KHR_materials_iridescence");
     e["iridescenceFactor"] = number_json(after.iridescence);
+    e["iridescenceIor"] = number_json(after.iridescence_ior);
+    e["iridescenceThicknessMinimum"] = number_json(after.iridescence_minimum);
     e["iridescenceThicknessMaximum"] = number_json(after.iridescence_maximum);
   }
 }
@@ -74,16 +120,139 @@ size_t add_default_material(EditedJson& root, const std::string& name) {
   return list.size() - 1;
 }
 
+/// Where a material's texture is in the file; `extension`: null for glTF's own.
+struct TextureKey {
+  const char* extension;
+  const char* key;
+};
+constexpr TextureKey k_texture_keys[] = {
+    {"", "baseColorTexture"},  // of pbrMetallicRoughness, as the next
+    {"", "metallicRoughnessTexture"},
+    {nullptr, "normalTexture"},
+    {nullptr, "emissiveTexture"},
+    {"KHR_materials_specular", "specularTexture"},
+    {"KHR_materials_specular", "specularColorTexture"},
+    {"KHR_materials_transmission", "transmissionTexture"},
+    {"KHR_materials_diffuse_transmission", "diffuseTransmissionTexture"},
+    {"KHR_materials_diffuse_transmission", "diffuseTransmissionColorTexture"},
+    {"KHR_materials_clearcoat", "clearcoatTexture"},
+    {"KHR_materials_clearcoat", "clearcoatRoughnessTexture"},
+    {"KHR_materials_clearcoat", "clearcoatNormalTexture"},
+    {"KHR_materials_sheen", "sheenColorTexture"},
+    {"KHR_materials_sheen", "sheenRoughnessTexture"},
+    {"KHR_materials_anisotropy", "anisotropyTexture"},
+    {"KHR_materials_iridescence", "iridescenceTexture"},
+    {"KHR_materials_iridescence", "iridescenceThicknessTexture"},
+};
+static_assert(std::size(k_texture_keys) == std::size(k_texture_slots));
+
+class TextureWriter {
+ public:
+  TextureWriter(EditedJson& root, const SaveRequest& request, const Folders& folders)
+      : root_(root), request_(request), folders_(folders) {
+    if (!request.textures.empty() && root.contains("materials")) before_ = root["materials"];
+  }
+
+  void write(size_t material, const TextureSources& sources) {
+    for (const auto& [slot, source] : sources) {
+      using Kind = TextureSource::Kind;
+      const TextureKey& key = k_texture_keys[slot];
+      EditedJson info = found(material, key);
+      if (source.kind == Kind::own) continue;
+      if (source.kind == Kind::none) info = nullptr;
+      if (source.kind == Kind::material) {
+        const Id from = request_.loaded->material_indices.at(source.material);
+        info = from == k_none ? EditedJson() : found(from, key);
+      }
+      if (source.kind == Kind::file) {
+        EditedJson texture = {{"source", image_of(source.file)}};
+        if (!info.is_object()) info = EditedJson::object();
+        if (info.contains("index"))
+          if (const EditedJson& own = root_["textures"][info["index"].get<size_t>()]; own.contains("sampler"))
+            texture["sampler"] = own["sampler"];
+        info["index"] = append("textures", std::move(texture));
+      }
+      put(material, key, std::move(info));
+    }
+  }
+
+ private:
+  /// As the source file has it; null: none.
+  EditedJson found(size_t material, const TextureKey& key) const {
+    if (material >= before_.size()) return nullptr;
+    const EditedJson& m = before_[material];
+    const EditedJson* holder = &m;
+    if (key.extension) {
+      const std::string path =
+          *key.extension ? std::string("/extensions/") + key.extension : "/pbrMetallicRoughness";
+      const EditedJson::json_pointer pointer(path);
+      if (!m.contains(pointer)) return nullptr;
+      holder = &m[pointer];
+    }
+    return holder->contains(key.key) ? (*holder)[key.key] : EditedJson();
+  }
+
+  void put(size_t material, const TextureKey& key, EditedJson info) {
+    EditedJson& m = root_["materials"][material];
+    if (info.is_null() && found(material, key).is_null()) return;
+    EditedJson& holder = !key.extension   ? m
+                         : *key.extension ? extension_at(root_, m, key.extension)
+                                          : object_at(m, "pbrMetallicRoughness");
+    if (info.is_null())
+      holder.erase(key.key);
+    else
+      holder[key.key] = std::move(info);
+  }
+
+  size_t append(const char* list, EditedJson item) {
+    EditedJson& all = root_[list];
+    if (!all.is_array()) all = EditedJson::array();
+    all.push_back(std::move(item));
+    return all.size() - 1;
+  }
+
+  size_t image_of(const std::string& file) {
+    const auto [place, fresh] = images_.try_emplace(file, 0);
+    if (!fresh) return place->second;
+    const std::filesystem::path path(file);
+    const std::string relative = uri_of(path, folders_.to);
+    EditedJson image = {{"name", path.stem().string()}};
+    if (!relative.starts_with("../") && request_.file.extension() == ".gltf") {
+      image["uri"] = uri_of(path, folders_.from);  // moved with the others
+    } else {
+      const std::string bytes = lucerna::read_file(file);
+      image["uri"] = "data:" + mime_type(bytes) + ";base64," + base64(bytes);
+    }
+    return place->second = append("images", std::move(image));
+  }
+
+  EditedJson& root_;
+  const SaveRequest& request_;
+  const Folders& folders_;
+  EditedJson before_ = EditedJson::array();
+  std::map<std::string, size_t> images_;
+};
+
 }  // namespace
 
-void write_materials(EditedJson& root, const Scene& loaded, const Scene& edited) {
-  for (size_t i = 0; i < std::min(loaded.materials.size(), edited.materials.size()); ++i) {
+void write_materials(EditedJson& root, const SaveRequest& request, const Folders& folders) {
+  const Scene &loaded = *request.loaded, &edited = *request.edited;
+  TextureWriter textures(root, request, folders);
+  for (uint32_t i = 0; i < std::min(loaded.materials.size(), edited.materials.size()); ++i) {
+    if (i >= loaded.material_indices.size()) continue;
+    const auto sources = request.textures.find(i);
     const Material &before = loaded.materials[i], &after = edited.materials[i];
-    if (before == after || i >= loaded.material_indices.size()) continue;
+    const bool same =
+        static_cast<const MaterialFactors&>(before) == after && before.off_emission == after.off_emission;
+    if (same && sources == request.textures.end()) continue;
     const Id index = loaded.material_indices[i];
     const size_t at = index == k_none ? add_default_material(root, before.name) : size_t{index};
-    write_material(root, root["materials"][at], before, after);
-    write_layers(root, root["materials"][at], before, after);
+    // Textures first: factors of normal maps are in them.
+    if (sources != request.textures.end()) textures.write(at, sources->second);
+    EditedJson& m = root["materials"][at];
+    write_material(root, m, before, after);
+    write_dielectric(root, m, before, after);
+    write_layers(root, m, before, after);
   }
 }
 

@@ -20,9 +20,6 @@ void write_lights(EditedJson& root, const Scene& loaded, const Scene& edited);
 void write_objects(EditedJson& root, const Scene& loaded, const Scene& edited,
                    std::vector<std::string>& notes);
 
-/// Writes colours, roughness, metalness and emission that differ.
-void write_materials(EditedJson& root, const Scene& loaded, const Scene& edited);
-
 /// Adds cameras, or replaces those of the same name. Positions are relative to `origin` of the file.
 void write_cameras(EditedJson& root, const glm::dvec3& origin, const std::vector<Camera>& cameras);
 
@@ -31,6 +28,10 @@ struct Folders {
   std::filesystem::path from, to;
   bool same() const { return from == to; }
 };
+
+/// Writes numbers of materials that differ, and textures from other sources. Throws Error located at a
+/// texture's file that cannot be read.
+void write_materials(EditedJson& root, const SaveRequest& request, const Folders& folders);
 
 /// extras.lucerna of the default scene: environment and settings. Both are left out if they are what the
 /// source's extras and, in the same folder, settings.json give.

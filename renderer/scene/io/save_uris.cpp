@@ -6,6 +6,7 @@
 #include "base/error.h"
 #include "base/file.h"
 #include "scene/io/document.h"
+#include "scene/io/images.h"
 #include "scene/io/save_parts.h"
 
 namespace lucerna::scene {
@@ -67,13 +68,6 @@ void for_each_uri(EditedJson& root, const std::function<void(EditedJson&)>& visi
         if (const auto own = extras->find("lucerna"); own != extras->end() && own->is_object())
           if (const auto e = own->find("environment"); e != own->end()) visit_member(*e, "file");
       }
-}
-
-/// "image/png" or "image/jpeg" by the first bytes; "" for others.
-std::string mime_type(const std::string& bytes) {
-  if (bytes.starts_with("\x89PNG\r\n\x1a\n")) return "image/png";
-  if (bytes.starts_with("\xFF\xD8\xFF")) return "image/jpeg";
-  return "";
 }
 
 /// Bytes of buffers and images in one binary chunk.
