@@ -1,6 +1,8 @@
 #include "overlay/path_lines.h"
 
 #include <algorithm>
+#include <map>
+#include <utility>
 
 #include "shaders/shared/ramp.h"
 
@@ -26,6 +28,24 @@ std::vector<uint8_t> components_beyond(std::span<const Event> events) {
   return component;
 }
 
+/// The event whose light is the brightest that is reached over each event; its own number if none is.
+std::vector<uint32_t> brightest_beyond(std::span<const Event> events) {
+  std::vector<uint32_t> of(events.size());
+  std::vector<float> most(events.size(), 0);
+  for (size_t i = 0; i < of.size(); ++i) of[i] = uint32_t(i);
+  for (size_t i = events.size(); i-- > 0;) {
+    const Event& e = events[i];
+    if (recording::contributes_light(e) && luminance(e.contribution) > most[i])
+      most[i] = luminance(e.contribution), of[i] = uint32_t(i);
+    if (e.parent < i && most[i] > most[e.parent]) most[e.parent] = most[i], of[e.parent] = of[i];
+  }
+  return of;
+}
+
+constexpr vec3 k_word_inks[] = {{0.92f, 0.66f, 0.26f}, {0.25f, 0.72f, 0.67f}, {0.58f, 0.47f, 0.86f},
+                                {0.94f, 0.42f, 0.38f}, {0.55f, 0.78f, 0.35f}, {0.35f, 0.60f, 0.92f},
+                                {0.90f, 0.50f, 0.75f}, {0.72f, 0.62f, 0.48f}};
+
 bool is_point(uint32_t kind) {
   return kind == k_path_emission || kind == k_path_records || kind == k_path_photons ||
          kind == k_path_looked_up || kind == k_path_splat;
@@ -34,12 +54,21 @@ bool is_point(uint32_t kind) {
 class Strokes {
  public:
   Strokes(const recording::Recording& recording, const PathLinesStyle& style, double brightest)
-      : recording_(recording), style_(style), brightest_(brightest) {}
+      : recording_(recording), style_(style), brightest_(brightest) {
+    if (style.color == PathColor::word) words_ = brightest_words(recording);
+    if (style.color == PathColor::time)
+      for (const recording::Path& path : recording.paths)
+        slowest_ = std::max(slowest_, recording::time_of(recording.events_of(path), recording.times));
+  }
 
   void add(uint32_t path) {
     const std::span<const Event> events = recording_.events_of(recording_.paths[path]);
     const std::vector<uint8_t> component = components_beyond(events);
     const vec3 by_light = contribution_ink(brightest_ > 0 ? recording::luminance_of(events) / brightest_ : 0);
+    const double time = style_.color == PathColor::time ? recording::time_of(events, recording_.times) : 0;
+    const vec3 by_time = time_ink(slowest_ > 0 ? time / slowest_ : 0);
+    std::vector<uint32_t> beyond;
+    if (style_.color == PathColor::word) beyond = brightest_beyond(events);
     const bool followed = style_.path == int(path), faint = style_.path >= 0 && !followed;
     for (uint32_t i = 0; i < events.size(); ++i) {
       const Event& e = events[i];
@@ -50,6 +79,8 @@ class Strokes {
       vec3 ink = event_ink(e);
       if (style_.color == PathColor::component && !blocked) ink = component_ink(component[i]);
       if (style_.color == PathColor::contribution && !blocked) ink = by_light;
+      if (style_.color == PathColor::time && !blocked) ink = by_time;
+      if (style_.color == PathColor::word && !blocked) ink = ink_of_word(events, beyond[i]);
       if (marked || (followed && kind != k_path_camera))
         point(e.position, ink, marked ? 4.5f : 2.2f, 1);
       else if (is_point(kind))
@@ -72,6 +103,13 @@ class Strokes {
   PathStrokes take() { return std::move(all_); }
 
  private:
+  vec3 ink_of_word(std::span<const Event> events, uint32_t event) const {
+    if (!recording::contributes_light(events[event])) return word_ink(std::size(k_word_inks));
+    const auto found = std::find(words_.begin(), words_.end(), recording::word_of(events, event));
+    return found == words_.end() ? word_ink(std::size(k_word_inks))
+                                 : word_ink(size_t(found - words_.begin()));
+  }
+
   void point(const vec3& at, const vec3& ink, float half_width, float alpha) {
     all_.points.push_back({.position = at,
                            .half_width = half_width,
@@ -83,7 +121,8 @@ class Strokes {
 
   const recording::Recording& recording_;
   const PathLinesStyle& style_;
-  double brightest_;
+  double brightest_, slowest_ = 0;
+  std::vector<std::string> words_;
   PathStrokes all_;
 };
 
@@ -111,6 +150,27 @@ vec3 component_ink(uint32_t component) {
 vec3 contribution_ink(double share) {
   return ramp_color(k_ramp_viridis, ramp_position(float(share), k_least_path_share, 1, 1));
 }
+
+std::vector<std::string> brightest_words(const recording::Recording& recording) {
+  std::map<std::string, double> light;
+  for (const recording::Path& path : recording.paths) {
+    const std::span<const Event> events = recording.events_of(path);
+    for (uint32_t i = 0; i < events.size(); ++i)
+      if (recording::contributes_light(events[i]))
+        light[recording::word_of(events, i)] += double(luminance(events[i].contribution));
+  }
+  std::vector<std::pair<double, std::string>> order;
+  for (const auto& [word, sum] : light) order.emplace_back(-sum, word);
+  std::sort(order.begin(), order.end());
+  if (order.size() > std::size(k_word_inks)) order.resize(std::size(k_word_inks));
+  std::vector<std::string> words;
+  for (auto& [sum, word] : order) words.push_back(std::move(word));
+  return words;
+}
+
+vec3 word_ink(size_t rank) { return rank < std::size(k_word_inks) ? k_word_inks[rank] : vec3(0.4f); }
+
+vec3 time_ink(double share) { return ramp_color(k_ramp_viridis, float(std::clamp(share, 0.0, 1.0))); }
 
 vec3 event_ink(const Event& event) {
   switch (recording::kind_of(event)) {

@@ -183,10 +183,10 @@ void add_display_options(std::vector<OptionInfo>& list) {
                      "Tints surfaces that the camera's lens shows sharp, with a line in the plane of focus.",
                      "Depth of field")));
   list.push_back(without_restart(choice_option(
-      "overlay.path_color", "event", {"event", "component", "contribution"}, "",
+      "overlay.path_color", "event", {"event", "component", "contribution", "word", "time"}, "",
       "Colour of recorded paths (inspect.trace). event: the lobe that scattered each ray, and what it met. "
       "component: that of the light at the end of a ray. contribution: the light that the path adds to its "
-      "pixel.",
+      "pixel. word: its way, as EDSL. time: of the path, by the mean time of a ray.",
       "Paths by")));
   list.push_back(without_restart(choice_option(
       "preview.filter", "auto", {"auto", "off"}, "",

@@ -105,6 +105,8 @@ Writer::Writer(const std::filesystem::path& file, const Recording& names, const 
   header["width"] = names.width, header["height"] = names.height, header["seed"] = names.seed;
   for (const auto& [key, value] : about.items()) header[key] = value;
   header["materials"] = names.materials, header["lights"] = names.lights, header["groups"] = names.groups;
+  if (names.times.measured())
+    header["ray_us"] = {{"surface", names.times.surface}, {"light", names.times.light}};
   header["schema"] = schema();
   const std::string text = json_text(header, 1);
   const auto bytes = uint32_t(text.size());
@@ -195,6 +197,8 @@ Reader::Reader(const std::filesystem::path& file) : file_(file) {
     names_.materials = header_.at("materials").get<std::vector<std::string>>();
     names_.lights = header_.at("lights").get<std::vector<std::string>>();
     names_.groups = header_.at("groups").get<std::vector<std::string>>();
+    if (const auto times = header_.find("ray_us"); times != header_.end())
+      names_.times = {times->at("surface").get<double>(), times->at("light").get<double>()};
   } catch (const Json::exception& e) {
     refuse(fmt::format("the header cannot be read: {}", e.what()));
   }

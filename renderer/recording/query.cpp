@@ -70,6 +70,8 @@ std::vector<Field> make_fields() {
   number("events", "events of the path", [](const Row& r) { return double(r.path.count); });
   number("cost", "rays of the path: to surfaces and to lights",
          [](const Row& r) { return double(rays_of(events_of(r))); });
+  number("time", "microseconds of the path, by the mean time of a ray in the picture; 0: not measured",
+         [](const Row& r) { return time_of(events_of(r), r.of.times); });
   using Read = double (*)(const Row&);
   const Read places[] = {[](const Row& r) { return double(lit_place(events_of(r), r.event).x); },
                          [](const Row& r) { return double(lit_place(events_of(r), r.event).y); },

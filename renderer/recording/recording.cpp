@@ -95,6 +95,13 @@ uint32_t rays_of(std::span<const Event> path) {
   }));
 }
 
+double time_of(std::span<const Event> path, const RayTimes& times) {
+  const auto lights = std::count_if(path.begin(), path.end(), [](const Event& e) {
+    return kind_of(e) == k_path_light || kind_of(e) == k_path_blocked;
+  });
+  return (rays_of(path) - double(lights)) * times.surface + double(lights) * times.light;
+}
+
 Light light_of(std::span<const Event> path) {
   Light light{};
   for (const Event& e : path)

@@ -25,6 +25,14 @@ struct Path {
   bool operator==(const Path&) const = default;
 };
 
+/// Mean times of a ray of the picture [us]: a measurement, so no part of what is the same from run to run.
+struct RayTimes {
+  double surface =
+      0;  ///< to a surface or out of the scene, with its shading, and its share of all other stages
+  double light = 0;  ///< to a light, with what it adds
+  bool measured() const { return surface > 0; }
+};
+
 struct Recording {
   uint32_t width = 0, height = 0;  ///< of the picture
   uint32_t seed = 0;
@@ -32,6 +40,7 @@ struct Recording {
   std::vector<std::string> materials;  ///< by Event::material
   std::vector<std::string> lights;     ///< by Event::light, which the renderer has replaced by this index
   std::vector<std::string> groups;     ///< of lights, by group; empty: not separate
+  RayTimes times;
   std::vector<Path> paths;
   std::vector<Event> events;
 
@@ -70,6 +79,8 @@ uint32_t depth_of(std::span<const Event> path, uint32_t event);
 /// Rays of a path: one to each surface that it meets or out of the scene, one for each light sample. Of lost
 /// events none.
 uint32_t rays_of(std::span<const Event> path);
+/// Time of the path [us] by the picture's mean times of its rays; 0: not measured.
+double time_of(std::span<const Event> path, const RayTimes& times);
 
 /// Radiance that the path adds to its sample, by component, in double precision.
 using Light = std::array<std::array<double, 3>, paths::k_component_count>;

@@ -57,6 +57,16 @@ std::string capital(std::string text) {
   return text;
 }
 
+/// Shadow stages by the rays to lights, all others by the other rays.
+recording::RayTimes ray_times(const transport::TransportStats& stats) {
+  double shadow = 0, other = 0;
+  for (const transport::StageSum& stage : stats.stages)
+    (stage.name.starts_with("shadow") ? shadow : other) += stage.ms;
+  if (stats.rays <= stats.shadow_rays) return {};
+  return {.surface = 1e3 * other / double(stats.rays - stats.shadow_rays),
+          .light = stats.shadow_rays > 0 ? 1e3 * shadow / double(stats.shadow_rays) : 0};
+}
+
 }  // namespace
 
 PictureView PathStudy::view() const {
@@ -64,7 +74,11 @@ PictureView PathStudy::view() const {
   return setup_.view(context_.automaton);
 }
 
-recording::Recording PathStudy::begin() const { return recorder_->begin(view()); }
+recording::Recording PathStudy::begin() const {
+  recording::Recording all = recorder_->begin(view());
+  all.times = ray_times(setup_.engine->wavefront().stats());
+  return all;
+}
 
 bool PathStudy::record(std::span<const shared::PathChoice> choices, recording::Recording& into,
                        const std::function<bool()>& cancel, uint32_t events_per_path) {

@@ -163,7 +163,7 @@ TEST_CASE("recorded paths are drawn with each colour, and a legend for it") {
                                 record(*r, {.left = 8, .top = 8, .right = 12, .bottom = 12, .samples = 2}))});
   std::vector<std::vector<uint8_t>> shown;
   std::vector<std::string> notes;
-  for (const char* color : {"event", "component", "contribution"}) {
+  for (const char* color : {"event", "component", "contribution", "word", "time"}) {
     INFO(color);
     test::set(*r, {{"overlay.path_color", color}});
     shown.push_back(r->output().picture(false));
@@ -178,6 +178,8 @@ TEST_CASE("recorded paths are drawn with each colour, and a legend for it") {
   CHECK(shown[1] != shown[2]);
   CHECK(notes[0] != notes[1]);
   CHECK(notes[1] != notes[2]);
+  CHECK(shown[3] != shown[1]);
+  CHECK(shown[4] != shown[2]);
 }
 
 TEST_CASE("the sink is not compiled into the picture's kernels") {

@@ -64,6 +64,25 @@ TEST_CASE("by component a ray has the colour of the light that it leads to; bloc
   CHECK(light.segments[3].color == contribution_ink(0));
 }
 
+TEST_CASE("by word the brightest ways have colours, by time the slowest path ends the ramp") {
+  recording::Recording paths = two_paths();
+  paths.events[2] =
+      event(shared::k_path_light, 1, {5, 0, 1}, 0, 0, 2);  // dimmer than the records behind the mirror
+  const std::vector<std::string> words = brightest_words(paths);
+  REQUIRE(words.size() == 2);
+  CHECK(words[0] == recording::word_of(paths.events_of(paths.paths[0]), 4));
+  CHECK(words[1] == recording::word_of(paths.events_of(paths.paths[0]), 2));
+  const PathStrokes strokes = path_strokes(paths, {.color = PathColor::word});
+  CHECK(strokes.segments[0].color == word_ink(0));  // to the wall, over which both are reached
+  CHECK(strokes.segments[1].color == word_ink(1));
+  CHECK(strokes.segments[2].color == word_ink(0));
+  CHECK(strokes.segments[3].color == word_ink(99));
+  paths.times = {.surface = 1, .light = 1};
+  const PathStrokes slow = path_strokes(paths, {.color = PathColor::time});
+  CHECK(slow.segments[0].color == time_ink(1));
+  CHECK(slow.segments[3].color == time_ink(1.0 / 3));
+}
+
 TEST_CASE("a followed path stands out, with its marked event") {
   const PathStrokes strokes = path_strokes(two_paths(), {.path = 0, .vertex = 5});
   CHECK(strokes.segments[0].alpha == 1);

@@ -304,6 +304,25 @@ TEST_CASE("the place of light is the surface that it lights, or the emitter that
   CHECK(rays_of(events) == 4);
 }
 
+TEST_CASE("a path's time is that of its rays, and is kept in files") {
+  const std::vector<Event> path{event(shared::k_path_camera, k_none), event(shared::k_path_surface, 0),
+                                event(shared::k_path_light, 1),       event(shared::k_path_blocked, 1),
+                                event(shared::k_path_passed, 1),      event(shared::k_path_end, 4)};
+  CHECK(time_of(path, {.surface = 2, .light = 0.5}) == 2 * 2 + 2 * 0.5);
+  CHECK(time_of(path, {}) == 0);
+  const test::Folder folder;
+  for (const bool measured : {false, true}) {
+    Recording names = empty();
+    if (measured) names.times = {.surface = 2.25, .light = 0.5};
+    Writer writer(folder / "a.lpath", names);
+    writer.finish();
+    const Recording back = Reader(folder / "a.lpath").names();
+    CHECK(back.times.measured() == measured);
+    CHECK(back.times.surface == names.times.surface);
+    CHECK(back.times.light == names.times.light);
+  }
+}
+
 TEST_CASE("a search in a part of the scene finds the same rows and reads few paths") {
   const test::Folder folder;
   const fs::path file = folder / "a.lpath";
