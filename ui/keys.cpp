@@ -31,12 +31,22 @@ bool handle_window_keys(const Keys& keys, Actions& actions, const commands::Hist
   if (keys.pressed(GLFW_KEY_L, GLFW_MOD_CONTROL)) actions.act("log.type");
   if (keys.pressed(GLFW_KEY_Q, GLFW_MOD_CONTROL)) actions.act("window.close");
   if (popup && keys.pressed(GLFW_KEY_ESCAPE)) ImGui::ClosePopupToLevel(0, true);
-  if (ImGui::GetIO().WantTextInput || popup) return false;
-  for (const auto& [key, mods] : keys.list)
-    if (key == GLFW_KEY_Z && mods & GLFW_MOD_CONTROL) {
-      const bool again = mods & GLFW_MOD_SHIFT;
+  if (popup) return false;
+  // In an empty field, such as that of commands, there is nothing else to undo.
+  const ImGuiContext& context = *ImGui::GetCurrentContext();
+  const ImGuiInputTextState& field = context.InputTextState;
+  const bool typing = ImGui::GetIO().WantTextInput;
+  const bool empty =
+      field.ID == context.ActiveId && field.CurLenW == 0 && field.Stb.undostate.undo_point == 0;
+  for (const auto& [pressed, mods] : keys.list) {
+    const bool redoes = pressed == GLFW_KEY_Y;
+    if (typing && !empty) break;
+    if ((pressed == GLFW_KEY_Z || redoes) && mods & GLFW_MOD_CONTROL) {
+      const bool again = redoes || mods & GLFW_MOD_SHIFT;
       if (again ? history.can_redo() : history.can_undo()) actions.act(again ? "redo" : "undo");
     }
+  }
+  if (typing) return false;
   if (keys.pressed(GLFW_KEY_F1)) actions.act("window.keys");
   if (keys.pressed(GLFW_KEY_TAB)) actions.act("window.panels", !panels), actions.wake(3);
   return true;

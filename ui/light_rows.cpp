@@ -201,6 +201,9 @@ void profile_rows(Actions& actions, size_t i, const scene::Light& light) {
   value_row("Distribution", p.name.empty() ? "unnamed" : p.name,
             "File of the measured distribution (light.set profile=FILE).");
   file_button(actions, i, "profile", "Other distribution\xE2\x80\xA6");
+  if (button("##no_profile", "Remove distribution", false, ImGui::CalcItemWidth()))
+    actions.act("light.set", i + 1, named("profile", "none"));
+  tooltip("Makes it a point lamp of the same power.");
   value_row("In the file", fmt::format("{:.0f} lm, {:.0f} cd", p.lumens(), p.peak),
             "Flux and largest intensity that the file states.");
   const float size = std::min(ImGui::CalcItemWidth(), px(150)), half = 0.5f * size;
@@ -273,6 +276,9 @@ void picture_rows(Actions& actions, size_t i, const scene::Light& light) {
             fmt::format("{}, {} \xC3\x97 {}", p.name.empty() ? "unnamed" : p.name, p.width, p.height),
             "Image that the spot projects (light.set picture=FILE). Its corners are on the cone.");
   file_button(actions, i, "picture", "Other picture\xE2\x80\xA6");
+  if (button("##no_picture", "Remove picture", false, ImGui::CalcItemWidth()))
+    actions.act("light.set", i + 1, named("picture", "none"));
+  tooltip("Makes it a plain spot.");
   roll_row(actions, i, light, "the picture");
 }
 

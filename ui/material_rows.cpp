@@ -237,7 +237,10 @@ void textures(Controls& controls, uint32_t index) {
   }
   if (button("##add_texture", "Add a texture", false, ImGui::CalcItemWidth())) ImGui::OpenPopup("##slots");
   tooltip("Chooses what an image file is for, then the file.");
-  if (!ImGui::BeginPopup("##slots")) return;
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(8), px(6)});
+  const bool open = ImGui::BeginPopup("##slots");
+  ImGui::PopStyleVar();
+  if (!open) return;
   for (uint32_t s = 0; s < std::size(scene::k_texture_slots); ++s)
     if (!(m.*scene::k_texture_slots[s].use) && ImGui::Selectable(k_slot_labels[s]))
       controls.act("dialog.texture", index + 1, scene::k_texture_slots[s].name);

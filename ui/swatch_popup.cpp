@@ -37,6 +37,7 @@ bool swatch_row(const Swatch& swatch, float width) {
   if (hovered) list->AddRectFilled(at, {at.x + width, at.y + height}, colour::field_hover, px(2));
   list->AddRectFilled({at.x + px(5), at.y + px(5)}, {at.x + px(19), at.y + px(19)}, colour_of(swatch.words),
                       px(2));
+  list->AddRect({at.x + px(5), at.y + px(5)}, {at.x + px(19), at.y + px(19)}, colour::text_faint, px(2));
   draw_text(list, {at.x + px(26), at.y}, {at.x + width - px(4), at.y + height},
             elided(swatch.name, width - px(30)), colour::text);
   return pressed;

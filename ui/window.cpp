@@ -6,6 +6,7 @@
 #include <backends/imgui_impl_glfw.h>
 #include <backends/imgui_impl_opengl3.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 
 #include <algorithm>
 #include <array>
@@ -210,6 +211,9 @@ void Window::begin_frame() {
     if (!io.KeysDown[key]) io.KeysDown[key] = true, revived.push_back(key);
   for (const int key : frame.keys)
     if (!io.KeysDown[key]) io.KeysDown[key] = true, revived.push_back(key);
+  // A field that becomes active again would undo steps of a text that it no longer has.
+  ImGuiContext& context = *ImGui::GetCurrentContext();
+  if (context.InputTextState.ID != context.ActiveId) context.InputTextState.ID = 0;
   ImGui::NewFrame();
   for (const int key : postponed) io.KeysDown[key] = true;
   // A script's held keys are down for the whole frame; its parts read the keys while they are drawn.
@@ -223,9 +227,10 @@ void Window::begin_frame() {
 void Window::end_frame() {
   ImGuiIO& io = ImGui::GetIO();
   for (int key : std::exchange(events_->lifted, {})) io.KeysDown[key] = false;
+  // ImGui asserts that a frame ends with the modifiers that it began with.
+  ImGui::Render();
   if (const auto before = std::exchange(events_->modifiers, std::nullopt))
     io.KeyCtrl = (*before)[0], io.KeyShift = (*before)[1], io.KeyAlt = (*before)[2];
-  ImGui::Render();
   int width = 0, height = 0;
   glfwGetFramebufferSize(window_, &width, &height);
   glViewport(0, 0, width, height);

@@ -57,8 +57,7 @@ void add_environment_file_commands(Registry& registry, OpenScene& open) {
              d.sky.reset();
              d.environment_scale = 1, d.environment_rotation = 0;
            },
-       .undoable = true,
-       .replaces_daylight = [](const Arguments&) { return true; }});
+       .undoable = true});
   registry.add({.name = "environment.own",
                 .help = "Restores the scene's environment, with the brightness and rotation of its file.",
                 .parameters = {},
@@ -69,8 +68,7 @@ void add_environment_file_commands(Registry& registry, OpenScene& open) {
                       d.environment_file.clear(), d.sky.reset();
                       std::tie(d.environment_scale, d.environment_rotation) = open.own_environment();
                     },
-                .undoable = true,
-                .replaces_daylight = [](const Arguments&) { return true; }});
+                .undoable = true});
 }
 
 }  // namespace lucerna::commands

@@ -16,6 +16,8 @@
 namespace lucerna::commands {
 namespace {
 
+constexpr const char* k_no_file = "none";
+
 Parameter angle(const char* name, const char* help, double lo, double hi) {
   return {.name = name,
           .type = Type::real,
@@ -317,13 +319,17 @@ std::vector<Parameter> light_parameters() {
        .optional = true},
       {.name = "profile",
        .type = Type::file,
-       .help = "measured distribution of a point or spot, IES LM-63 or EULUMDAT; the lamp keeps its power",
+       .help = "measured distribution of a point or spot, IES LM-63 or EULUMDAT; the lamp keeps its power; "
+               "none: a point",
        .choices = {".ies", ".ldt"},
+       .words = {k_no_file},
        .optional = true},
       {.name = "picture",
        .type = Type::file,
-       .help = "image that a spot projects; its corners are on the cone, and white is as strong as the spot",
+       .help = "image that a spot projects; its corners are on the cone, and white is as strong as the spot; "
+               "none: without",
        .choices = {".png", ".jpg", ".exr", ".hdr"},
+       .words = {k_no_file},
        .optional = true},
       {.name = "visible",
        .type = Type::boolean,
@@ -344,8 +350,14 @@ void check_light_words(const Arguments& a) {
 
 void apply_light_words(const Arguments& a, scene::Light& light, float distance) {
   check_kind(a, light);
-  if (a.has("profile")) set_profile(light, scene::load_light_profile(a.text("profile")));
-  if (a.has("picture")) set_picture(light, picture_file(a.text("picture")));
+  if (a.has("profile") && a.text("profile") != k_no_file)
+    set_profile(light, scene::load_light_profile(a.text("profile")));
+  else if (a.has("profile") && light.profile)
+    scene::drop_profile(light);
+  if (a.has("picture") && a.text("picture") == k_no_file)
+    light.picture.reset();
+  else if (a.has("picture"))
+    set_picture(light, picture_file(a.text("picture")));
   aim(a, light);
   shape(a, light);
   shine(a, light, distance);

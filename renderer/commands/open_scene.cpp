@@ -73,9 +73,9 @@ void OpenScene::begin_scene() {
   solo_ = -1;
 }
 
-void OpenScene::load(const std::string& file) {
+void OpenScene::load(const std::string& file, bool outside) {
   load_failed_ = false;
-  session.load(file);
+  session.load(file, outside);
   loaded_by_ = session.commands();
 }
 

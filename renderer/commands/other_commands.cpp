@@ -46,10 +46,14 @@ void add_scene_commands(Workspace& work) {
   work.registry.add(
       {.name = "scene.open",
        .help = "Opens a glTF scene. The shown scene stays until the new one is ready, or if loading fails.",
-       .parameters = {file_named({".gltf", ".glb"})},
+       .parameters = {file_named({".gltf", ".glb"}),
+                      {.name = "outside",
+                       .type = Type::boolean,
+                       .help = "also reads files that the scene names outside its folder",
+                       .optional = true}},
        .run = [&work](const Arguments& a) {
          work.exposure.begin_load();
-         work.open.load(a.text("file"));
+         work.open.load(a.text("file"), a.has("outside") && a.boolean("outside"));
        }});
   work.registry.add({.name = "scene.cancel",
                      .help = "Cancels the load in progress, or the edit of objects; the shown scene stays.",

@@ -89,9 +89,9 @@ struct Command {
   /// For commands that take time: scripts call it after run() until it returns true; a console does not wait.
   std::function<bool(const Arguments&)> done = {};
   bool undoable = false;  ///< changes the document (workspace.h)
-  /// True if it can change daylight by orders of magnitude, so that the exposure is measured again; empty:
-  /// never.
-  std::function<bool(const Arguments&)> replaces_daylight = {};
+  /// True if it can change the sun's strength by orders of magnitude, so that the exposure is measured again;
+  /// empty: never.
+  std::function<bool(const Arguments&)> replaces_sunlight = {};
   bool moves = false;    ///< moves the camera, which can be undone too
   bool recorded = true;  ///< recorded in the script of a session
   /// It reads the results of earlier lines, or which of them were refused, so a script waits for those.

@@ -105,11 +105,11 @@ void add_sun_commands(Registry& registry, OpenScene& open) {
             number("north", "direction of north in the scene: clockwise from -Z, seen from above", "degrees",
                    -360, 360),
             number("turbidity",
-                   "also sets colour and strength by the air in the way, in lux; without it, they stay",
-                   "", scene::k_least_turbidity, scene::k_most_turbidity)},
+                   "also sets colour and strength by the air in the way, in lux; without it, they stay", "",
+                   scene::k_least_turbidity, scene::k_most_turbidity)},
        .run = [&open](const Arguments& a) { set_sun(open, a); },
        .undoable = true,
-       .replaces_daylight = [](const Arguments& a) { return a.has("turbidity"); }});
+       .replaces_sunlight = [](const Arguments& a) { return a.has("turbidity"); }});
   registry.add(
       {.name = "environment.sky",
        .help = "Lights the scene by a sky, in cd/m2, whose sun is where a sun of the scene stands and moves "
@@ -126,8 +126,7 @@ void add_sun_commands(Registry& registry, OpenScene& open) {
                        .optional = true,
                        .names = [&open](const std::vector<std::string>&) { return sun_names(open); }}},
        .run = [&open](const Arguments& a) { set_sky(open, a); },
-       .undoable = true,
-       .replaces_daylight = [](const Arguments&) { return true; }});
+       .undoable = true});
 }
 
 }  // namespace lucerna::commands

@@ -139,6 +139,16 @@ void Workspace::carry_out(const Line& line, uint64_t gesture, const std::string&
   record(line, executed);
 }
 
+namespace {
+
+/// True if the environment is another one, not only changed.
+bool other_environment(const Document& a, const Document& b) {
+  return a.environment_file != b.environment_file || a.sky.has_value() != b.sky.has_value() ||
+         (a.sky && a.sky->kind != b.sky->kind);
+}
+
+}  // namespace
+
 void Workspace::execute_edit(const Line& line, uint64_t gesture, const std::string& where) {
   const History::Mark before = history.mark();
   const std::string target = registry.target(line);
@@ -156,15 +166,18 @@ void Workspace::execute_edit(const Line& line, uint64_t gesture, const std::stri
   camera.follow_lights(now_seen.lights, after.lights);
   open.send(now_seen, after);
   const bool requested = open.loading() && open.named_settings();
-  const History::Executed executed{registry.print(line), target, gesture, history.sent_since(before)};
+  History::Executed executed{registry.print(line), target, gesture, history.sent_since(before)};
+  // A step of a material's drag may have taken the number of the one before.
+  if (executed.sent.last < executed.sent.first && now_seen.materials != after.materials)
+    executed.sent.first = executed.sent.last;
   if (merged || after != now_seen)
     history.add_edit(executed, now_seen, after, merged != nullptr);
   else if (!requested)
     return;
   history.forget_redo();
   record(line, executed);
-  // While a value is dragged the exposure stays.
-  if (gesture == 0 && line.command->replaces_daylight && line.command->replaces_daylight(line.arguments))
+  const bool sun = line.command->replaces_sunlight && line.command->replaces_sunlight(line.arguments);
+  if (sun || other_environment(now_seen, after))
     exposure.daylight_replaced(interactive(), history.position());
 }
 

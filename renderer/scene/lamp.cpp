@@ -98,6 +98,12 @@ void set_profile(Light& light, std::shared_ptr<const LightProfile> profile) {
   light.intensity *= float(power / solid_angle(light));
 }
 
+void drop_profile(Light& light) {
+  const double power = solid_angle(light);
+  light.kind = LightKind::point, light.profile.reset();
+  light.intensity *= float(power / solid_angle(light));
+}
+
 void set_picture(Light& light, std::shared_ptr<const LightPicture> picture) {
   if (!light.picture) light.right = level_right(light.direction);
   light.picture = std::move(picture);

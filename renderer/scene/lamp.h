@@ -30,6 +30,9 @@ bool can_roll(const Light& light);
 /// Makes a point, spot or profile lamp a lamp of that distribution, with the same power.
 void set_profile(Light& light, std::shared_ptr<const LightProfile> profile);
 
+/// Makes a lamp with a profile a point of the same power.
+void drop_profile(Light& light);
+
 /// Gives a spot that picture. White of it is as strong as the spot was.
 void set_picture(Light& light, std::shared_ptr<const LightPicture> picture);
 

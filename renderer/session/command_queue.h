@@ -20,18 +20,20 @@ struct Command {
   std::string subject;  ///< its target, for messages: "the camera"
   /// The scene it is for. If another one is loaded by its turn, it is skipped.
   SceneId scene = k_any_scene;
-  bool saves = false;   ///< carried out even before the session ends
-  bool camera = false;  ///< of several consecutive ones only the last counts
+  bool saves = false;  ///< carried out even before the session ends
+  /// Of several consecutive ones with the same value, not 0, only the last counts: steps of a drag.
+  uint64_t replaces = 0;
   uint64_t number = 0;  ///< from 1 on, in order; set by push()
 };
 
 template <class Target>
 class CommandQueue {
  public:
-  /// Appends it. A camera replaces, and gets the number of, a camera for the same scene that is last in the
-  /// queue.
+  /// Appends it, or replaces the last in the queue, with its number: see Command::replaces. They are for the
+  /// same scene.
   void push(Command<Target> command) {
-    if (command.camera && !queue_.empty() && queue_.back().camera && queue_.back().scene == command.scene) {
+    if (command.replaces != 0 && !queue_.empty() && queue_.back().replaces == command.replaces &&
+        queue_.back().scene == command.scene) {
       command.number = queue_.back().number;
       queue_.back() = std::move(command);
       return;

@@ -37,12 +37,15 @@ Renderer::Renderer(const RendererOptions& options)
 Renderer::~Renderer() = default;
 
 void Renderer::load(const std::filesystem::path& file, const Progress& progress,
-                    const std::vector<SettingChange>& changes) {
+                    const std::vector<SettingChange>& changes, bool outside) {
   progress_.rest();
   const Timer timer;
-  auto scene = std::make_shared<scene::Scene>(scene::load(
-      file, options_.scenes,
-      [&](float fraction, const std::string& what) { return !progress || progress(0.6f * fraction, what); }));
+  scene::LoadOptions how = options_.scenes;
+  how.outside |= outside;
+  auto scene =
+      std::make_shared<scene::Scene>(scene::load(file, how, [&](float fraction, const std::string& what) {
+        return !progress || progress(0.6f * fraction, what);
+      }));
   scene::add_default_light(*scene);
   for (const std::string& warning : scene->warnings) log::warning("{}", warning);
   set_scene(

@@ -48,9 +48,10 @@ class Renderer {
   /// For another renderer on it (RendererOptions::on), used by the same thread.
   std::shared_ptr<gpu::Device> shared_device() const { return device_; }
   /// Loads a file and makes it ready to render. On failure throws Error and the former scene stays.
-  /// `changes`: settings that override the scene's.
+  /// `changes`: settings that override the scene's; `outside`: LoadOptions::outside, whatever the options
+  /// say.
   void load(const std::filesystem::path& file, const Progress& progress = {},
-            const std::vector<SettingChange>& changes = {});
+            const std::vector<SettingChange>& changes = {}, bool outside = false);
   /// Likewise, for a scene in memory. Resets the settings (except tracer, path.batch and path.classes), then
   /// applies the scene's, then `changes`.
   void set_scene(std::shared_ptr<const scene::Scene> scene, const Progress& progress = {},

@@ -5,24 +5,40 @@
 namespace lucerna::session {
 namespace {
 
+constexpr uint64_t k_camera = 1;  // Command::replaces
+
+/// The same for steps of a drag of a material's number: the material and its textures.
+uint64_t drag_of(uint32_t material, const std::optional<scene::TextureSources>& textures) {
+  uint64_t key = material;
+  const auto add = [&key](uint64_t value) { key = (key ^ value) * 0x9e3779b97f4a7c15u; };
+  add(textures.has_value());
+  if (textures)
+    for (const auto& [slot, source] : *textures)
+      add(slot), add(uint64_t(source.kind)), add(source.material), add(std::hash<std::string>()(source.file));
+  return key | uint64_t{1} << 63;
+}
+
 /// Sends each command to the session's thread.
 class RenderSession final : public Session {
  public:
   explicit RenderSession(const Options& options) : thread_(options) {}
 
-  void load(const std::filesystem::path& file) override {
+  void load(const std::filesystem::path& file, bool outside) override {
     const uint64_t number = ++thread_.loads;
-    const auto run = [s = &thread_, file, number](Renderer& r) {
+    const auto run = [s = &thread_, file, number, outside](Renderer& r) {
       Timer since;
       const auto goes_on = [&] { return number > s->given_up; };
       try {
-        r.load(file, [&](float fraction, const std::string& what) {
-          if (since.seconds() > 0.05 || fraction == 0) {
-            s->publish_activity(fmt::format("loading {}: {}", file.filename().string(), what), fraction);
-            since.restart();
-          }
-          return goes_on();
-        });
+        r.load(
+            file,
+            [&](float fraction, const std::string& what) {
+              if (since.seconds() > 0.05 || fraction == 0) {
+                s->publish_activity(fmt::format("loading {}: {}", file.filename().string(), what), fraction);
+                since.restart();
+              }
+              return goes_on();
+            },
+            {}, outside);
       } catch (const Error&) {
         if (goes_on()) throw;
         log::info("{}: loading was cancelled", file.string());
@@ -58,7 +74,7 @@ class RenderSession final : public Session {
       r.set_camera(camera);
       s->restarted();
     };
-    thread_.post({.run = run, .subject = "the camera", .scene = scene, .camera = true});
+    thread_.post({.run = run, .subject = "the camera", .scene = scene, .replaces = k_camera});
   }
 
   void set_size(uint32_t width, uint32_t height) override {
@@ -123,10 +139,12 @@ class RenderSession final : public Session {
 
   void set_material(uint32_t index, const scene::Material& material,
                     const std::optional<scene::TextureSources>& textures, SceneId scene) override {
-    edit_surfaces("a material", "changing a material", "the material stays as it was", scene,
-                  [index, material, textures](Renderer& r, const Progress& progress) {
-                    r.set_material(index, material, textures, progress);
-                  });
+    edit_surfaces(
+        "a material", "changing a material", "the material stays as it was", scene,
+        [index, material, textures](Renderer& r, const Progress& progress) {
+          r.set_material(index, material, textures, progress);
+        },
+        drag_of(index, textures));
   }
 
   void set_lights(const LightsEdit& edit, SceneId scene) override {
@@ -328,7 +346,8 @@ class RenderSession final : public Session {
   /// Posts an edit that may have to make the surfaces again: with progress in snapshots if it takes long, and
   /// ended by cancel(). `otherwise`: what is so then.
   void edit_surfaces(const char* subject, const std::string& doing, const std::string& otherwise,
-                     SceneId scene, const std::function<void(Renderer&, const Progress&)>& edit) {
+                     SceneId scene, const std::function<void(Renderer&, const Progress&)>& edit,
+                     uint64_t replaces = 0) {
     const uint64_t number = ++thread_.loads;
     const auto run = [s = &thread_, doing, otherwise, edit, number](Renderer& r) {
       constexpr double k_silent_seconds = 0.3;
@@ -350,7 +369,7 @@ class RenderSession final : public Session {
       }
       if (r.restarts() != before) s->restarted();
     };
-    thread_.post({.run = run, .subject = subject, .scene = scene});
+    thread_.post({.run = run, .subject = subject, .scene = scene, .replaces = replaces});
   }
 
   SessionThread thread_;

@@ -162,7 +162,8 @@ class Session {
   //
   // `scene`: the scene that a command is for, by State::scene_id. If another one has been loaded by its turn,
   // the command is skipped with a warning.
-  virtual void load(const std::filesystem::path& file) = 0;
+  /// `outside`: reads what the scene names outside its folder, whatever the options say.
+  virtual void load(const std::filesystem::path& file, bool outside = false) = 0;
   virtual void set(const std::string& key, const std::string& value, SceneId scene = k_any_scene) = 0;
   /// If several consecutive ones are in the queue, only the last is used; they share one number.
   virtual void set_camera(const scene::Camera& camera, SceneId scene = k_any_scene) = 0;

@@ -212,8 +212,11 @@ TEST_CASE("a spot projects a picture by command; its cone then has a limit") {
   CHECK(scene::solid_angle(b.work.open.light(2)) * double(luminance(b.work.open.light(2).intensity)) ==
         Approx(500));
   CHECK_THAT(b.failure("light.set 3 cone=85"), Contains("cone: with a picture it has at most 80 degrees"));
+  b.run("light.set 3 picture=none");
+  CHECK_FALSE(b.work.open.light(2).picture);
+  CHECK(b.work.history.script().back() == "light.set 3 picture=none");
   REQUIRE(b.settled());
-  for (int i = 0; i < 3; ++i) b.run("undo");
+  for (int i = 0; i < 4; ++i) b.run("undo");
   CHECK(b.work.open.document() == before);
   std::filesystem::remove(file);
 }

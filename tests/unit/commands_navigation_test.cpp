@@ -175,7 +175,7 @@ TEST_CASE("exposure follows replaced daylight, as part of its step") {
   b.run("environment.own");
   b.run("set film.exposure_at_load always");
   const Document before = b.work.open.document();
-  b.run("environment.sky preetham");
+  b.run("environment.sky preetham", 7);  // a control that is held, such as an entry of a list
   REQUIRE(b.until([&] { return ev() == 2.5; }));
   CHECK(b.work.history.script().back() == "set film.ev 2.5");
   b.run("undo");
@@ -189,7 +189,7 @@ TEST_CASE("exposure follows replaced daylight, as part of its step") {
   b.run("environment.sky cie_clear");
   CHECK_FALSE(b.until([&] { return ev() != 1; }, 0.3));
   b.run("set film.ev -1");
-  b.run("sun.set Sun time=11");  // the hour is no reason
+  b.run("sun.set Sun time=11");                      // the hour is no reason
   b.run("environment.sky cie_clear ground=0.3", 5);  // while a value is dragged it stays
   CHECK_FALSE(b.until([&] { return ev() != -1; }, 0.3));
   b.work.run("sun.set Sun turbidity=5");

@@ -700,6 +700,32 @@ TEST_CASE("an environment that the file names is not named twice") {
   }
 }
 
+TEST_CASE("a .glb contains the image of its environment") {
+  Asset a = room();
+  a.doc["scenes"][0]["extras"]["environment"] = {{"file", "sky.png"}, {"scale", 2}};
+  TempFolder folder, other;
+  write_image<uint8_t>(folder / "sky.png", 2, 1, 4, {255, 0, 0, 255, 0, 0, 255, 255});
+  const auto loaded = std::make_shared<const Scene>(load(a.gltf(folder)));
+  REQUIRE(loaded->environment.image != k_none);
+  auto edited = std::make_shared<Scene>(*loaded);
+  SaveRequest request{.loaded = loaded, .edited = edited, .file = other / "b.glb"};
+  CHECK(save(request).notes.empty());
+  const auto back = std::make_shared<const Scene>(load(other / "b.glb"));  // nothing is outside its folder
+  const auto sky = [](const Scene& s) { return std::as_const(s.images)[s.environment.image].floats; };
+  CHECK(sky(*back) == sky(*loaded));
+  CHECK(back->environment.scale == 2);
+  // And again, changed, as both kinds.
+  auto turned = std::make_shared<Scene>(*back);
+  turned->environment.rotation = 30;
+  for (const char* name : {"c.glb", "c.gltf"}) {
+    CAPTURE(name);
+    const Scene again =
+        (save({.loaded = back, .edited = turned, .file = folder / name}), load(folder / name));
+    CHECK(sky(again) == sky(*loaded));
+    CHECK(again.environment.rotation == 30);
+  }
+}
+
 TEST_CASE("a moved lamp that is off is off for other programs too") {
   // The first versions left its intensity in the definition.
   Asset a = room();

@@ -29,7 +29,7 @@ class FakeSession final : public Session {
   std::atomic<int> busy_ms{0};     ///< duration of each command
   std::atomic<int> drawing_ms{0};  ///< duration of the first picture after each command
 
-  void load(const std::filesystem::path& file) override {
+  void load(const std::filesystem::path& file, bool) override {
     post([this, file, number = ++loads_] { open(file, number); });
   }
   /// A light mix named "nonsense" is refused.
@@ -241,7 +241,8 @@ class FakeSession final : public Session {
 
   void post(const std::function<void()>& run, SceneId scene = k_any_scene, bool camera = false) {
     std::lock_guard lock(mutex_);
-    queue_.push({.run = [run](FakeSession&) { run(); }, .subject = {}, .scene = scene, .camera = camera});
+    queue_.push(
+        {.run = [run](FakeSession&) { run(); }, .subject = {}, .scene = scene, .replaces = camera ? 1u : 0u});
     wake_.notify_all();
   }
 

@@ -31,12 +31,12 @@ void read_environment(Document& document, Scene& scene, const Item& item, bool s
   if (environment.scale < 0) item.at("scale").fail("{} is negative", environment.scale);
   environment.rotation = static_cast<float>(std::remainder(item.number("rotation", 0), 360.0));
   if (file) {
-    environment.file = file->text();
+    if (!is_data_uri(file->text())) environment.file = file->text();
     document.progress(0.95f, "environment");
-    Image image = decode_image(read_file(document, resolve_uri(document, *file), file->where()),
-                               environment.file, file->where(), Precision::linear_floats, document.budget);
+    Image image = decode_image(uri_bytes(document, *file), environment.file, file->where(),
+                               Precision::linear_floats, document.budget);
     check_environment_shape(image, file->where());
-    image.name = environment.file;
+    image.name = environment.file.empty() ? "environment" : environment.file;
     if (const size_t mended = mend_texels(image))
       document.warnings.add("{} texel values of the environment that are negative or not finite: replaced",
                             image.name, mended);

@@ -113,7 +113,8 @@ SavedScene save(const SaveRequest& request) {
   write_scene_extras(root, request, folders);
   if (const size_t outside = count_outside(root); outside > count_outside(before))
     saved.notes.push_back(
-        fmt::format("{}: {} files that it names lie outside its folder; opening it needs --allow-outside",
+        fmt::format("{}: {} files that it names lie outside its folder; opening it needs --allow-outside, or "
+                    "scene.open FILE outside=true",
                     where, outside));
   if (!binary && source.has_bin) write_bin(request, root, source.bin());
   // Untouched documents stay as they are, to the byte.

@@ -49,7 +49,9 @@ struct SavedScene {
 /// Writes request.file, completely or not at all.
 /// - .gltf from .gltf: the JSON alone. References are kept right if the folder differs.
 /// - .glb from .glb: the binary chunk is copied.
-/// - .glb from .gltf: buffers, and PNG and JPEG images, are put into the binary chunk.
+/// - .glb from .gltf: buffers, and PNG and JPEG images, are put into the binary chunk; an environment's image
+/// becomes
+///   data in the JSON.
 /// - .gltf from .glb: the binary chunk becomes NAME.bin beside it, written first.
 /// Throws Error located at the file: its folder is missing or cannot be written, the file exists and is
 /// neither the scene's own nor `written`, or it has changed on disk meanwhile (without `replace`); the scene

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <map>
 
+#include "base/base64.h"
 #include "base/file.h"
 #include "scene/io/own_extras.h"
 #include "scene/io/save_parts.h"
@@ -13,17 +14,27 @@ bool same_environment(const Environment& a, const Environment& b) {
          a.file == b.file && a.sky == b.sky;
 }
 
-EditedJson environment_json(const Environment& e, const Environment& loaded, const Folders& folders) {
+/// `own`: what the file has; `embeds`: an image becomes data.
+EditedJson environment_json(const Environment& e, const Environment& loaded, const Folders& folders,
+                            const EditedJson& own, bool embeds) {
   EditedJson json = EditedJson::object();
-  if (e.sky)
+  const bool image = !e.sky && e.image != k_none,
+             is_data = image && e.image == loaded.image && e.file.empty();
+  if (is_data)
+    json["file"] = own.at("file");
+  else if (image && embeds)
+    json["file"] = "data:application/octet-stream;base64," +
+                   base64(lucerna::read_file(e.image == loaded.image ? file_of(e.file, folders.from)
+                                                                     : std::filesystem::path(e.file)));
+  else if (e.sky)
     json["sky"] = {{"kind", name_of(e.sky->kind)},
                    {"turbidity", number_json(e.sky->turbidity)},
                    {"ground", number_json(e.sky->ground)},
                    {"to_sun", vector_json(e.sky->to_sun)},
                    {"unit", "cd/m2"}};
-  else if (e.image != k_none && e.image == loaded.image)
+  else if (image && e.image == loaded.image)
     json["file"] = moved_uri(e.file, folders);  // as the scene names it
-  else if (e.image != k_none)
+  else if (image)
     json["file"] = uri_of(absolute_path(e.file), folders.to);
   else
     json["radiance"] = vector_json(e.radiance);
@@ -32,16 +43,18 @@ EditedJson environment_json(const Environment& e, const Environment& loaded, con
   return json;
 }
 
+/// The environment that the file names; an empty object: none.
+EditedJson own_environment(const EditedJson& scene) {
+  for (const char* path : {"/extras/lucerna/environment", "/extras/environment"})
+    if (const EditedJson::json_pointer pointer(path); scene.contains(pointer) && scene[pointer].is_object())
+      return scene[pointer];
+  return EditedJson::object();
+}
+
 /// True if the file itself says the same, in a way that holds in every folder.
 bool says(const EditedJson& scene, const EditedJson& environment) {
-  const auto extras = scene.find("extras");
-  if (extras == scene.end() || !extras->is_object()) return false;
-  const auto own = extras->find("lucerna");
-  const bool ours = own != extras->end() && own->is_object() && own->contains("environment");
-  const EditedJson& holder = ours ? *own : *extras;
-  if (!holder.contains("environment")) return false;
-  EditedJson named = holder["environment"];
-  if (!named.is_object() || named.contains("file")) return false;
+  EditedJson named = own_environment(scene);
+  if (named.empty() || named.contains("file")) return false;
   if (!named.contains("scale")) named["scale"] = 1;
   if (!named.contains("rotation")) named["rotation"] = 0;
   return std::all_of(environment.items().begin(), environment.items().end(), [&](const auto& item) {
@@ -64,7 +77,8 @@ void write_scene_extras(EditedJson& root, const SaveRequest& request, const Fold
   // Elsewhere there is no settings.json to name it.
   const bool elsewhere = after.given && !folders.same();
   if (elsewhere || !same_environment(before, after)) {
-    EditedJson environment = environment_json(after, before, folders);
+    EditedJson environment = environment_json(after, before, folders, own_environment(default_scene(root)),
+                                              request.file.extension() == ".glb");
     if (!elsewhere || !says(default_scene(root), environment))
       set_own(default_scene(root), "environment", std::move(environment));
   }

@@ -40,13 +40,15 @@ void write_scene_extras(EditedJson& root, const SaveRequest& request, const Fold
 /// The URI, relative to the new folder, of a file that `uri` names from the old one (as resolve_uri() reads
 /// it). Data, absolute paths and other schemes stay.
 std::string moved_uri(const std::string& uri, const Folders& folders);
+/// The file that a relative URI names: percent-decoded, or as written if only that exists.
+std::filesystem::path file_of(const std::string& uri, const std::filesystem::path& folder);
 /// The relative URI of a file.
 std::string uri_of(const std::filesystem::path& file, const std::filesystem::path& folder);
 /// Makes all references of the document relative to the new folder: of buffers, images, extensions and
 /// extras.environment.
 void move_uris(EditedJson& root, const Folders& folders);
 /// Number of references to files outside the document's folder.
-size_t count_outside(EditedJson& root);
+size_t count_outside(EditedJson root);
 
 /// Puts buffers, and PNG and JPEG images, into one binary chunk, which is returned. Images that cannot be
 /// read, or may not (SaveRequest::outside), keep their URIs. Files are read from folders.from. Throws Error

@@ -21,12 +21,6 @@ bool is_elsewhere(const std::string& uri) {
   return colon != std::string::npos && uri[colon] == ':' && colon > 1;
 }
 
-/// The file that a relative URI names: percent-decoded, or as written if only that exists.
-fs::path file_of(const std::string& uri, const fs::path& folder) {
-  const fs::path decoded = folder / percent_decode(uri);
-  return !file_exists(decoded) && file_exists(folder / uri) ? folder / uri : decoded;
-}
-
 std::string percent_encoded(const std::string& path) {
   std::string uri;
   for (const char c : path) {
@@ -185,6 +179,11 @@ class Embedding {
 
 }  // namespace
 
+fs::path file_of(const std::string& uri, const fs::path& folder) {
+  const fs::path decoded = folder / percent_decode(uri);
+  return !file_exists(decoded) && file_exists(folder / uri) ? folder / uri : decoded;
+}
+
 std::string uri_of(const fs::path& file, const fs::path& folder) {
   return percent_encoded(file.lexically_relative(folder).generic_string());
 }
@@ -199,8 +198,13 @@ void move_uris(EditedJson& root, const Folders& folders) {
   for_each_uri(root, [&](EditedJson& uri) { uri = moved_uri(uri.get<std::string>(), folders); });
 }
 
-size_t count_outside(EditedJson& root) {
+size_t count_outside(EditedJson root) {
   size_t outside = 0;
+  // An environment that another one overrides is not read.
+  if (const auto scenes = root.find("scenes"); scenes != root.end())
+    for (EditedJson& scene : *scenes)
+      if (scene.contains(EditedJson::json_pointer("/extras/lucerna/environment")))
+        scene["extras"].erase("environment");
   for_each_uri(root, [&](const EditedJson& uri) { outside += uri.get<std::string>().starts_with("../"); });
   return outside;
 }
