@@ -25,14 +25,17 @@ EditedScene copy_of(const ScenePtr& scene, const char* thing) {
   return std::make_shared<scene::Scene>(*scene);
 }
 
+bool has_material(const scene::Primitive& p, uint32_t material) {
+  return p.material == material ||
+         std::find(p.variants.begin(), p.variants.end(), material) != p.variants.end();
+}
+
 /// Tangents for the surfaces of a material that needs them, where the file had no reason to give any.
 void add_tangents(scene::Scene& scene, uint32_t index) {
   const scene::Material& m = scene.materials[index];
   if (!scene::needs_tangents(m)) return;
   const auto lacks = [index](const scene::Primitive& p) {
-    const bool has_it =
-        p.material == index || std::find(p.variants.begin(), p.variants.end(), index) != p.variants.end();
-    return has_it && p.tangents.empty();
+    return has_material(p, index) && p.tangents.empty();
   };
   const scene::TextureUse& map = m.normal_texture             ? m.normal_texture
                                  : m.clearcoat_normal_texture ? m.clearcoat_normal_texture
@@ -41,6 +44,15 @@ void add_tangents(scene::Scene& scene, uint32_t index) {
     for (size_t k = 0; k < std::as_const(scene.meshes)[i].primitives.size(); ++k)
       if (lacks(std::as_const(scene.meshes)[i].primitives[k]))
         scene::make_tangents(scene.meshes[i].primitives[k], map);
+}
+
+/// Throws Error if a surface of the material cannot show a texture, which glTF does not allow either.
+void check_coordinates(const scene::Scene& scene, uint32_t material, uint32_t uv_set) {
+  for (const scene::Mesh& mesh : scene.meshes)
+    for (const scene::Primitive& p : mesh.primitives)
+      if (has_material(p, material) && (uv_set == 0 ? p.uv0 : p.uv1).empty())
+        throw_error(fmt::format("material '{}'", scene.materials[material].name),
+                    "mesh '{}' has it and no texture coordinates, so it cannot show a texture", mesh.name);
 }
 
 /// The texture of the edited scene that shows the file, read if there is none; wrapped as the own one.
@@ -115,6 +127,9 @@ EditedScene with_material(const ScenePtr& scene, const scene::Scene& loaded, uin
     const scene::TextureSource& source = scene::source_of(textures, s);
     scene::TextureUse& use = m.*scene::k_texture_slots[s].use;
     use = scene::use_of(loaded, index, s, source);
+    if (source.kind == scene::TextureSource::Kind::file ||
+        (source.kind == scene::TextureSource::Kind::material && use))
+      check_coordinates(*edited, index, use.uv_set);
     if (source.kind == scene::TextureSource::Kind::file)
       use.texture = texture_of_file(*edited, loaded, source.file, scene::k_texture_slots[s], use, most_bytes);
   }

@@ -204,6 +204,16 @@ TEST_CASE("textures that cannot be read change nothing") {
   CHECK_THAT(failure("gone.png"), Contains("gone.png: cannot be read"));
   CHECK_THAT(failure("text.png"), Contains("text.png: is neither PNG nor JPEG"));
   CHECK_THAT(failure("cut.png"), Contains("cut.png"));
+  scene::Scene bare = before;
+  for (scene::Mesh& mesh : bare.meshes)
+    for (scene::Primitive& p : mesh.primitives)
+      if (p.material == k_block) p.uv0.clear();
+  Bench flat(bare);
+  write_picture(folder / "wood.png");
+  for (const scene::TextureSource& source : {scene::TextureSource{Kind::file, (folder / "wood.png").string()},
+                                             scene::TextureSource{Kind::material, "", 0}})
+    CHECK_THROWS_WITH(flat.r.set_material(k_block, bare.materials[k_block], {{{k_base, source}}}),
+                      Contains("mesh 'box' has it and no texture coordinates"));
   CHECK_THROWS_WITH(
       edited.r.set_material(k_block, before.materials[k_block], {{{k_base, {Kind::material, "", 9}}}}),
       Contains("there is no material 9"));

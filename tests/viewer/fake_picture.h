@@ -90,6 +90,7 @@ inline scene::Scene make_scene(const std::filesystem::path& file) {
   box.name = "room";
   scene::Primitive p;
   p.positions = {{-3, 0, -4}, {3, 0, -4}, {3, 3, 4}};
+  p.uv0 = {{0, 0}, {1, 0}, {1, 1}};
   p.triangles = {{0, 1, 2}};
   box.primitives.push_back(p);
   scene.meshes.push_back(box);
