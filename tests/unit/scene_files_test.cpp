@@ -72,10 +72,11 @@ TEST_CASE("files outside the scene's folder are read only if allowed") {
 
 TEST_CASE("a buffer, an environment or settings outside the folder are reported as errors") {
   const Bed bed;
-  CHECK(
-      failure(bed.gltf("textures/red.png", "../a.bin")) ==
-      (bed.scene / "a.gltf").string() + ": buffers[0].uri: '" + (bed.scene / "../a.bin").string() +
-          "' is not in the scene's folder and is not read; --allow-outside reads what scenes name elsewhere");
+  CHECK(failure(bed.gltf("textures/red.png", "../a.bin")) ==
+        (bed.scene / "a.gltf").string() + ": buffers[0].uri: '" + (bed.scene / "../a.bin").string() +
+            "' is not in the scene's folder and is not read; --allow-outside reads what scenes name "
+            "elsewhere, as "
+            "scene.open FILE outside=true does in the window");
   CHECK_NOTHROW(scene::load(bed.scene / "a.gltf", {.outside = true}));
 
   const fs::path file = bed.gltf("textures/red.png");

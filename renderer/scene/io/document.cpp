@@ -231,11 +231,10 @@ void require_inside(const Document& document, const std::filesystem::path& file,
   const std::filesystem::path target = error ? folder : real(file);
   const auto parted = std::mismatch(folder.begin(), folder.end(), target.begin(), target.end());
   if (!error && parted.first == folder.end() && parted.second != target.end()) return;
-  throw OutsideFolder(where,
-                      fmt::format("'{}' is not in the scene's folder and is not read; --allow-outside, "
-                                  "or in the window scene.open FILE outside=true, reads what a scene "
-                                  "names elsewhere",
-                                  file.string()));
+  throw OutsideFolder(where, fmt::format("'{}' is not in the scene's folder and is not read; --allow-outside "
+                                         "reads what scenes name elsewhere, as scene.open FILE outside=true "
+                                         "does in the window",
+                                         file.string()));
 }
 
 std::filesystem::path resolve_uri(const Document& document, const Item& item) {
