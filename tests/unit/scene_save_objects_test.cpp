@@ -133,14 +133,18 @@ TEST_CASE("objects in every position read back exactly, and nodes have right ang
                    .turned = 180.0f * vec3(f(4), f(5), f(6)),
                    .scaled = vec3(1.2f + f(7), 1.2f + f(8), 1.2f + f(9))});
     check_same(b.saved(), *b.edited);
-    for (const json& n : b.document()["nodes"]) {
+    const json doc = b.document();
+    size_t matrices = 0;
+    for (const json& n : doc["nodes"]) {
       if (!n.contains("matrix")) continue;
+      ++matrices;
       glm::dmat3 m;
       for (int c = 0; c < 3; ++c)
         for (int r = 0; r < 3; ++r) m[c][r] = n["matrix"][size_t(4 * c + r)].get<double>();
       for (int c = 0; c < 3; ++c)
         CHECK(std::abs(glm::dot(glm::normalize(m[c]), glm::normalize(m[(c + 1) % 3]))) < 2e-5);
     }
+    CHECK(matrices > 0);
   }
 }
 
