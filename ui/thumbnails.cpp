@@ -29,7 +29,7 @@ PictureBytes thumbnail(const std::string& file) {
 
 }  // namespace
 
-Thumbnails::Thumbnails(std::function<void()> made) : made_(std::move(made)), thread_([this] { run(); }) {}
+Thumbnails::Thumbnails(std::function<void()> made) : made_(std::move(made)) {}
 
 Thumbnails::~Thumbnails() {
   {
@@ -37,13 +37,14 @@ Thumbnails::~Thumbnails() {
     quit_ = true;
   }
   wake_.notify_one();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
 }
 
 const PictureBytes* Thumbnails::get(const std::string& file) {
   std::lock_guard lock(mutex_);
   const auto [place, fresh] = pictures_.try_emplace(file);
   if (fresh) {
+    if (!thread_.joinable()) thread_ = std::thread([this] { run(); });
     wanted_.push_back(file);
     wake_.notify_one();
   }

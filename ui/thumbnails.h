@@ -34,7 +34,7 @@ class Thumbnails {
   bool quit_ = false;
   std::deque<std::string> wanted_;                                 ///< the newest last
   std::map<std::string, std::unique_ptr<PictureBytes>> pictures_;  ///< null: wanted, or cannot be read
-  std::thread thread_;
+  std::thread thread_;                                             ///< from the first request on
 };
 
 }  // namespace lucerna::ui

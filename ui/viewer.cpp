@@ -267,7 +267,6 @@ class Viewer {
   }
 
   ViewerOptions options_;
-  Thumbnails thumbnails_{[] { Window::wake(); }};
   std::map<std::string, unsigned> textures_;  ///< of image files; 0: cannot be read
   LogInbox inbox_;
   Ui ui_;
@@ -277,6 +276,7 @@ class Viewer {
   std::vector<std::string> settings_;
   Window window_;
   TextureCache pictures_{window_};
+  Thumbnails thumbnails_{[] { Window::wake(); }};  // its thread ends before the window
   std::string title_;
   bool fresh_picture_ = false;
   double last_draw_ = -1, last_present_ = 0, hovering_since_ = -10;

@@ -256,19 +256,30 @@ std::string spaced(std::string name) {
 }
 
 void add_dialog_commands(Ui& ui, const Add& add) {
-  add(
-      "dialog.open", "Opens the dialog to open a scene.", {},
-      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::open); }, false);
-  add(
-      "dialog.save", "Opens the dialog to save the picture.", {},
-      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::save); }, false);
-  add(
-      "dialog.scene", "Opens the dialog to save the scene.", {},
-      [&ui](const Arguments&) {
-        ui.open.needs_scene();
-        ui.start_dialog(Dialog::Purpose::scene);
-      },
-      false);
+  using Purpose = Dialog::Purpose;
+  const auto opens = [&](const std::string& name, const std::string& what, Purpose purpose,
+                         const solvers::SolverInfo* solver = nullptr) {
+    add(
+        "dialog." + name, fmt::format("Opens the dialog to {}.", what), {},
+        [&ui, purpose, solver](const Arguments&) {
+          if (purpose == Purpose::scene || purpose == Purpose::environment) ui.open.needs_scene();
+          ui.start_dialog(purpose, solver);
+        },
+        false);
+  };
+  opens("open", "open a scene", Purpose::open);
+  opens("save", "save the picture", Purpose::save);
+  opens("scene", "save the scene", Purpose::scene);
+  opens("environment", "light the scene by an image", Purpose::environment);
+  opens("reference", "load a reference", Purpose::reference);
+  opens("held", "hold the picture of a file", Purpose::held);
+  opens("script", "save the session as a script", Purpose::script);
+  opens("test", "save the session as a test", Purpose::test);
+  for (const solvers::SolverInfo* solver : solvers::registered()) {
+    if (!solver->file) continue;
+    opens(solver->name + "_load", "load " + solver->file->content, Purpose::solver_load, solver);
+    opens(solver->name + "_save", "save " + solver->file->content, Purpose::solver_save, solver);
+  }
   add(
       "window.close", "Closes the window; asks what to do with edits that are not saved.", {},
       [&ui](const Arguments&) { ui.leave(""); }, false);
@@ -276,13 +287,6 @@ void add_dialog_commands(Ui& ui, const Add& add) {
       "window.open",
       "Opens a scene, as scene.open does; asks first what to do with edits that are not saved.", {{"file"}},
       [&ui](const Arguments& a) { ui.leave(a.text("file")); }, false);
-  add(
-      "dialog.environment", "Opens the dialog to light the scene by an image.", {},
-      [&ui](const Arguments&) {
-        ui.open.needs_scene();
-        ui.start_dialog(Dialog::Purpose::environment);
-      },
-      false);
   std::vector<std::string> slots;
   for (const scene::TextureSlot& slot : scene::k_texture_slots) slots.emplace_back(slot.name);
   add(
@@ -315,29 +319,6 @@ void add_dialog_commands(Ui& ui, const Add& add) {
                     : std::vector<std::string>{".png", ".jpg", ".jpeg", ".exr", ".hdr"});
       },
       false);
-  add(
-      "dialog.reference", "Opens the dialog to load a reference.", {},
-      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::reference); }, false);
-  add(
-      "dialog.held", "Opens the dialog to hold the picture of a file.", {},
-      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::held); }, false);
-  for (const solvers::SolverInfo* solver : solvers::registered()) {
-    if (!solver->file) continue;
-    add(
-        "dialog." + solver->name + "_load",
-        fmt::format("Opens the dialog to load {}.", solver->file->content), {},
-        [&ui, solver](const Arguments&) { ui.start_dialog(Dialog::Purpose::solver_load, solver); }, false);
-    add(
-        "dialog." + solver->name + "_save",
-        fmt::format("Opens the dialog to save {}.", solver->file->content), {},
-        [&ui, solver](const Arguments&) { ui.start_dialog(Dialog::Purpose::solver_save, solver); }, false);
-  }
-  add(
-      "dialog.script", "Opens the dialog to save the session as a script.", {},
-      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::script); }, false);
-  add(
-      "dialog.test", "Opens the dialog to save the session as a test.", {},
-      [&ui](const Arguments&) { ui.start_dialog(Dialog::Purpose::test); }, false);
   add(
       "dismiss", "Closes the dialog, or otherwise the newest message over the picture.", {},
       [&ui](const Arguments&) {

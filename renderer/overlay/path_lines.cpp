@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "shaders/shared/ramp.h"
@@ -13,26 +14,11 @@ using recording::Event;
 
 namespace {
 
-/// Component of the brightest light that is reached over each event; k_no_component: none.
-std::vector<uint8_t> components_beyond(std::span<const Event> events) {
-  std::vector<uint8_t> component(events.size(), paths::k_no_component);
-  std::vector<float> most(events.size(), 0);
-  for (size_t i = events.size(); i-- > 0;) {
-    const Event& e = events[i];
-    // A blocked light sample has its component, too.
-    if (recording::component_of(e) < paths::k_component_count && luminance(e.contribution) > most[i])
-      most[i] = luminance(e.contribution), component[i] = uint8_t(recording::component_of(e));
-    if (recording::kind_of(e) != k_path_blocked && e.parent < i && most[i] > most[e.parent])
-      most[e.parent] = most[i], component[e.parent] = component[i];
-  }
-  return component;
-}
-
 /// The event whose light is the brightest that is reached over each event; its own number if none is.
 std::vector<uint32_t> brightest_beyond(std::span<const Event> events) {
   std::vector<uint32_t> of(events.size());
   std::vector<float> most(events.size(), 0);
-  for (size_t i = 0; i < of.size(); ++i) of[i] = uint32_t(i);
+  std::iota(of.begin(), of.end(), 0u);
   for (size_t i = events.size(); i-- > 0;) {
     const Event& e = events[i];
     if (recording::contributes_light(e) && luminance(e.contribution) > most[i])
@@ -55,20 +41,18 @@ class Strokes {
  public:
   Strokes(const recording::Recording& recording, const PathLinesStyle& style, double brightest)
       : recording_(recording), style_(style), brightest_(brightest) {
-    if (style.color == PathColor::word) words_ = brightest_words(recording);
+    if (style.color == PathColor::word) all_.words = brightest_words(recording);
     if (style.color == PathColor::time)
       for (const recording::Path& path : recording.paths)
-        slowest_ = std::max(slowest_, recording::time_of(recording.events_of(path), recording.times));
+        all_.slowest = std::max(all_.slowest, recording::time_of(recording.events_of(path), recording.times));
   }
 
   void add(uint32_t path) {
     const std::span<const Event> events = recording_.events_of(recording_.paths[path]);
-    const std::vector<uint8_t> component = components_beyond(events);
+    const std::vector<uint32_t> beyond = brightest_beyond(events);
     const vec3 by_light = contribution_ink(brightest_ > 0 ? recording::luminance_of(events) / brightest_ : 0);
     const double time = style_.color == PathColor::time ? recording::time_of(events, recording_.times) : 0;
-    const vec3 by_time = time_ink(slowest_ > 0 ? time / slowest_ : 0);
-    std::vector<uint32_t> beyond;
-    if (style_.color == PathColor::word) beyond = brightest_beyond(events);
+    const vec3 by_time = time_ink(all_.slowest > 0 ? time / all_.slowest : 0);
     const bool followed = style_.path == int(path), faint = style_.path >= 0 && !followed;
     for (uint32_t i = 0; i < events.size(); ++i) {
       const Event& e = events[i];
@@ -77,7 +61,7 @@ class Strokes {
       if (kind == k_path_end && !marked) continue;
       const bool blocked = kind == k_path_blocked;
       vec3 ink = event_ink(e);
-      if (style_.color == PathColor::component && !blocked) ink = component_ink(component[i]);
+      if (style_.color == PathColor::component && !blocked) ink = ink_of_component(events[beyond[i]]);
       if (style_.color == PathColor::contribution && !blocked) ink = by_light;
       if (style_.color == PathColor::time && !blocked) ink = by_time;
       if (style_.color == PathColor::word && !blocked) ink = ink_of_word(events, beyond[i]);
@@ -103,11 +87,16 @@ class Strokes {
   PathStrokes take() { return std::move(all_); }
 
  private:
+  static vec3 ink_of_component(const Event& light) {
+    const bool lit = recording::contributes_light(light) && luminance(light.contribution) > 0;
+    return component_ink(lit ? recording::component_of(light) : paths::k_no_component);
+  }
+
   vec3 ink_of_word(std::span<const Event> events, uint32_t event) const {
     if (!recording::contributes_light(events[event])) return word_ink(std::size(k_word_inks));
-    const auto found = std::find(words_.begin(), words_.end(), recording::word_of(events, event));
-    return found == words_.end() ? word_ink(std::size(k_word_inks))
-                                 : word_ink(size_t(found - words_.begin()));
+    const auto found = std::find(all_.words.begin(), all_.words.end(), recording::word_of(events, event));
+    return found == all_.words.end() ? word_ink(std::size(k_word_inks))
+                                     : word_ink(size_t(found - all_.words.begin()));
   }
 
   void point(const vec3& at, const vec3& ink, float half_width, float alpha) {
@@ -121,8 +110,7 @@ class Strokes {
 
   const recording::Recording& recording_;
   const PathLinesStyle& style_;
-  double brightest_, slowest_ = 0;
-  std::vector<std::string> words_;
+  double brightest_;
   PathStrokes all_;
 };
 

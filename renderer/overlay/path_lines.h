@@ -20,6 +20,8 @@ struct PathLinesStyle {
 struct PathStrokes {
   std::vector<shared::OverlayPoint> points;
   std::vector<shared::OverlaySegment> segments;
+  std::vector<std::string> words;  ///< by word: brightest_words()
+  double slowest = 0;              ///< by time: that of the slowest path [us]
 };
 
 /// Draws at most the brightest k_most_drawn_paths paths. Blocked light samples are dark.

@@ -8,16 +8,8 @@
 namespace lucerna::session {
 namespace {
 
-/// From none to the slowest path's time.
-std::vector<solvers::Legend::Tick> time_ticks(const recording::Recording& recording) {
-  double slowest = 0;
-  for (const recording::Path& path : recording.paths)
-    slowest = std::max(slowest, recording::time_of(recording.events_of(path), recording.times));
-  return {
-      {0, "0"}, {0.5f, fmt::format("{:.3g}", 0.5 * slowest)}, {1, fmt::format("{:.3g} \xC2\xB5s", slowest)}};
-}
-
-solvers::Legend legend_of(const recording::Recording& recording, overlay::PathColor color) {
+solvers::Legend legend_of(const recording::Recording& recording, overlay::PathColor color,
+                          const overlay::PathStrokes& strokes) {
   solvers::Legend legend{.title = fmt::format("{} recorded paths", recording.paths.size())};
   switch (color) {
     case overlay::PathColor::event:
@@ -38,16 +30,17 @@ solvers::Legend legend_of(const recording::Recording& recording, overlay::PathCo
       legend.ticks = {{0, "0.1 %"}, {1.f / 3, "1 %"}, {2.f / 3, "10 %"}, {1, "brightest"}};
       legend.note = "Colour: light of the path, over that of the brightest.";
       break;
-    case overlay::PathColor::word: {
-      const std::vector<std::string> words = overlay::brightest_words(recording);
-      for (size_t w = 0; w < words.size(); ++w) legend.marks.push_back({overlay::word_ink(w), words[w]});
+    case overlay::PathColor::word:
+      for (size_t w = 0; w < strokes.words.size(); ++w)
+        legend.marks.push_back({overlay::word_ink(w), strokes.words[w]});
       legend.marks.push_back({overlay::word_ink(SIZE_MAX), "others, or no light"});
       legend.note = "Colour: way of the brightest light that a ray leads to, from the eye E to the light L.";
       break;
-    }
     case overlay::PathColor::time:
       legend.ramp = shared::k_ramp_viridis;
-      legend.ticks = time_ticks(recording);
+      legend.ticks = {{0, "0"},
+                      {0.5f, fmt::format("{:.3g}", 0.5 * strokes.slowest)},
+                      {1, fmt::format("{:.3g} \xC2\xB5s", strokes.slowest)}};
       legend.note = "Colour: time of the path, by the mean time of a ray in this picture.";
       break;
   }
@@ -65,7 +58,7 @@ void PathsView::draw(const overlay::Canvas& canvas, const ShownPaths& shown, con
       *shown.of, {.color = color, .path = shown.path, .vertex = shown.vertex, .slack = 1e-3f * radius});
   painter_.draw(canvas, strokes.points, strokes.segments, {}, {.dimmed = true});
   solvers::Report report{.solver = "paths"};
-  report.legends.push_back(legend_of(*shown.of, color));
+  report.legends.push_back(legend_of(*shown.of, color, strokes));
   report.figures = {{"paths", double(shown.of->paths.size())},
                     {"events", double(shown.of->events.size())},
                     {"lost", double(shown.of->lost())},

@@ -8,6 +8,7 @@
 #include "session/renderer.h"
 #include "support/device.h"
 #include "support/folder.h"
+#include "support/render.h"
 #include "support/rooms.h"
 
 namespace hand_edits_tests {
@@ -25,10 +26,9 @@ struct Bench {
                 {{"samples", "4", ""}, {"path.batch", "2048", ""}, {"path.max_depth", "6", ""}});
   }
   film::Image image() {
-    while (r.step()) {
-    }
+    film::Image image = test::finish(r);
     REQUIRE(r.done());
-    return r.image();
+    return image;
   }
 };
 

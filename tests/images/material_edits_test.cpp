@@ -10,6 +10,7 @@
 #include "session/renderer.h"
 #include "support/device.h"
 #include "support/folder.h"
+#include "support/render.h"
 #include "support/rooms.h"
 
 namespace material_edits_tests {
@@ -50,10 +51,9 @@ struct Bench {
     r.set_scene(std::make_shared<scene::Scene>(s), {}, set);
   }
   film::Image image() {
-    while (r.step()) {
-    }
+    film::Image image = test::finish(r);
     REQUIRE(r.done());
-    return r.image();
+    return image;
   }
 };
 
@@ -61,9 +61,8 @@ bool same(const film::Image& a, const film::Image& b) { return a.components == b
 
 double mean(const film::Image& image) {
   double sum = 0;
-  for (const auto& component : image.components)
-    for (const vec3& x : component) sum += double{luminance(x)};
-  return sum / double(image.samples.size());
+  for (const auto& component : image.components) sum += test::mean(component);
+  return sum;
 }
 
 std::filesystem::path write_picture(const std::filesystem::path& file, uint32_t size = 4) {

@@ -11,6 +11,7 @@
 #include "scene/object_place.h"
 #include "session/renderer.h"
 #include "support/device.h"
+#include "support/render.h"
 #include "support/rooms.h"
 
 namespace objects_tests {
@@ -32,10 +33,9 @@ struct Bench {
     r.set_scene(std::make_shared<scene::Scene>(s), {}, all);
   }
   film::Image image() {
-    while (r.step()) {
-    }
+    film::Image image = test::finish(r);
     REQUIRE(r.done());
-    return r.image();
+    return image;
   }
 };
 

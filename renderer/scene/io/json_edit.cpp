@@ -89,6 +89,12 @@ EditedJson& object_at(EditedJson& parent, const char* key) {
   return member;
 }
 
+EditedJson& array_at(EditedJson& parent, const char* key) {
+  EditedJson& list = parent[key];
+  if (!list.is_array()) list = EditedJson::array();
+  return list;
+}
+
 void remove_from(EditedJson& parent, const char* object, const char* key) {
   const auto found = parent.find(object);
   if (found == parent.end() || !found->is_object()) return;
@@ -97,8 +103,7 @@ void remove_from(EditedJson& parent, const char* object, const char* key) {
 }
 
 EditedJson& extension_at(EditedJson& root, EditedJson& parent, const char* name) {
-  EditedJson& used = root["extensionsUsed"];
-  if (!used.is_array()) used = EditedJson::array();
+  EditedJson& used = array_at(root, "extensionsUsed");
   if (std::find(used.begin(), used.end(), name) == used.end()) used.push_back(name);
   return object_at(object_at(parent, "extensions"), name);
 }
@@ -136,14 +141,10 @@ EditedJson& default_scene(EditedJson& root) {
 }
 
 size_t add_root_node(EditedJson& root, EditedJson node) {
-  EditedJson& nodes = root["nodes"];
-  if (!nodes.is_array()) nodes = EditedJson::array();
-  const size_t index = nodes.size();
+  const size_t index = array_at(root, "nodes").size();
   EditedJson& scene = default_scene(root);
   root["nodes"].push_back(std::move(node));
-  EditedJson& roots = scene["nodes"];
-  if (!roots.is_array()) roots = EditedJson::array();
-  roots.push_back(index);
+  array_at(scene, "nodes").push_back(index);
   return index;
 }
 

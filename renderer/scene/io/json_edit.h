@@ -22,6 +22,8 @@ glm::dvec3 unit_within(const vec3& direction);
 
 /// The member, an object: made if it is missing. Another value is kept as its member "value".
 EditedJson& object_at(EditedJson& parent, const char* key);
+/// The member, an array: made in place of anything else.
+EditedJson& array_at(EditedJson& parent, const char* key);
 /// Removes a member, and the object if it is then empty.
 void remove_from(EditedJson& parent, const char* object, const char* key);
 /// parent.extensions[name], an object, made if it is missing; notes the extension in extensionsUsed.

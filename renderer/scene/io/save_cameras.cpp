@@ -94,8 +94,7 @@ bool holds_camera_only(const EditedJson& root, size_t index) {
 
 void write_cameras(EditedJson& root, const dvec3& origin, const std::vector<Camera>& cameras) {
   for (const Camera& camera : cameras) {
-    EditedJson& list = root["cameras"];
-    if (!list.is_array()) list = EditedJson::array();
+    EditedJson& list = array_at(root, "cameras");
     const auto old = find_camera_node(root, camera.name);
     if (old && holds_camera_only(root, *old)) {
       EditedJson& node = root["nodes"][*old];

@@ -87,11 +87,7 @@ class LightWriter {
 
  private:
   EditedJson& node(size_t index) { return root_["nodes"][index]; }
-  EditedJson& definitions() {
-    EditedJson& list = extension_at(root_, root_, k_punctual)["lights"];
-    if (!list.is_array()) list = EditedJson::array();
-    return list;
-  }
+  EditedJson& definitions() { return array_at(extension_at(root_, root_, k_punctual), "lights"); }
   EditedJson& reference(size_t index) { return node(index)["extensions"][k_punctual]["light"]; }
 
   void remove(Id index) {
@@ -236,8 +232,7 @@ class LightWriter {
   void refer_to_profile(EditedJson& n, const Light& light, bool fresh, bool off) {
     const auto [color, strength] = split_strength(light.intensity);
     if (fresh) {
-      EditedJson& list = extension_at(root_, root_, k_ies)["lights"];
-      if (!list.is_array()) list = EditedJson::array();
+      EditedJson& list = array_at(extension_at(root_, root_, k_ies), "lights");
       const auto [place, is_new] = written_.try_emplace(light.profile, list.size());
       if (is_new)
         list.push_back({{"uri", "data:application/x-ies-lm-63;base64," + base64(light.profile->text)},

@@ -111,8 +111,7 @@ void write_layers(EditedJson& root, EditedJson& m, const Material& before, const
 
 /// A material in place of glTF's default one, on all primitives without a material.
 size_t add_default_material(EditedJson& root, const std::string& name) {
-  EditedJson& list = root["materials"];
-  if (!list.is_array()) list = EditedJson::array();
+  EditedJson& list = array_at(root, "materials");
   list.push_back({{"name", name}});
   for (EditedJson& mesh : root["meshes"])
     for (EditedJson& primitive : mesh["primitives"])
@@ -205,8 +204,7 @@ class TextureWriter {
   }
 
   size_t append(const char* list, EditedJson item) {
-    EditedJson& all = root_[list];
-    if (!all.is_array()) all = EditedJson::array();
+    EditedJson& all = array_at(root_, list);
     all.push_back(std::move(item));
     return all.size() - 1;
   }

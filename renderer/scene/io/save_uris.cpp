@@ -148,8 +148,7 @@ class Embedding {
       const std::string mime = mime_type(bytes);
       if (mime.empty()) continue;
       const size_t start = append(bytes);
-      EditedJson& views = root_["bufferViews"];
-      if (!views.is_array()) views = EditedJson::array();
+      EditedJson& views = array_at(root_, "bufferViews");
       views.push_back({{"buffer", 0}, {"byteOffset", start}, {"byteLength", bytes.size()}});
       const size_t view = views.size() - 1;
       EditedJson& image = root_["images"][i];
