@@ -16,8 +16,12 @@ void Exposure::measure(std::optional<vec2> at) { measure(at, Reason::request); }
 
 void Exposure::measure(std::optional<vec2> at, Reason reason, uint64_t step) {
   failure_.clear();
-  measuring_ = Measuring{open_.session.measure(at, open_.id()), at.has_value(),         reason, step,
-                         camera_.view_scene,                    open_.setting("film.ev")};
+  measuring_ = Measuring{open_.session.measure(at, open_.id()),
+                         at.has_value(),
+                         reason,
+                         step,
+                         camera_.view_scene,
+                         open_.setting("film.ev")};
 }
 
 bool Exposure::allowed(bool interactive) const {

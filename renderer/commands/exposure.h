@@ -1,6 +1,6 @@
 #pragma once
-// Measurements of the picture's brightness that set the exposure: on request, for a scene that sets none, and after
-// edits that replace daylight.
+// Measurements of the picture's brightness that set the exposure: on request, for a scene that sets none, and
+// after edits that replace daylight.
 #include <functional>
 #include <future>
 #include <optional>
@@ -34,8 +34,8 @@ class Exposure {
   /// A scene has been shown.
   void begin_scene();
   /// Call after an edit that replaces daylight, whose strength can be of another order of magnitude. `step`:
-  /// History::position() after it. Measures the picture if film.exposure_at_load allows it; the result counts if the
-  /// present exposure is more than k_tolerated_ev from it and was not changed meanwhile.
+  /// History::position() after it. Measures the picture if film.exposure_at_load allows it; the result counts
+  /// if the present exposure is more than k_tolerated_ev from it and was not changed meanwhile.
   void daylight_replaced(bool interactive, uint64_t step);
   static constexpr float k_tolerated_ev = 2;
   /// Measures a new scene's picture if it is due and the setting film.exposure_at_load allows it;

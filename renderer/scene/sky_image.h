@@ -16,8 +16,8 @@ void check_range(const SkyModel& sky, const std::string& where = "sky");
 ///   1999, appendix A.2: luminance and chromaticity by Perez' formula. Fitted for a sun above the horizon.
 /// - cie_clear: ISO 15469:2004 / CIE S 011, equations 1 to 3, type 12; cie_overcast: type 16, (1 + 2 sin
 ///   elevation) / 3 of the zenith. Both white, and scaled to the illuminance of a horizontal plane that the
-///   IES Lighting Handbook gives: 800 + 15500 sqrt(sin e) lx clear, 300 + 21000 sin e lx overcast, at the sun's
-///   elevation e.
+///   IES Lighting Handbook gives: 800 + 15500 sqrt(sin e) lx clear, 300 + 21000 sin e lx overcast, at the
+///   sun's elevation e.
 class Sky {
  public:
   explicit Sky(const SkyModel& model);

@@ -39,7 +39,8 @@ void read_own_section(const Item& camera, Camera& result);
 /// {"kind": "preetham", "turbidity": 3, "ground": 0.2, "to_sun": [x, y, z], "unit": "cd/m2"}; "cie_clear",
 /// "cie_overcast".
 SkyModel read_sky(const Item& item);
-/// Factor on Sky::radiance() by its "unit": 1 for "cd/m2"; 0.001 for "kcd/m2", and without one, as first versions wrote it.
+/// Factor on Sky::radiance() by its "unit": 1 for "cd/m2"; 0.001 for "kcd/m2", and without one, as first
+/// versions wrote it.
 float sky_unit(const Item& item);
 /// Its name in files and commands.
 const char* name_of(SkyKind kind);
