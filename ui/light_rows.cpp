@@ -364,9 +364,12 @@ void light_label(Controls& controls, SceneView& view, size_t i, const scene::Lig
   tooltip("Group of the light in the light mix. The command light.group makes new groups.");
 }
 
-/// Buttons below a selected light.
-void list_buttons(Controls& controls, size_t i, const scene::Light& light) {
+/// Buttons below a selected light. `highlighting`: the next click places its highlight.
+void list_buttons(Controls& controls, size_t i, const scene::Light& light, bool highlighting) {
   const bool sun = light.kind == scene::LightKind::directional, spot = commands::can_be_aimed(light);
+  if (button("##highlight", "Place its highlight by a click", highlighting, ImGui::CalcItemWidth()))
+    controls.act("light.highlighting", !highlighting);
+  tooltip("The next click in the picture moves the light so that its reflection is there.");
   const float third = (ImGui::CalcItemWidth() - px(8)) / 3;
   if (button("##duplicate", "Duplicate", false, third)) controls.act("light.duplicate", i + 1);
   tooltip("Adds a copy beside it and selects it.");
@@ -450,7 +453,7 @@ void draw_light_rows(Controls& controls, const commands::Navigation& camera, Sce
       light_details(controls.actions, camera.core, i, light);
       if (sun) sun_details(controls, i, light);
       light_label(controls, view, i, light);
-      list_buttons(controls, i, light);
+      list_buttons(controls, i, light, view.highlighting);
     }
     ImGui::PopID();
     gap(4);

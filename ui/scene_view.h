@@ -34,6 +34,7 @@ struct SceneView {
   std::map<std::string, std::string> swatches;  ///< the user's own: words of material.set, by name
   std::string swatch_name;                      ///< of one to keep, as typed so far
   bool focusing = false;                        ///< the next click in the picture sets the plane of focus
+  bool highlighting = false;  ///< the next click in the picture places the selected light's highlight
 
   /// True if the selection is new since the last call and was not made in the list: its row must be scrolled
   /// into view.

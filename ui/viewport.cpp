@@ -35,7 +35,7 @@ bool Viewport::cancel_drag() {
 }
 
 void Viewport::take_click() {
-  dropper = scene_view.focusing = region.picks = false;
+  dropper = scene_view.focusing = scene_view.highlighting = region.picks = false;
   paths.pick = PathsView::Pick::none;
   paths.marquee.reset(), region.marquee.reset();
 }
@@ -45,6 +45,8 @@ bool Viewport::give_up_click() {
     controls.act("exposure.dropper", false);
   else if (scene_view.focusing)
     controls.act("camera.focusing", false);
+  else if (scene_view.highlighting)
+    controls.act("light.highlighting", false);
   else if (paths.pick != PathsView::Pick::none)
     controls.act("paths.pick", "none");
   else if (region.picks)
@@ -271,8 +273,8 @@ void follow_object_drag(Viewport& v, bool active) {
     send_place(v.controls.actions, v.work.open, drag, v.rebuild, v.work.now);
 }
 
-/// A click selects the light whose mark is under it, otherwise the object. With the dropper it sets the
-/// exposure, and while focusing the plane of focus.
+/// A click selects the light whose mark or highlight is under it, otherwise the object. With the dropper it
+/// sets the exposure, while focusing the plane of focus, while highlighting the place of a highlight.
 void click(Viewport& v, const Area& shown) {
   const ImVec2 at = ImGui::GetIO().MousePos;
   if (closes_region(v.work.open, shown, at)) return v.controls.act("region.clear");
@@ -288,6 +290,10 @@ void click(Viewport& v, const Area& shown) {
   } else if (v.scene_view.focusing) {
     v.controls.act("camera.focusing", false);
     v.controls.act("camera.focus", place.x, place.y);
+  } else if (v.scene_view.highlighting) {
+    v.controls.act("light.highlighting", false);
+    if (v.work.camera.selection.kind == commands::Kind::light)
+      v.controls.act("light.highlight", v.work.camera.selection.index + 1, place.x, place.y);
   } else if (v.paths.pick == PathsView::Pick::pixel) {
     v.controls.act("paths.pick", "none");
     trace_pixel(v.controls.actions, v.paths, place);

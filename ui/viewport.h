@@ -52,10 +52,11 @@ struct Viewport {
 
   // What the pointer does in it.
   bool dropper = false;  ///< the next click sets the exposure
-  /// True if the next click does not select: it sets the exposure or the plane of focus, traces paths, or
-  /// begins a rectangle.
+  /// True if the next click does not select: it sets the exposure or the plane of focus, places a highlight,
+  /// traces paths, or begins a rectangle.
   bool click_taken() const {
-    return dropper || scene_view.focusing || paths.pick != PathsView::Pick::none || region.picks;
+    return dropper || scene_view.focusing || scene_view.highlighting || paths.pick != PathsView::Pick::none ||
+           region.picks;
   }
   /// Makes the next click select again.
   void take_click();

@@ -173,6 +173,18 @@ void add_picture_commands(Ui& ui, const Add& add) {
       },
       false);
   add(
+      "light.highlighting",
+      "Makes the next click in the picture move the selected light so that its highlight is there.", {on()},
+      [&ui](const Arguments& a) {
+        const bool light = ui.work.camera.selection.kind == commands::Kind::light;
+        if (a.boolean("on") && !light) throw Error("", "select a light first");
+        ui.viewport.take_click();
+        ui.scene_view.highlighting = a.boolean("on");
+        if (ui.scene_view.highlighting)
+          ui.cards.notice("Click where the light's highlight shall be. Esc cancels.");
+      },
+      false);
+  add(
       "paths.pick",
       "Makes the next click in the picture trace the paths of a pixel, or the next drag explain the noise of "
       "a "

@@ -5,6 +5,7 @@
 
 #include "base/error.h"
 #include "commands/command_list.h"
+#include "commands/highlight.h"
 #include "commands/lens.h"
 #include "commands/workspace.h"
 #include "session/pick.h"
@@ -202,6 +203,15 @@ void add_camera_commands(Registry& registry, const OpenScene& open, Navigation& 
                 .moves = true});
 }
 
+/// Light or emissive material whose highlight or reflection is at a point of the picture.
+Selection light_at(Workspace& work, float right, float down) {
+  const session::Probe* probe = work.camera.probe();
+  if (!probe) return {};
+  return light_in_highlight(*probe, work.open.lights(),
+                            session::pick_ray(work.camera.view->camera, right, down, work.camera.aspect),
+                            std::exp2(static_cast<float>(work.open.setting_real("film.ev"))));
+}
+
 void add_selection_commands(Workspace& work) {
   work.registry.add(
       {.name = "select",
@@ -222,17 +232,24 @@ void add_selection_commands(Workspace& work) {
        }});
   work.registry.add(
       {.name = "pick",
-       .help = "Selects the object at a point of the picture, or its material if the object is selected "
-               "already; clears "
-               "the selection if there is none.",
+       .help =
+           "Selects the light whose highlight or reflection is at a point of the picture; without one, or "
+           "if that is selected already, the object there, or its material if the object is selected "
+           "already. Clears the selection if there is none.",
        .parameters = {{.name = "right", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture widths"},
                       {.name = "down", .type = Type::real, .lo = 0, .hi = 1, .unit = "picture heights"}},
        .run =
            [&work](const Arguments& a) {
              const Navigation& camera = work.camera;
              work.open.needs_scene(), camera.needs_view();
-             const auto hit = session::pick(*work.open.scene, camera.view->camera, a.number("right"),
-                                            a.number("down"), camera.aspect);
+             const float right = a.number("right"), down = a.number("down");
+             const Selection lit = light_at(work, right, down);
+             if (lit.kind != Kind::none && lit != camera.selection) {
+               work.run(line(lit.kind == Kind::light ? "select light" : "select material", lit.index + 1));
+               return;
+             }
+             const auto hit =
+                 session::pick(*work.open.scene, camera.view->camera, right, down, camera.aspect);
              if (!hit) {
                if (camera.selection.kind != Kind::none) work.run("select.none");
                return;

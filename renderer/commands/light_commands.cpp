@@ -3,6 +3,7 @@
 
 #include "base/error.h"
 #include "commands/command_list.h"
+#include "commands/highlight.h"
 #include "commands/light_placement.h"
 #include "commands/light_words.h"
 #include "commands/sky_follow.h"
@@ -234,6 +235,30 @@ void add_light_place_commands(Workspace& work) {
                light.position += a.vector("by");
              else
                light.position = a.has("to") ? a.vector("to") : off_surface(room_of(work));
+           },
+       .undoable = true});
+  const auto place = [](const char* name, const char* unit) {
+    return Parameter{.name = name, .type = Type::real, .lo = 0, .hi = 1, .unit = unit};
+  };
+  work.registry.add(
+      {.name = "light.highlight",
+       .help = "Moves a light so that its highlight is at a point of the picture: a lamp keeps its distance "
+               "from the surface there if the room has it, a sun loses its date. A light with a direction is "
+               "aimed at the surface.",
+       .parameters = {which_light(work.open), place("right", "picture widths"),
+                      place("down", "picture heights")},
+       .run =
+           [&work](const Arguments& a) {
+             scene::Light& light = work.open.edit().lights[work.open.light_index(a.text("light"))];
+             work.camera.needs_view();
+             const session::Probe* probe = work.camera.probe(true);
+             if (!probe) throw Error("", "the scene's surfaces are not known");
+             const scene::Light before = light;
+             place_highlight(*probe,
+                             session::pick_ray(work.camera.view->camera, a.number("right"), a.number("down"),
+                                               work.camera.aspect),
+                             light);
+             follow_sun(work.open, before, light);
            },
        .undoable = true});
 }

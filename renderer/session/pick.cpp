@@ -1,41 +1,12 @@
 #include "session/pick.h"
 
-#include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "scene/projection.h"
+#include "session/picked_surface.h"
 
 namespace lucerna::session {
 namespace {
-
-float wrapped(float u, scene::Wrap wrap) {
-  switch (wrap) {
-    case scene::Wrap::clamp:
-      return std::clamp(u, 0.0f, 1.0f);
-    case scene::Wrap::mirror:
-      return std::abs(std::remainder(u, 2.0f));
-    case scene::Wrap::repeat:
-      break;
-  }
-  return u - std::floor(u);
-}
-
-float texture_alpha(const scene::Scene& s, const scene::TextureUse& use, const vec2& uv) {
-  const scene::Texture& texture = s.textures[use.texture];
-  if (texture.image >= s.images.size()) return 1;
-  const scene::Image& image = s.images[texture.image];
-  if (image.width == 0 || image.height == 0) return 1;
-  const auto& m = use.m;
-  float u = m[0] * uv.x + m[1] * uv.y + m[2], v = m[3] * uv.x + m[4] * uv.y + m[5];
-  if (!std::isfinite(u) || !std::isfinite(v)) return 1;
-  u = wrapped(u, texture.wrap_u), v = wrapped(v, texture.wrap_v);
-  const auto column = std::min(static_cast<uint32_t>(u * static_cast<float>(image.width)), image.width - 1);
-  const auto row = std::min(static_cast<uint32_t>(v * static_cast<float>(image.height)), image.height - 1);
-  const size_t texel = (size_t{row} * image.width + column) * 4 + 3;
-  if (texel < image.bytes.size()) return static_cast<float>(image.bytes[texel]) / 255;
-  return texel < image.floats.size() ? image.floats[texel] : 1;
-}
 
 /// True if a ray is stopped at barycentric coordinates (a, b) of the second and third vertex.
 bool stops(const scene::Scene& s, const scene::Primitive& p, const uvec3& t, float a, float b) {
@@ -46,7 +17,7 @@ bool stops(const scene::Scene& s, const scene::Primitive& p, const uvec3& t, flo
   if (m.base_color_texture) {
     const std::vector<vec2>& uv = m.base_color_texture.uv_set == 1 ? p.uv1 : p.uv0;
     if (!uv.empty())
-      alpha *= texture_alpha(s, m.base_color_texture, (1 - a - b) * uv[t.x] + a * uv[t.y] + b * uv[t.z]);
+      alpha *= texel_at(s, m.base_color_texture, (1 - a - b) * uv[t.x] + a * uv[t.y] + b * uv[t.z]).w;
   }
   return alpha >= (m.alpha_mode == scene::AlphaMode::mask ? m.alpha_cutoff : 0.5f);
 }

@@ -1,6 +1,6 @@
 // links: base
-// Scripts of tests/screenshots, in one program: pictures of views and panels, and what they state. Only those
-// that take seconds; all are run by `lucerna script tests/screenshots/*.lucerna`.
+// Scripts of tests/screenshots in a window (each is run without one by the test screenshots.NAME), and what a
+// failure leaves.
 #include <fmt/format.h>
 
 #include <filesystem>
@@ -11,11 +11,11 @@ namespace screenshots_tests {
 
 using namespace lucerna;
 
-TEST_CASE("scripts of tests/screenshots pass") {
+TEST_CASE("scripts pass in a window, several in one program") {
   if (test::no_program()) return;
   const test::Folder folder;
   std::string command = std::string(LUCERNA_BINARY) + " script";
-  for (const char* script : {"console", "dialogs", "errors", "exposure", "layers"})
+  for (const char* script : {"dialogs", "errors", "exposure"})
     command += fmt::format(" tests/screenshots/{}.lucerna", script);
   const auto outcome =
       test::run(test::with_display(command + " --device cpu --report " + folder.path.string() + "/report"));
