@@ -214,7 +214,8 @@ void report_unseen(session::Renderer& r) {
 }
 
 nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
-  const auto means = film::Film::means(r.image());
+  const film::Image image = r.image();
+  const auto means = film::Film::means(image);
   nlohmann::ordered_json j;
   j["version"] = LUCERNA_VERSION;
   j["scene"] = r.scene()->file;
@@ -254,6 +255,12 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
                              {"ms", r.stats().component_ms[c]}};
     if (!r.choices()[size_t(c)].reason.empty())
       j["components"][name]["reason"] = r.choices()[size_t(c)].reason;
+  }
+  for (const session::LayerStatus& layer : r.layer_status(image)) {
+    j["layers"][layer.name] = {{"expression", layer.expression},
+                               {"mean_radiance", {layer.mean.x, layer.mean.y, layer.mean.z}},
+                               {"share", layer.share}};
+    if (!layer.lacks.empty()) j["layers"][layer.name]["lacks"] = layer.lacks;
   }
   return j;
 }

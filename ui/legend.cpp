@@ -286,11 +286,20 @@ Area draw_legend(const commands::OpenScene& open, bool light_marks, const Area& 
     blocks.push_back(heat_block(picture.legend));
   const std::vector<solvers::Legend> own =
       window_legends(picture.legend, light_marks, open.setting_on("overlay.former") && shows_former(picture));
+  std::vector<solvers::Legend> of_layer;
+  for (const session::LayerStatus& layer : picture.layers)
+    if (layer.name == open.setting("film.layer"))
+      of_layer.push_back(
+          {.title = layer.name,
+           .note = fmt::format(
+               "Light of the paths {}.{}", layer.expression,
+               layer.lacks.empty() ? "" : " Part of its " + layer.lacks + " light is not known.")});
   const auto add = [&](const solvers::Legend& legend) {
     blocks.push_back({legend.title, legend.note, body_height(legend),
                       [&legend](ImDrawList* list, const ImVec2& at) { draw_body(list, at, legend); }});
   };
   std::for_each(own.begin(), own.end(), add);
+  std::for_each(of_layer.begin(), of_layer.end(), add);
   for (const auto& report : picture.reports)
     std::for_each(report->legends.begin(), report->legends.end(), add);
   if (!picture.coarse && picture.tiles && picture.accuracy) blocks.push_back(tiles_block(*picture.accuracy));

@@ -64,7 +64,9 @@ ImU32 layer_mark(const std::string& layer) {
   return 0;
 }
 
-std::string layer_help(const std::string& layer) {
+const std::vector<session::LayerStatus> k_no_layers;
+
+std::string layer_help(const commands::OpenScene& open, const std::string& layer) {
   if (layer == "beauty") return "Shows the sum of the components whose eye is on.";
   if (layer_mark(layer)) return fmt::format("Shows the {} component.", layer);
   if (layer == "albedo") return "Shows the reflectance of the first surface.";
@@ -73,6 +75,11 @@ std::string layer_help(const std::string& layer) {
   if (layer == "samples") return "Shows the samples taken in each pixel.";
   if (layer == "error") return "Shows the estimated error as seen: relative to the surrounding light.";
   if (layer == "cost") return "Shows the device time of each pixel's paths.";
+  for (const session::LayerStatus& own : open.snapshot ? open.snapshot->layers : k_no_layers)
+    if (own.name == layer)
+      return fmt::format("Shows the light of the paths {}: {:.1f} % of the picture's.{}", own.expression,
+                         100 * own.share,
+                         own.lacks.empty() ? "" : " Part of its " + own.lacks + " light is not known.");
   return fmt::format("Shows the layer {}.", layer);
 }
 
@@ -80,7 +87,9 @@ std::string layer_help(const std::string& layer) {
 void layer_buttons(Actions& actions, const commands::OpenScene& open, float room) {
   const OptionInfo* option = plan::find_option("film.layer");
   if (!option) return;
-  const std::vector<std::string>& layers = option->choices;
+  std::vector<std::string> layers = option->choices;
+  if (open.snapshot)
+    for (const session::LayerStatus& own : open.snapshot->layers) layers.push_back(own.name);
   const std::string& current = open.setting("film.layer");
   const float between = px(4);
   float list_width = px(96);
@@ -108,7 +117,7 @@ void layer_buttons(Actions& actions, const commands::OpenScene& open, float room
     if (button(("##layer" + layers[i]).c_str(), letter ? name.substr(0, 1) : name, layers[i] == current,
                letter ? px(26) : width_of(layers[i]), layer_mark(layers[i])))
       actions.act("set", "film.layer", layers[i]);
-    tooltip(layer_help(layers[i]));
+    tooltip(layer_help(open, layers[i]));
     ImGui::SameLine(0, between);
   }
   if (fitting < layers.size()) {

@@ -130,7 +130,8 @@ void OptionValues::set(const std::string& key, const std::string& value, const s
   double number = 0;
   switch (option->type) {
     case OptionType::choice:
-      if (std::find(option->choices.begin(), option->choices.end(), value) == option->choices.end())
+      if (!option->other_names &&
+          std::find(option->choices.begin(), option->choices.end(), value) == option->choices.end())
         throw_error(where, "{} = '{}': expected one of {}", key, value, fmt::join(option->choices, ", "));
       break;
     case OptionType::boolean:

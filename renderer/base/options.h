@@ -21,6 +21,7 @@ struct OptionInfo {
   double lo = 0, hi = 0;             ///< integer and real, inclusive
   std::string unit;                  ///< "EV", "samples", "" ...
   std::vector<std::string> choices;  ///< choice
+  bool other_names = false;          ///< choice: names defined by another setting are valid too
   std::string help;                  ///< one sentence
   std::string label;                 ///< beside its control in the window; "": made from the key
   bool restarts = true;              ///< a change restarts the picture (false: display only, or it continues)
@@ -69,7 +70,7 @@ class OptionValues {
   double real(const std::string& key) const;
   int64_t integer(const std::string& key) const { return static_cast<int64_t>(real(key)); }
   bool boolean(const std::string& key) const { return values_.at(key) == "true"; }
-  /// Index into OptionInfo::choices.
+  /// Index into OptionInfo::choices; their number for another name (OptionInfo::other_names).
   int choice(const std::string& key) const;
   const std::map<std::string, std::string>& all() const { return values_; }
 

@@ -18,12 +18,13 @@ Developer::Developer(gpu::Device& device, gpu::ShaderCompiler& compiler)
 
 void Developer::develop(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse) {
   film.bind(resources_);
-  if (view.layer >= k_layer_samples) {
+  if (view.layer >= k_layer_samples && view.layer < k_layer_first_own) {
     const HeatScale& h = view.heat;
     const HeatPush push{film.width(), film.height(), view.layer, h.ramp, h.logarithmic, h.lo, h.hi, h.unit};
     stream.dispatch(heat_, resources_, push, groups(film));
     return;
   }
+  if (view.layer >= k_layer_first_own) film.bind_layer(resources_, view.layer - k_layer_first_own);
   resources_.set("Coarse", coarse ? coarse->picture() : no_coarse_);
   const TonePush push{film.width(),
                       film.height(),
@@ -39,14 +40,20 @@ void Developer::develop(gpu::Stream& stream, const Film& film, const View& view,
 }
 
 gpu::Kernel& Developer::tonemap_kernel(const View& view) {
-  if (!view.display_lut) return tonemap_;
-  if (!tonemap_by_lut_)
-    tonemap_by_lut_ = gpu::Kernel(device_, compiler_, "film/tonemap.comp", {{"LUCERNA_DISPLAY_LUT", "1"}});
-  resources_.set("DisplayLut", *view.display_lut);
-  return tonemap_by_lut_;
+  const bool own = view.layer >= k_layer_first_own, by_lut = view.display_lut != nullptr;
+  if (by_lut) resources_.set("DisplayLut", *view.display_lut);
+  if (!own && !by_lut) return tonemap_;
+  gpu::Kernel& kernel = tonemaps_[{own, by_lut}];
+  if (!kernel)
+    kernel =
+        gpu::Kernel(device_, compiler_, "film/tonemap.comp",
+                    {{"LUCERNA_DISPLAY_LUT", by_lut ? "1" : "0"}, {"LUCERNA_FILM_LAYER", own ? "1" : "0"}});
+  return kernel;
 }
 
 void Developer::tone_map(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse) {
+  // The coarse film has no layers by path expressions.
+  if (view.layer >= k_layer_first_own) coarse = nullptr;
   if (coarse) develop(stream, *coarse, view, nullptr);
   develop(stream, film, view, coarse);
   draw_tiles(stream, film, view, film.picture(), 1);

@@ -35,7 +35,8 @@ class Developer {
   gpu::Device& device_;
   gpu::ShaderCompiler& compiler_;
   gpu::Kernel tonemap_, heat_, tiles_;
-  gpu::Kernel tonemap_by_lut_;  ///< for views with a display_lut; compiled at the first use
+  /// For views of layers by path expressions, and with a display_lut; compiled at the first use.
+  std::map<std::pair<bool, bool>, gpu::Kernel> tonemaps_;
   std::map<std::pair<bool, uint32_t>, gpu::Kernel> mixes_;  ///< by Film::is_compact and curve
   gpu::Buffer no_coarse_;
   gpu::Resources resources_;

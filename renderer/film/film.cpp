@@ -19,17 +19,18 @@ constexpr uint64_t k_coarse_pixels = shared::k_coarse_step * shared::k_coarse_st
 
 }  // namespace
 
-uint64_t sum_bytes(uint32_t groups, GroupStorage kept) {
+uint64_t sum_bytes(uint32_t groups, GroupStorage kept, uint32_t layers) {
   constexpr uint64_t k_all = k_components * k_sum_bytes;
   // As in the help of relight.enabled and in README.md.
   static_assert(k_all == 192 && k_all + sizeof(shared::GroupLight) == 200 && sizeof(shared::GroupSums) == 16);
-  if (groups <= 1) return k_all;
-  return k_all + groups * (kept == GroupStorage::compact ? sizeof(shared::GroupSums)
-                                                         : k_all + sizeof(shared::GroupLight));
+  const uint64_t own = k_all + layers * k_sum_bytes;
+  if (groups <= 1) return own;
+  return own + groups * (kept == GroupStorage::compact ? sizeof(shared::GroupSums)
+                                                       : k_all + sizeof(shared::GroupLight));
 }
 
 void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, uint32_t groups,
-                GroupStorage kept) {
+                GroupStorage kept, uint32_t layers) {
   const gpu::Limits& limits = device.limits;
   const uint64_t pixels = uint64_t(width) * height;
   if (pixels == 0) throw Error("size", "a picture needs at least one pixel");
@@ -41,7 +42,7 @@ void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, 
   const uint64_t texels =
       std::max<uint64_t>(k_sum_bytes / 16, groups > 1 && kept == GroupStorage::compact ? groups : 0);
   const uint64_t largest = std::min({limits.max_texel_elements / texels, limits.max_storage_buffer / 4,
-                                     memory / (k_pixel_bytes + sum_bytes(groups, kept) + coarse)});
+                                     memory / (k_pixel_bytes + sum_bytes(groups, kept, layers) + coarse)});
   if (pixels > largest)
     throw_error(
         "size", "{}x{} is {} pixels; this device can hold at most {} (for example {}x{}){}", width, height,
@@ -60,14 +61,18 @@ Film::Sums Film::make_sums() const {
   return sums;
 }
 
-Film::Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups, GroupStorage kept)
+Film::Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups, GroupStorage kept,
+           uint32_t layers)
     : width_(width), height_(height), groups_(std::max(1u, groups)), kept_(kept), device_(device) {
   const gpu::Limits& limits = device.info().limits;
   const uint64_t pixels = uint64_t(width) * height;
-  check_size(device.info(), width, height, groups, kept);
+  check_size(device.info(), width, height, groups, kept, layers);
   const uint64_t short_sums = is_compact() ? pixels * groups * sizeof(shared::GroupSums) : 0;
   fits_storage_buffers_ = std::max(pixels * k_sum_bytes, short_sums) <= limits.max_storage_buffer;
   sums_ = make_sums();
+  for (uint32_t l = 0; l < layers; ++l)
+    layers_.emplace_back(device,
+                         gpu::BufferDesc{.name = "film layer", .bytes = pixels * k_sum_bytes, .texel = true});
   for (uint32_t g = 0; groups > 1 && !is_compact() && g < groups; ++g) group_sums_.push_back(make_sums());
   group_short_ = gpu::Buffer(device, {.name = "sums by group", .bytes = short_sums, .texel = true});
   light_mix_ = gpu::Buffer(
@@ -137,6 +142,7 @@ std::span<const shared::BlockError> Film::errors() const {
 
 void Film::clear(gpu::Stream& stream) {
   for (gpu::Buffer& b : sums_) stream.fill(b, 0);
+  for (gpu::Buffer& b : layers_) stream.fill(b, 0);
   for (Sums& sums : group_sums_)
     for (gpu::Buffer& b : sums) stream.fill(b, 0);
   if (is_compact()) stream.fill(group_short_, 0);
@@ -190,6 +196,10 @@ void Film::bind_group(gpu::Resources& r, uint32_t group) const {
     r.set(names[c][0] + std::string("_out"), sums);
     r.set(names[c][1], sums);
   }
+}
+
+void Film::bind_layer(gpu::Resources& r, uint32_t layer) const {
+  for (const char* name : {"film_layer", "film_layer_out", "FilmLayer"}) r.set(name, layers_.at(layer));
 }
 
 void Film::set_mix(std::span<const vec3> weights) {
@@ -305,6 +315,11 @@ Image Film::read() const {
     sums_[c].read(halves.data(), halves.size() * sizeof(shared::FilmHalf));
     take_means(halves, ratios, image.samples, image.components[c], &image.odd_half[c]);
   }
+  image.layers.resize(layers_.size());
+  for (size_t l = 0; l < layers_.size(); ++l) {
+    layers_[l].read(halves.data(), halves.size() * sizeof(shared::FilmHalf));
+    take_means(halves, ratios, image.samples, image.layers[l], nullptr);
+  }
   std::vector<vec4> plane(n);
   albedo_.read(plane.data(), n * 16);
   std::vector<float> hits(n);
@@ -324,15 +339,26 @@ Image Film::read() const {
   return image;
 }
 
+namespace {
+/// Mean of a layer over the pixels with samples.
+vec3 mean_of(const std::vector<vec3>& layer, const std::vector<uint32_t>& samples) {
+  glm::dvec3 sum(0);
+  size_t pixels = 0;
+  for (size_t i = 0; i < samples.size(); ++i)
+    if (samples[i]) sum += glm::dvec3(layer[i]), ++pixels;
+  return vec3(sum / double(std::max<size_t>(1, pixels)));
+}
+}  // namespace
+
 std::array<vec3, k_components> Film::means(const Image& image) {
   std::array<vec3, k_components> means{};
-  for (int c = 0; c < k_components; ++c) {
-    glm::dvec3 sum(0);
-    size_t pixels = 0;
-    for (size_t i = 0; i < image.samples.size(); ++i)
-      if (image.samples[i]) sum += glm::dvec3(image.components[c][i]), ++pixels;
-    means[c] = vec3(sum / double(std::max<size_t>(1, pixels)));
-  }
+  for (int c = 0; c < k_components; ++c) means[c] = mean_of(image.components[c], image.samples);
+  return means;
+}
+
+std::vector<vec3> Film::layer_means(const Image& image) {
+  std::vector<vec3> means;
+  for (const auto& layer : image.layers) means.push_back(mean_of(layer, image.samples));
   return means;
 }
 

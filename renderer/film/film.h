@@ -24,6 +24,7 @@ struct Image {
   std::vector<vec3> albedo, normal;                        ///< normal: unit or 0
   std::vector<float> depth;  ///< metres along the view axis, mean of hits; 0: none
   std::vector<uint32_t> samples;
+  std::vector<std::vector<vec3>> layers;  ///< radiance of the layers by path expressions
 };
 
 /// The scale of a heat map: the layers samples, error (relative, of a pixel's block) and cost (device time of
@@ -36,7 +37,7 @@ struct HeatScale {
 };
 
 struct View {
-  uint32_t layer = 0;  ///< shared::k_layer_*
+  uint32_t layer = 0;  ///< shared::k_layer_*, or k_layer_first_own + the number of a layer by path expression
   uint32_t show = 15;  ///< components in the beauty layer
   uint32_t curve = 0;  ///< tone curve
   float exposure = 1;  ///< factor
@@ -66,18 +67,20 @@ inline constexpr uint32_t k_max_side = 32768;
 
 /// Throws Error, naming the largest size that fits, unless a picture of that size can be allocated: no side
 /// beyond k_max_side, no plane beyond one binding of the device, and everything within the device's free
-/// memory. `groups`: separate light groups.
+/// memory. `groups`: separate light groups; `layers`: by path expressions.
 void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, uint32_t groups = 1,
-                GroupStorage kept = GroupStorage::by_component);
-/// Bytes of the sums per pixel: of the picture and, if there are several, of the light groups.
-uint64_t sum_bytes(uint32_t groups, GroupStorage kept = GroupStorage::by_component);
+                GroupStorage kept = GroupStorage::by_component, uint32_t layers = 0);
+/// Bytes of the sums per pixel: of the picture, of layers and, if there are several, of the light groups.
+uint64_t sum_bytes(uint32_t groups, GroupStorage kept = GroupStorage::by_component, uint32_t layers = 0);
 
 class Film {
  public:
   /// `groups`: separate light groups (shaders/shared/lanes.h), 1 to shared::k_most_groups; the picture is
-  /// then their mix. Throws Error like check_size, or if memory is short.
+  /// then their mix. `layers`: number of layers by path expressions (paths/layers.h). Throws Error like
+  /// check_size, or if memory is short.
   Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups = 1,
-       GroupStorage kept = GroupStorage::by_component);
+       GroupStorage kept = GroupStorage::by_component, uint32_t layers = 0);
+  uint32_t layers() const { return static_cast<uint32_t>(layers_.size()); }
   uint32_t groups() const { return groups_; }
   GroupStorage group_storage() const { return kept_; }
   /// True if it stores several groups with all components together.
@@ -102,6 +105,8 @@ class Film {
   void bind(gpu::Resources& resources) const;
   /// Sums of a group, if stored by component.
   void bind_group(gpu::Resources& resources, uint32_t group) const;
+  /// Sums of a layer, as film_layer.
+  void bind_layer(gpu::Resources& resources, uint32_t layer) const;
   /// Sums of a component: two halves a pixel (shared::FilmHalf), before the mix.
   const gpu::Buffer& sums(uint32_t component) const { return sums_.at(component); }
   /// Takes surfaces and counts of samples of another film of the same size. Records; the stream is not run.
@@ -132,6 +137,8 @@ class Film {
   std::vector<vec3> read_group_sum(uint32_t group) const;
   /// Mean radiance of each component over the picture's sampled pixels.
   static std::array<vec3, k_components> means(const Image& image);
+  /// Likewise of the layers by path expressions.
+  static std::vector<vec3> layer_means(const Image& image);
   /// Sets the marks of the tile overlay: one per tile, in raster order; at most one per block.
   void mark_tiles(std::span<const shared::TileMark> marks);
   const gpu::Buffer& picture() const { return picture_; }
@@ -148,6 +155,7 @@ class Film {
   using Sums = std::array<gpu::Buffer, k_components>;
   Sums make_sums() const;
   Sums sums_;
+  std::vector<gpu::Buffer> layers_;
   std::vector<Sums> group_sums_;  // by component; empty with one group, whose sums are the picture's
   gpu::Buffer group_short_;       // GroupSums of compact groups
   gpu::Buffer light_mix_, group_light_;

@@ -160,10 +160,17 @@ void add_display_options(std::vector<OptionInfo>& list) {
       "DISPLAY: VIEW of the OpenColorIO configuration that the environment variable OCIO names, in place of "
       "the tone curve, in the window and in PNG files; without a view the display's default one. Empty: the "
       "tone curve, as after a choice of one. Errors as seen follow what is shown.")));
-  list.push_back(without_restart(choice_option("film.layer", "beauty",
-                                               {"beauty", "primary", "secondary", "tertiary", "caustic",
-                                                "albedo", "normal", "depth", "samples", "error", "cost"},
-                                               "", "Layer shown and written to PNG files.")));
+  OptionInfo layer = choice_option("film.layer", "beauty",
+                                   {"beauty", "primary", "secondary", "tertiary", "caustic", "albedo",
+                                    "normal", "depth", "samples", "error", "cost"},
+                                   "", "Layer shown and written to PNG files; also one of film.layers.");
+  layer.other_names = true;
+  list.push_back(without_restart(std::move(layer)));
+  list.push_back(text_option(
+      "film.layers",
+      "Layers of light by path expressions, beside the components: NAME = EXPRESSION, NAME = EXPRESSION. "
+      "Words begin with E at the eye, have D, G or S for a diffuse, glossy or specular event, and end with L "
+      "at the light: mirrored = ESD.*L, glow = ED[SG]*DL."));
   list.push_back(without_restart(boolean_option(
       "overlay.tiles", "false", "Draws active tiles and the ratio of their error to the target.")));
   list.push_back(without_restart(

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "base/timer.h"
 #include "solvers/registry.h"
 #include "transport/vertex_hooks.h"
@@ -103,6 +104,27 @@ solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
           .provided = provided,
           .consuming = consuming,
           .effects = effects};
+}
+
+paths::LayerSet layer_set(const paths::Automaton& automaton, const plan::Settings& settings) {
+  const std::string& text = settings.text("film.layers");
+  if (text.empty()) return {};
+  // Names of layers and first parts of names in EXR files.
+  std::vector<std::string> reserved = plan::find_option("film.layer")->choices;
+  for (const char* name : {"R", "G", "B", "A", "N", "Z", "odd", "filtered", "light", "lookup"})
+    reserved.emplace_back(name);
+  return {automaton, text, reserved};
+}
+
+void check_shown_layer(const paths::LayerSet& layers, const plan::Settings& settings) {
+  const std::string& name = settings.text("film.layer");
+  const std::vector<std::string>& choices = plan::find_option("film.layer")->choices;
+  if (std::find(choices.begin(), choices.end(), name) != choices.end() ||
+      layers.index_of(name) < layers.size())
+    return;
+  std::vector<std::string> names = choices;
+  for (const paths::Layer& layer : layers.layers()) names.push_back(layer.name);
+  throw_error("film.layer", "there is no layer '{}'; there are {}", name, fmt::join(names, ", "));
 }
 
 Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
@@ -235,6 +257,7 @@ void Engine::begin(const PictureView& picture, const scene::Changes& changes,
     });
   missed_.clear();
   made_for_.lights = upload::light_separation(picture.world.flat);
+  set_layers(picture);
   begun_settings_ = picture.settings.all();
   // A new engine has learned nothing of its world.
   const bool learned = wavefront_->learning() && std::exchange(begun_, true);
@@ -243,6 +266,24 @@ void Engine::begin(const PictureView& picture, const scene::Changes& changes,
     wavefront_->forget_learned(upload::make_light_clusters(picture.world.flat));
   route(picture.settings, picture.world.flat.effects);  // with the components delegated now
   wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
+}
+
+void Engine::set_layers(const PictureView& picture) {
+  const std::vector<paths::Layer> before = layers_.layers();
+  layers_ = layer_set(automaton_, picture.settings);
+  const std::vector<uint32_t> unknown_before = std::exchange(layers_unknown_, {});
+  if (layers_.size() == 0) return;
+  // Of all lookups, whether or not components are delegated to paths for now.
+  const solvers::Routing all = routing(plan_, picture.settings, picture.world.flat.effects);
+  const paths::LayerSet::Routed routed = layers_.routed(all.lookups, all.gather);
+  layers_unknown_ = routed.unknown;
+  wavefront_->set_layers(routed.table);
+  for (uint32_t l = 0; l < layers_.size(); ++l)
+    if (layers_unknown_[l] != 0 && (layers_.layers() != before || layers_unknown_ != unknown_before))
+      log::warning(
+          "film.layers: '{}' lacks light of the {} component, whose solver stores the light of several "
+          "words together; path tracing knows them apart",
+          layers_.layers()[l].name, paths::unknown_text(layers_unknown_[l]));
 }
 
 solvers::Solver* Engine::find(std::string_view name) const {

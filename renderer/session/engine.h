@@ -10,6 +10,7 @@
 
 #include "film/developer.h"
 #include "film/estimator.h"
+#include "paths/layers.h"
 #include "plan/plan.h"
 #include "session/frame.h"
 #include "session/world.h"
@@ -21,6 +22,11 @@ namespace lucerna::session {
 solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
                       const solvers::SolverInfo& solver, const plan::Settings& settings,
                       const upload::Effects& effects);
+
+/// The layers of the setting film.layers. Throws Error located there.
+paths::LayerSet layer_set(const paths::Automaton& automaton, const plan::Settings& settings);
+/// Checks that film.layer names a layer. Throws Error located there.
+void check_shown_layer(const paths::LayerSet& layers, const plan::Settings& settings);
 
 /// Conditions for which a solver is made, besides its task and its own settings.
 struct MadeFor {
@@ -115,6 +121,10 @@ class Engine {
                               .height = view.height,
                               .frame = frame(view, view.width, view.height)});
   }
+  /// Layers by path expressions (film.layers) of the picture begun last.
+  const paths::LayerSet& layers() const { return layers_; }
+  /// By layer: components (bits) of whose light it has an unknown part (LayerSet::Routed).
+  const std::vector<uint32_t>& layers_unknown() const { return layers_unknown_; }
   /// True if lookups provide direct light.
   bool looks_up_direct_light() const;
   double compile_seconds() const { return compile_seconds_; }
@@ -134,6 +144,7 @@ class Engine {
                            const upload::Effects& effects) const;
   PathRoutes routes_of(const plan::Plan& here, const plan::Settings& settings,
                        const upload::Effects& effects) const;
+  void set_layers(const PictureView& picture);
   /// Frame of paths in another picture with other samples, for all components alike, however the plan
   /// computes them.
   shared::Frame pilot_frame(const PictureView& picture, uint32_t width, uint32_t height) const;
@@ -146,6 +157,8 @@ class Engine {
   bool begun_ = false;
   bool learned_elsewhere_ = false;  ///< from another view
   PathRoutes routes_;               ///< of the current picture
+  paths::LayerSet layers_;
+  std::vector<uint32_t> layers_unknown_;
   std::vector<std::shared_ptr<solvers::Solver>> solvers_;
   MadeFor made_for_;
   std::map<std::string, std::string> begun_settings_;

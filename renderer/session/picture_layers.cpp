@@ -62,6 +62,8 @@ film::FilmImage picture_layers(const Setup& setup, const film::Image& image) {
   film::add_plane(out, "", "RGB", sum);
   for (int c = 0; c < film::k_components; ++c)
     film::add_plane(out, std::string(paths::k_component_names[c]) + ".", "RGB", image.components[c]);
+  for (size_t l = 0; l < image.layers.size(); ++l)
+    film::add_plane(out, setup.engine->layers().layers().at(l).name + ".", "RGB", image.layers[l]);
   if (setup.settings.boolean("relight.layers")) {
     if (setup.relight.separate)
       add_group_layers(out, *setup.film, setup.relight);

@@ -24,6 +24,8 @@ film::View without_tiles(film::View v) {
 film::View PictureOutput::view() const {
   film::View v;
   v.layer = uint32_t(setup_.settings.choice("film.layer"));
+  if (v.layer == shared::k_layer_first_own && setup_.engine)
+    v.layer += setup_.engine->layers().index_of(setup_.settings.text("film.layer"));
   v.show = 0;
   for (int c = 0; c < paths::k_component_count; ++c)
     if (setup_.settings.boolean(std::string("show.") + paths::k_component_names[c])) v.show |= 1u << c;
@@ -178,7 +180,7 @@ film::Brightness PictureOutput::measure(std::optional<vec2> at) const {
 HeldPicture PictureOutput::held_picture() {
   if (!setup_.engine || sampling_.samples() == 0) throw Error("", "the picture has no sample yet");
   const film::View v = view();
-  if (v.layer >= shared::k_layer_albedo)
+  if (v.layer >= shared::k_layer_albedo && v.layer < shared::k_layer_first_own)
     throw_error("", "the layer '{}' shows no light; choose beauty or a component",
                 setup_.settings.text("film.layer"));
   mix_.settle();
@@ -193,8 +195,11 @@ HeldPicture PictureOutput::held_picture() {
   }
   HeldPicture held = described();
   held.width = width, held.height = height;
-  held.light = preview ? display_->shown_light(shown)
-                       : sum_of((filtered ? *filtered->film : *setup_.film).read(), shown);
+  if (v.layer >= shared::k_layer_first_own)
+    held.light = setup_.film->read().layers.at(v.layer - shared::k_layer_first_own);
+  else
+    held.light = preview ? display_->shown_light(shown)
+                         : sum_of((filtered ? *filtered->film : *setup_.film).read(), shown);
   held.filtered = filtered || preview;
   for (size_t c = 0; c < held.methods.size(); ++c)
     if (shown != (1u << paths::k_component_count) - 1 && (shown >> c & 1u))

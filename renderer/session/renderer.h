@@ -13,6 +13,7 @@
 #include "scene/texture_source.h"
 #include "session/active_solvers.h"
 #include "session/choice_review.h"
+#include "session/layer_status.h"
 #include "session/lights_edit.h"
 #include "session/lookup_refinement.h"
 #include "session/object_edit.h"
@@ -156,6 +157,9 @@ class Renderer {
   /// preparation waits.
   bool step(const std::function<bool()>& cancel = {});
   film::Image image() const { return setup_.film->read(); }  ///< without a pending mix
+  std::vector<LayerStatus> layer_status(const film::Image& image) const {
+    return session::layer_status(*setup_.engine, image);
+  }
 
   /// The active solver of that name; null if it computes nothing.
   const solvers::Solver* solver(std::string_view name) const {

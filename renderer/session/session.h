@@ -24,6 +24,7 @@
 #include "session/accuracy.h"
 #include "session/command_queue.h"
 #include "session/held_picture.h"
+#include "session/layer_status.h"
 #include "session/lights_edit.h"
 #include "session/object_edit.h"
 #include "session/shown_paths.h"
@@ -112,6 +113,7 @@ struct Snapshot {
   double mrays_per_second = 0;  ///< while rays are traced
   uint64_t rays = 0;
   std::array<ComponentStatus, k_components> components;
+  std::vector<LayerStatus> layers;  ///< in the setting's order
   std::vector<StageStatus> stages;
   std::shared_ptr<const Accuracy> accuracy;  ///< null before the first picture
   /// One report for each solver with lookups; empty before the first picture.

@@ -257,8 +257,9 @@ struct SessionThread {
     next.stale = shares.stale, next.filtered = shares.filtered, next.shown_error = shares.error;
     const film::View view = r.output().view();
     next.legend = {};
-    if (view.layer >= shared::k_layer_albedo) next.legend = {.layer = view.layer, .hi = view.scale};
-    if (view.layer >= shared::k_layer_samples)
+    const bool own = view.layer >= shared::k_layer_first_own;
+    if (view.layer >= shared::k_layer_albedo && !own) next.legend = {.layer = view.layer, .hi = view.scale};
+    if (view.layer >= shared::k_layer_samples && !own)
       next.legend = {view.layer, view.heat.ramp, view.heat.logarithmic, view.heat.lo, view.heat.hi};
     next.tiles = view.tiles > 0;
     next.samples = r.samples();
@@ -297,13 +298,15 @@ struct SessionThread {
     if (numbers) {
       const Timer taken;
       next.host_mb = peak_host_mb();
-      const auto means = film::Film::means(r.image());
+      const film::Image& image = r.image();
+      const auto means = film::Film::means(image);
       double total = 0;
       for (const vec3& m : means) total += luminance(m);
       for (int c = 0; c < k_components; ++c) {
         next.components[c].mean_luminance = luminance(means[c]);
         next.components[c].share = total > 0 ? luminance(means[c]) / total : 0;
       }
+      next.layers = r.layer_status(image);
       numbers_seconds = std::max(k_numbers_seconds, 20 * taken.seconds());
     }
   }

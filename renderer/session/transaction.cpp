@@ -13,9 +13,9 @@ film::GroupStorage storage_of(const upload::Effects& effects) {
   return effects.group_components ? film::GroupStorage::by_component : film::GroupStorage::compact;
 }
 
-/// True if the film stores light groups like the paths traced for these effects.
+/// True if the film stores light groups and layers like the paths traced for these effects.
 bool stores_groups_of(const film::Film& film, const upload::Effects& effects) {
-  return film.groups() == effects.light_groups &&
+  return film.groups() == effects.light_groups && film.layers() == effects.layers &&
          (film.groups() == 1 || film.group_storage() == storage_of(effects));
 }
 
@@ -26,7 +26,19 @@ Transaction::Transaction(const SetupContext& context, Setup& setup, Target targe
       setup_(setup),
       target_(std::move(target)),
       plan_(std::move(plan)),
-      relight_(make_relight()) {}
+      relight_(make_relight()) {
+  const paths::LayerSet layers = layer_set(context_.automaton, target_.settings);
+  layers_ = layers.size();
+  // Without the layer that was shown, the picture is.
+  if (target_.settings.text("film.layers") != setup_.settings.text("film.layers") &&
+      target_.settings.text("film.layer") == setup_.settings.text("film.layer") &&
+      target_.settings.choice("film.layer") == int(plan::find_option("film.layer")->choices.size()) &&
+      layers.index_of(target_.settings.text("film.layer")) == layers.size())
+    target_.settings.set("film.layer", "beauty");
+  check_shown_layer(layers, target_.settings);
+  if (layers_ > 0 && target_.settings.text("relight.enabled") == "on")
+    throw_error("film.layers", "layers cannot be told apart by light groups; use relight.enabled=compact");
+}
 
 Relight Transaction::make_relight() const {
   // A larger picture may leave no memory for separate groups.
@@ -46,7 +58,7 @@ upload::LightSeparation Transaction::separation() const {
   const bool several = relight_.separate && relight_.groups->groups.size() > 1;
   if (several && relight_.groups->has_sun) threshold = scene::k_sun_threshold;
   return {threshold, several ? relight_.groups : nullptr,
-          !several || relight_.kept == film::GroupStorage::by_component};
+          !several || relight_.kept == film::GroupStorage::by_component, layers_};
 }
 
 void Transaction::make_world(const Progress& progress) {
@@ -73,7 +85,7 @@ void Transaction::build(const scene::Changes& changes, bool new_engine) {
 void Transaction::build_films() {
   const upload::Effects& effects = world().flat.effects;
   film_ = std::make_unique<film::Film>(context_.device, target_.width, target_.height, effects.light_groups,
-                                       storage_of(effects));
+                                       storage_of(effects), effects.layers);
   coarse_ = std::make_unique<film::Film>(context_.device, std::max(1u, target_.width / shared::k_coarse_step),
                                          std::max(1u, target_.height / shared::k_coarse_step));
 }

@@ -74,6 +74,7 @@ class Transaction {
   Target target_;
   plan::Plan plan_;
   Relight relight_;
+  uint32_t layers_ = 0;            ///< number of film.layers
   std::optional<World> world_;     ///< by make_world() ...
   std::optional<WorldEdit> edit_;  ///< ... or edit_world()
   std::unique_ptr<Engine> engine_;

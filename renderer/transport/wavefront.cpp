@@ -20,6 +20,7 @@ struct Wavefront::Impl {
   bool transparent = false;
   uint32_t groups = 1;          // separate light groups
   bool compact_groups = false;  // ... with all components together
+  uint32_t layers = 0;          // by path expressions
   bool writes_bias = false;
   uint32_t enabled = 15;
   std::vector<uint64_t> in_queue;  // a bit a slot
@@ -27,15 +28,16 @@ struct Wavefront::Impl {
   double compile_seconds = 0;
 
   gpu::Buffer frame, blocks, rays, hits, paths, radiance, features, shadow_rays, shadow_hits, shadow_states,
-      counters, branching, branching_queue;
+      counters, branching, branching_queue, layer_table, layer_radiance;
   std::array<gpu::Buffer, 2> queues, shadow_queues;
   /// Of cameras with a lens (+ 1), and with a section plane (+ 2); those but the first are compiled at the
   /// first frame that needs them.
   std::array<gpu::Kernel, 4> cameras;
   gpu::Defines camera_defines;
   size_t camera_kind = 0;
-  gpu::Kernel shade, shadow, film_add, film_add_images, lanes_add, lanes_add_images, groups_add,
-      groups_add_images, unmixed_add, unmixed_add_images, trace_closest, trace_any, trace_non_opaque;
+  gpu::Kernel shade, shadow, film_add, film_add_images, layer_add, layer_add_images, lanes_add,
+      lanes_add_images, groups_add, groups_add_images, unmixed_add, unmixed_add_images, trace_closest,
+      trace_any, trace_non_opaque;
   std::array<gpu::Resources, 2> main, shade_shadow;  ///< by parity of the queue
   gpu::Resources film_resources;
   std::function<void(gpu::Resources&)> bind_lookup;
@@ -50,7 +52,8 @@ struct Wavefront::Impl {
         host_trace(std::move(trace)),
         slots(n),
         groups(effects.light_groups),
-        compact_groups(effects.has_compact_groups()) {
+        compact_groups(effects.has_compact_groups()),
+        layers(effects.layers) {
     const gpu::Memory queue_memory = host_trace ? gpu::Memory::host : gpu::Memory::device;
     const auto make = [&](const char* name, uint64_t bytes, gpu::Memory memory) {
       return gpu::Buffer(device, {.name = name, .bytes = bytes, .memory = memory});
@@ -64,6 +67,8 @@ struct Wavefront::Impl {
     hits = texels("hits", uint64_t(n) * sizeof(Hit), queue_memory);
     paths = texels("path states", uint64_t(n) * sizeof(PathState), gpu::Memory::device);
     const uint64_t lanes = compact_groups ? k_component_count + groups : k_component_count * groups;
+    layer_radiance = texels("path radiance by layer", uint64_t(n) * 16 * layers, gpu::Memory::device);
+    layer_table = make("layer table", sizeof(LayerTable), gpu::Memory::device);
     radiance = texels("path radiance", uint64_t(n) * 16 * lanes, gpu::Memory::device);
     features = texels("path features", uint64_t(n) * 32, gpu::Memory::device);
     shadow_rays = texels("shadow rays", uint64_t(n) * sizeof(Ray), queue_memory);
@@ -112,6 +117,9 @@ struct Wavefront::Impl {
         r->set("shadow_state_texels", shadow_states);
         r->set("ShadowStates", shadow_states);
         r->set("Counters", counters);
+        r->set("LayerTableBlock", layer_table);
+        r->set("layer_texels", layer_radiance);
+        r->set("LayerRadiance", layer_radiance);
       }
       main[k].set("Rays", rays);
       main[k].set("Hits", hits);
@@ -251,6 +259,13 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   gpu::Defines images = adding;
   images["LUCERNA_FILM_IMAGES"] = "1";
   w.film_add_images = gpu::Kernel(device, compiler, "film/add.comp", images);
+  if (w.layers > 0) {
+    gpu::Defines of_layer = defines;
+    of_layer["LUCERNA_FILM_LAYER"] = "1";
+    w.layer_add = gpu::Kernel(device, compiler, "film/add_layer.comp", of_layer);
+    of_layer["LUCERNA_FILM_IMAGES"] = "1";
+    w.layer_add_images = gpu::Kernel(device, compiler, "film/add_layer.comp", of_layer);
+  }
   if (w.compact_groups) {
     w.groups_add = gpu::Kernel(device, compiler, "film/add_groups.comp", adding);
     w.groups_add_images = gpu::Kernel(device, compiler, "film/add_groups.comp", images);
@@ -307,6 +322,7 @@ void Wavefront::set_frame(const Frame& frame, uint32_t enabled) {
   impl_->first_account = uint8_t(frame.automaton[0] >> 29 & 3u);
 }
 
+void Wavefront::set_layers(const LayerTable& table) { impl_->layer_table.write(&table, sizeof table); }
 void Wavefront::rebind(const upload::DeviceScene& scene) { impl_->bind(scene); }
 void Wavefront::rebind_lookup() { impl_->rebind_lookup(); }
 uint32_t Wavefront::slots() const { return impl_->slots; }
@@ -333,6 +349,12 @@ void Wavefront::Impl::add(film::Film& film, uint32_t pixels, uint32_t samples) {
   film.bind(film_resources);
   const bool fits = film.fits_storage_buffers();
   FilmPush push{film.width(), film.height(), pixels, samples, 0, film.quick()};
+  // Preview samples are kept without layers.
+  for (; push.group < film.layers() && samples > 0; ++push.group) {
+    film.bind_layer(film_resources, push.group);
+    stream.dispatch(fits ? layer_add : layer_add_images, film_resources, push, workgroups(pixels), "film");
+  }
+  push.group = 0;
   if (film.groups() == 1) {
     stream.dispatch(fits ? film_add : film_add_images, film_resources, push, workgroups(pixels), "film");
     return;

@@ -14,6 +14,7 @@
 
 #include "film/film.h"
 #include "schedule/work.h"
+#include "shaders/shared/layers.h"
 #include "shaders/shared/ray.h"
 #include "shaders/shared/scene.h"
 #include "shaders/shared/transport.h"
@@ -76,6 +77,8 @@ class Wavefront {
   /// Sets the frame's constants; `enabled`: computed components (bit i). Compiles the kernel of cameras with
   /// a lens or a section plane for the first of them (throws Error, located).
   void set_frame(const shared::Frame& frame, uint32_t enabled);
+  /// Table of the layers by path expressions (paths::LayerSet), of which the scene's effects give the number.
+  void set_layers(const shared::LayerTable& table);
   /// Binds the scene's buffers, after DeviceScene::exchange.
   void rebind(const upload::DeviceScene& scene);
   /// Calls `bind_lookup` again, after a change of its buffers.

@@ -167,6 +167,7 @@ gpu::Defines DeviceScene::defines() const {
   d["LUCERNA_LAMP_CANDIDATES"] = std::to_string(e.lamp_candidates);
   d["LUCERNA_LIGHT_GROUPS"] = std::to_string(e.light_groups);
   set("LUCERNA_GROUP_SUMS", e.has_compact_groups());
+  d["LUCERNA_WORD_LAYERS"] = std::to_string(e.layers);
   set("LUCERNA_SPECULAR", e.specular);
   set("LUCERNA_SOLID_GLASS", e.solid_glass);
   set("LUCERNA_THIN_GLASS", e.thin_glass);

@@ -198,13 +198,14 @@ void flatten_textures(const scene::Scene& scene, FlatScene& flat) {
 }  // namespace
 
 LightSeparation light_separation(const FlatScene& flat) {
-  return {flat.sun_threshold, flat.groups, flat.group_components};
+  return {flat.sun_threshold, flat.groups, flat.group_components, flat.layers};
 }
 
 void set_light_separation(FlatScene& flat, const LightSeparation& separation) {
   flat.sun_threshold = separation.sun_threshold;
   flat.groups = separation.groups;
   flat.group_components = separation.group_components;
+  flat.layers = separation.layers;
 }
 
 FlatScene flatten(const scene::Scene& scene, const LightSeparation& separation) {

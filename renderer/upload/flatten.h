@@ -38,6 +38,7 @@ struct Effects {
   uint32_t media = 0;                      ///< number of media, if a solid absorbs (upload/media.h)
   uint32_t light_groups = 1;               ///< number of separate groups (FlatScene::groups)
   bool group_components = true;            ///< groups are separated by component too
+  uint32_t layers = 0;                     ///< number of layers by path expressions (paths/layers.h)
   uint32_t portals = 0;                    ///< number of portals through which the sky is sampled
   bool uv_transforms = false;              ///< a texture is scaled, rotated or shifted
   bool tex_nearest = false;                ///< a texture is not filtered
@@ -135,6 +136,7 @@ struct FlatScene : FlatLights, FlatMaterials {
   float sun_threshold = 0;
   std::shared_ptr<const scene::LightGroups> groups;  ///< separate groups; null: none
   bool group_components = true;  ///< separate by component too; else one sum per group (film::GroupStorage)
+  uint32_t layers = 0;           ///< Effects::layers
   vec3 scene_centre{0};
   float scene_radius = 1;  ///< radius of a sphere around the centre that contains all surfaces [m]
   /// Likewise, without distant outliers (scene::core_of()): the scene's size for all other purposes.
@@ -148,8 +150,9 @@ struct LightSeparation {
   float sun_threshold = 0;
   std::shared_ptr<const scene::LightGroups> groups;
   bool group_components = true;
+  uint32_t layers = 0;
   bool operator==(const LightSeparation& o) const {
-    return sun_threshold == o.sun_threshold && group_components == o.group_components &&
+    return sun_threshold == o.sun_threshold && group_components == o.group_components && layers == o.layers &&
            (groups == o.groups || (groups && o.groups && *groups == *o.groups));
   }
 };

@@ -217,6 +217,7 @@ void flatten_light_distribution(const scene::Scene& scene, FlatScene& flat) {
   flat.effects.portals = d.portals.count();
   flat.effects.light_groups = flat.groups ? uint32_t(flat.groups->groups.size()) : 1;
   flat.effects.group_components = flat.group_components;
+  flat.effects.layers = flat.layers;
   static_cast<LightDistribution&>(flat) = std::move(d);
 }
 

@@ -17,7 +17,7 @@ layout(scalar) buffer FilmVertices { uint film_vertices[]; };
 uint vertices_of(uint slot) {
   // Scattering events (PathState.bits) and surfaces passed since the last one, plus the last vertex.
   uint bits = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 1u))).z;
-  uint nulls = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 2u))).z;
+  uint nulls = floatBitsToUint(texelFetch(path_texels, int(3u * slot + 2u))).z & k_nulls_mask;
   return 1u + (bits >> k_path_events_shift & k_path_events_mask) + nulls;
 }
 #endif
@@ -28,21 +28,13 @@ layout(scalar) buffer FilmBiasEven { float film_bias_even[]; };
 layout(scalar) buffer FilmBiasOdd { float film_bias_odd[]; };
 #endif
 
-void add(inout FilmHalf h, vec3 x) {
-  precise vec3 t = h.sum + x;
-  precise vec3 lost_small = (h.sum - t) + x;   // |sum| >= |x|
-  precise vec3 lost_large = (x - t) + h.sum;
-  h.compensation += mix(lost_large, lost_small, greaterThanEqual(abs(h.sum), abs(x)));
-  h.sum = t;
-}
-
 #if LUCERNA_FILM_LANES
 layout(scalar) writeonly buffer GroupLights { GroupLight group_lights_out[]; };
 
 // Adds a half of a group's sums, times its mix weight.
 void add_mixed(inout FilmHalf h, FilmHalf of_group, vec3 weight) {
-  add(h, weight * of_group.sum);
-  add(h, weight * of_group.compensation);
+  film_half_add(h, weight * of_group.sum);
+  film_half_add(h, weight * of_group.compensation);
 }
 #endif
 
@@ -110,9 +102,9 @@ void main() {
     for (uint c = 0u; c < k_component_count; ++c) {
       vec3 light = light_of_component(slot, c);
       if (even) {
-        add(sums[c].even, light);
+        film_half_add(sums[c].even, light);
       } else {
-        add(sums[c].odd, light);
+        film_half_add(sums[c].odd, light);
       }
     }
 #if LUCERNA_LOOKUP_BIAS

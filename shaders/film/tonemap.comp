@@ -26,13 +26,18 @@ void main() {
     bool shown = push.layer == k_layer_beauty ? (push.show >> c & 1u) != 0u : push.layer == k_layer_primary + c;
     if (shown) color += component_mean(c, pixel, ratio, n);
   }
+#if LUCERNA_FILM_LAYER
+  FilmPixel own = LUCERNA_FILM_LOAD(film_layer, pixel);
+  own = FilmPixel(film_mixed(own.even, ratio.even), film_mixed(own.odd, ratio.odd));
+  color = ((own.even.sum + own.odd.sum) + (own.even.compensation + own.odd.compensation)) / n;
+#endif
   vec4 albedo = texelFetch(film_albedo, int(pixel)), normal = texelFetch(film_normal, int(pixel));
   float hits = max(albedo.w, 1.0);
   vec3 flat_color = albedo.xyz / n;
   if (push.layer == k_layer_normal) flat_color = 0.5 * normalize(normal.xyz + vec3(0.0, 0.0, 1e-20)) + 0.5;
   if (push.layer == k_layer_depth) flat_color = vec3(albedo.w > 0.0 ? normal.w / hits / push.scale : 1.0);
   vec3 srgb;
-  if (push.layer >= k_layer_albedo) {
+  if (push.layer >= k_layer_albedo && push.layer < k_layer_first_own) {
     vec3 linear_color = clamp(flat_color, vec3(0.0), vec3(1.0));
     srgb = push.layer == k_layer_normal ? linear_color : srgb_encode(linear_color);
   } else {

@@ -48,6 +48,15 @@ struct FilmPixel {
   FilmHalf even, odd;
 };
 
+// Adds with compensation.
+void film_half_add(inout FilmHalf h, vec3 x) {
+  precise vec3 t = h.sum + x;
+  precise vec3 lost_small = (h.sum - t) + x;   // |sum| >= |x|
+  precise vec3 lost_large = (x - t) + h.sum;
+  h.compensation += mix(lost_large, lost_small, greaterThanEqual(abs(h.sum), abs(x)));
+  h.sum = t;
+}
+
 FilmPixel film_pixel(vec4 a, vec4 b, vec4 c) {
   return FilmPixel(FilmHalf(a.xyz, vec3(a.w, b.xy)), FilmHalf(vec3(b.zw, c.x), c.yzw));
 }
@@ -94,4 +103,14 @@ FilmPixel film_load(uint component, uint pixel, FilmRatio ratio) {
   FilmPixel p = film_load(component, pixel);
   return FilmPixel(film_mixed(p.even, ratio.even), film_mixed(p.odd, ratio.odd));
 }
+
+#if LUCERNA_FILM_LAYER
+// Sums of a layer by path expression, like those of a component.
+uniform samplerBuffer film_layer;
+#if LUCERNA_FILM_IMAGES
+layout(rgba32f) uniform writeonly imageBuffer film_layer_out;
+#else
+layout(scalar) writeonly buffer FilmLayer { vec4 film_layer_out[]; };
+#endif
+#endif
 #endif

@@ -57,6 +57,10 @@
 #ifndef LUCERNA_GROUP_SUMS
 #define LUCERNA_GROUP_SUMS 0
 #endif
+// Number of layers by path expressions (lib/layers.glsl).
+#ifndef LUCERNA_WORD_LAYERS
+#define LUCERNA_WORD_LAYERS 0
+#endif
 #ifndef LUCERNA_SPECULAR
 #define LUCERNA_SPECULAR 0
 #endif
@@ -209,6 +213,9 @@
 #endif
 #ifndef LUCERNA_FILM_LANES
 #define LUCERNA_FILM_LANES 0
+#endif
+#ifndef LUCERNA_FILM_LAYER
+#define LUCERNA_FILM_LAYER 0
 #endif
 #ifndef LUCERNA_FILM_UNMIXED  // compact groups: ignores their mix
 #define LUCERNA_FILM_UNMIXED 0

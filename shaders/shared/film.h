@@ -26,7 +26,7 @@ struct FilmPush {
   uint pixel_count;      ///< slots a sample: 64 for each block of the item
   uint sample_count;     ///< samples a pixel; 0, with groups by component: only mixes the groups again,
                          ///< in all blocks
-  uint group;            ///< light group, with groups by component
+  uint group;            ///< light group, with groups by component; film/add_layer.comp: the layer
   uint quick;            ///< not 0: GroupLights has room for all groups
 };
 
@@ -128,6 +128,7 @@ LUCERNA_CONST uint k_layer_depth = 7u;
 LUCERNA_CONST uint k_layer_samples = 8u;
 LUCERNA_CONST uint k_layer_error = 9u;
 LUCERNA_CONST uint k_layer_cost = 10u;
+LUCERNA_CONST uint k_layer_first_own = 11u;  ///< and above: layers by path expressions (shared/layers.h)
 
 struct TonePush {
   uint width, height;

@@ -41,6 +41,8 @@ LUCERNA_CONST uint k_path_state_mask = 0x3fu;
 LUCERNA_CONST uint k_path_events_shift = 9u, k_path_events_mask = 0x1ffu;
 LUCERNA_CONST uint k_path_wavelength_shift = 18u;  ///< 12 bits (lib/dispersion.glsl)
 
+LUCERNA_CONST uint k_layer_state_shift = 24u, k_nulls_mask = 0xffffffu;  ///< of PathState::nulls
+
 /// With a maximum depth below this, stored light is read only if it was stored for paths of that many events; otherwise
 /// paths compute it. From here on the few additional events of stored light are neglected.
 LUCERNA_CONST uint k_deep_paths = 16u;
@@ -59,7 +61,8 @@ struct PathState {
   float travelled;     ///< metres since the last scattering event, over null events
   float eta_scale;     ///< product of (eta_i/eta_t)^2 in the throughput from refraction. Light paths: density
                        ///< of light samples at the path's origin (transport/emit.comp)
-  uint nulls;          ///< null events since the last scattering event
+  uint nulls;          ///< null events since the last scattering event; with layers (lib/layers.glsl) bits 24-31 are
+                       ///< the state of their automaton
   uint light_group;    ///< light paths: group of the light, if groups are separate;
                        ///< else the lowest bits of its number. Eye paths: row of learned lights
                        ///< (shared/learned_lights.h) of its last vertex
@@ -68,7 +71,7 @@ struct PathState {
 /// Contribution of a shadow ray if it arrives: the shares of the diffuse and the glossy lobe go to separate lanes.
 struct ShadowState {
   vec3 diffuse;
-  uint lanes;          ///< 0-7 lane of the diffuse share, 8-15 of the glossy one
+  uint lanes;          ///< 0-7 lane of the diffuse share, 8-15 of the glossy one; 16-23 and 24-31 their layer states
   vec3 glossy;
   uint tag;            ///< if light samples are recorded (LUCERNA_LEARNED): number of its record, from 1; light
                        ///< tracing: the stratum

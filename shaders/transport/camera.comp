@@ -5,6 +5,7 @@
 #include "lib/blocks.glsl"
 #include "lib/media.glsl"
 #include "lib/path_events.glsl"
+#include "lib/layers.glsl"
 #if LUCERNA_THIN_LENS
 #include "lib/lens.glsl"
 #endif
@@ -78,6 +79,9 @@ void main() {
   p.light_group = 0u;
   store_path(slot, p);
   clear_radiance(slot);
+#if LUCERNA_WORD_LAYERS
+  [[unroll]] for (uint l = 0u; l < LUCERNA_WORD_LAYERS; ++l) set_layer(slot, l, vec3(0.0));
+#endif
 #if LUCERNA_PATH_EVENTS
   event_state = PathEventState(0u, 0u, 0u, k_path_by_none, 0u);
   PathEvent start = new_event(k_path_camera, k_path_no_event, k_path_by_none, ray.origin);
@@ -94,6 +98,10 @@ void main() {
     uvec2 at = same ? xy : min(uvec2(place * vec2(size)), size - 1u);
     vec4 splat = texelFetch(splat_picture, int(at.y * size.x + at.x));
     radiance[radiance_texel(slot, lane_of(0u, splat_frame.component))].rgb = splat.rgb;
+#if LUCERNA_WORD_LAYERS
+    [[unroll]] for (uint l = 0u; l < LUCERNA_WORD_LAYERS; ++l)
+      set_layer(slot, l, in_layer(l, layer_table.splat[splat_frame.component], splat.rgb));
+#endif
 #if LUCERNA_PATH_EVENTS
     if (event_counts(splat.rgb, splat_frame.component)) {
       PathEvent e = new_event(k_path_splat, 0u, k_path_by_none, ray.origin);

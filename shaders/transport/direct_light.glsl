@@ -7,6 +7,7 @@
 #define LUCERNA_TRANSPORT_DIRECT_LIGHT
 #include "lib/variants.glsl"
 #include "lib/path_events.glsl"
+#include "lib/layers.glsl"
 
 layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
 
@@ -242,6 +243,9 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
   shadow.diffuse = component_d < k_component_count ? arrives * f.diffuse : vec3(0.0);
   shadow.glossy = component_g < k_component_count ? arrives * f.glossy : vec3(0.0);
   shadow.lanes = lane_of(l.group, component_d) | lane_of(l.group, component_g) << 8;
+#if LUCERNA_WORD_LAYERS
+  shadow.lanes |= layer_state_after(path_layer_state(path), k_event_diffuse) << 16 | layer_state_after(path_layer_state(path), k_event_glossy) << 24;
+#endif
   shadow.tag = 0u;
 #if LUCERNA_SEPARATE_SKY
   if (l.sky && sky_known) shadow.diffuse = vec3(0.0);
@@ -250,7 +254,7 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
   bool contributes = wanted && sides_agree && l.pdf > 0.0 && (!finite || max3(shadow.diffuse) + max3(shadow.glossy) > 0.0);
   if (contributes && !finite) atomicAdd(counters[k_counter_dropped], 1u);
 #if LUCERNA_LEARNED
-  for (uint once = 0u; once < (frame.learning != 0u && wanted && path.nulls == 0u && depth < k_learned_vertices ? 1u : 0u); ++once)
+  for (uint once = 0u; once < (frame.learning != 0u && wanted && (path.nulls & k_nulls_mask) == 0u && depth < k_learned_vertices ? 1u : 0u); ++once)
     record_light_sample(slot, path, surface.position, to_world[2], l, f, contributes && finite, shadow);
 #endif
   if (contributes && finite) {

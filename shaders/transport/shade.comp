@@ -15,6 +15,7 @@
 #include "transport/vertex_hooks.glsl"
 #include "transport/direct_light.glsl"
 #include "lib/path_events.glsl"
+#include "lib/layers.glsl"
 
 #if LUCERNA_VERTEX_HOOKS
 // Stored vertices with further branches: 2 texels for the ray, 1 for the hit, 3 for the path.
@@ -124,7 +125,11 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
   path.pdf = b.pdf;
   path.bits = next | sky | (v.depth + 1u) << k_path_events_shift | wavelength | (path.bits & k_path_branched);
   path.travelled = 0.0;
+#if LUCERNA_WORD_LAYERS
+  path.nulls = layer_state_after(path_layer_state(path), b.event) << k_layer_state_shift;
+#else
   path.nulls = 0u;
+#endif
 #if LUCERNA_VOLUMES
   if (b.transmitted) path.media = media_behind(v.surface, path.media);
 #endif
@@ -200,6 +205,9 @@ void main() {
   }
   if (path.pixel == 0xffffffffu) return;
   uint state = path_automaton(path), depth = path_depth(path);
+#if LUCERNA_WORD_LAYERS
+  uint layer_state = path_layer_state(path);
+#endif
   Sampler random = make_sampler(path.pixel, frame.width, path.sample_index, frame.seed);
 #if LUCERNA_PATH_EVENTS
   event_state = path_event_states[slot];
@@ -276,7 +284,7 @@ void main() {
     vec3 direction = ray.direction;
 
 #if LUCERNA_TRANSPARENT
-    Sampler random_null = null_sampler(random, path.nulls);
+    Sampler random_null = null_sampler(random, path.nulls & k_nulls_mask);
     vec2 u_null = sample_vertex(random_null, depth, k_pad_lobe);
 #endif
 #if LUCERNA_ALPHA
@@ -377,6 +385,23 @@ void main() {
   path_event_states[slot] = event_state;
 #endif
   if (again) return;
+#if LUCERNA_WORD_LAYERS
+  // Light that the path has met belongs to its own state, stored light to the words that it stands for.
+  vec3 of_layers[LUCERNA_WORD_LAYERS];
+  vec3 met_here = automaton_component(state) < k_component_count ? gain + sun : vec3(0.0);
+#if LUCERNA_SHAPES
+  if (automaton_component(state) < k_component_count)
+    [[unroll]] for (uint g = 0u; g < k_group_count; ++g) met_here += of_shapes[g];
+#endif
+  [[unroll]] for (uint l = 0u; l < LUCERNA_WORD_LAYERS; ++l) {
+    of_layers[l] = in_layer(l, layer_table.states[layer_state].accept, met_here);
+#if LUCERNA_VERTEX_HOOKS
+    for (uint lane = 0u; lane < found.radiance.length(); ++lane)
+      of_layers[l] += in_layer(l, layers_looked_up(layer_state, lane % k_component_count), found.radiance[lane]);
+#endif
+  }
+  add_to_layers(slot, of_layers);
+#endif
 #if LUCERNA_SHAPES
 #if LUCERNA_LIGHT_GROUPS > 1
   uint component = automaton_component(state);

@@ -11,6 +11,7 @@
 layout(scalar) writeonly buffer LightRecords { LightRecord light_records[]; };
 #endif
 #include "lib/path_events.glsl"
+#include "lib/layers.glsl"
 #if LUCERNA_TRANSPARENT
 #include "lib/surface.glsl"
 layout(scalar) buffer ShadowQueue { uint shadow_queue[]; };
@@ -78,6 +79,13 @@ void main() {
 #endif
   if (!blocked) {
     add_radiance_of_group(slot, s.lanes & 0xffu, s.diffuse, (s.lanes >> 8) & 0xffu, s.glossy);
+#if LUCERNA_WORD_LAYERS
+    vec3 of_layers[LUCERNA_WORD_LAYERS];
+    [[unroll]] for (uint l = 0u; l < LUCERNA_WORD_LAYERS; ++l)
+      of_layers[l] = in_layer(l, layer_table.states[s.lanes >> 16 & 0xffu].accept, s.diffuse) +
+                     in_layer(l, layer_table.states[s.lanes >> 24].accept, s.glossy);
+    add_to_layers(slot, of_layers);
+#endif
 #if LUCERNA_PATH_EVENTS
     note_arrival(slot, s.tag & 0xffffu, s.diffuse);
     note_arrival(slot, s.tag >> 16, s.glossy);

@@ -16,6 +16,7 @@
 #include "shaders/shared/irradiance_cache/placement.h"
 #include "shaders/shared/irradiance_cache/placement_view.h"
 #include "shaders/shared/irradiance_cache/records.h"
+#include "shaders/shared/layers.h"
 #include "shaders/shared/learned_lights.h"
 #include "shaders/shared/learned_view.h"
 #include "shaders/shared/octree.h"
@@ -204,6 +205,8 @@ std::vector<SharedStruct> structs() {
       SHARED("octree.h", OctreeHeader, origin, leaf, inverse_leaf, edge, mean_diameter, level, wanted_level,
              cells, spheres, references, needed, capacity, leaves, slots, slot_shift, split, split_references,
              split_cells, open, overflow),
+      SHARED("layers.h", LayerState, next, accept, looked_up),
+      SHARED("layers.h", LayerTable, splat, states),
       SHARED("octree.h", OctreePush, count, count_at, capacity, slot_capacity, level_capacity, most_split,
              crowd, scale, normal_stride, normal_at, thickness, core_low, core_high),
       SHARED("trace.h", TracePush, count, use_queue),
