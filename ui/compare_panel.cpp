@@ -1,6 +1,7 @@
 #include "compare_panel.h"
 
 #include <fmt/format.h>
+#include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>

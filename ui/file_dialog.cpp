@@ -2,6 +2,7 @@
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui_internal.h>
+#include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>

@@ -5,6 +5,7 @@
 
 #include "chart.h"
 #include "effects_block.h"
+#include "layers_block.h"
 #include "panel_block.h"
 #include "plan/plan.h"
 #include "solvers/registry.h"
@@ -198,7 +199,7 @@ void render_rows(Controls& controls) {
 
 }  // namespace
 
-void draw_light_panel(Controls& controls, bool expanded, const Area& area) {
+void draw_light_panel(Controls& controls, TypedLayer& typed_layer, bool expanded, const Area& area) {
   if (!expanded) {
     begin_panel("##light_folded", area, colour::panel, false);
     if (folded_strip("Light", area.lo, area.hi, true)) controls.act("window.fold", "left", false);
@@ -221,6 +222,9 @@ void draw_light_panel(Controls& controls, bool expanded, const Area& area) {
     panel_block(controls, "Effects", false,
                 controls.open.setting("effects.off").empty() ? "" : "some are off", 8,
                 [&] { draw_effects(controls); });
+  if (controls.open.scene)
+    panel_block(controls, "Layers", false, controls.open.setting("film.layers").empty() ? "" : "own", 10,
+                [&] { draw_layers(controls, typed_layer); });
   panel_block(controls, "Render", true, "", 12, [&] { render_rows(controls); });
   hairline();
   ImGui::End();

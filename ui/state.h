@@ -14,6 +14,7 @@
 #include "compare_panel.h"
 #include "controls.h"
 #include "keys.h"
+#include "layers_block.h"
 #include "layout.h"
 #include "log_view.h"
 #include "paths_panel.h"
@@ -99,6 +100,7 @@ struct Ui {
   PathsView paths;
   RegionView region;
   CompareState compare{open};
+  TypedLayer typed_layer;
 
   CardsView cards{actions};
   CameraMoves moves{actions, camera, flight, cards};
@@ -176,7 +178,7 @@ void draw_parts(Ui& ui);
 void draw_menu_bar(Viewport& view, AccuracyView& accuracy, LogView& log,
                    const std::vector<std::string>& recent, const Layout& chosen, const std::string& side,
                    const Areas& areas);
-void draw_light_panel(Controls& controls, bool expanded, const Area& area);
+void draw_light_panel(Controls& controls, TypedLayer& typed_layer, bool expanded, const Area& area);
 /// The light mix, into a section of that panel.
 void draw_mix(Actions& actions, commands::OpenScene& open);
 /// The tabs of the right panel; returns the area below them.

@@ -1,6 +1,7 @@
 #include "swatch_popup.h"
 
 #include <fmt/format.h>
+#include <imgui.h>
 #include <imgui_stdlib.h>
 
 #include "base/color.h"

@@ -319,7 +319,7 @@ void draw_parts(Ui& ui) {
   if (ui.layout.panels) {
     draw_splitters(ui.actions, areas);
     draw_menu_bar(ui.viewport, ui.accuracy, ui.log, ui.recent, ui.layout, ui.side, areas);
-    draw_light_panel(ui.controls, ui.shown.left_open, areas.left);
+    draw_light_panel(ui.controls, ui.typed_layer, ui.shown.left_open, areas.left);
     draw_toolbar(ui.actions, ui.open, ui.viewport.dropper, areas.toolbar);
     const Area side =
         draw_side_tabs(ui.actions, ui.side, ui.work.traced || ui.work.noise || ui.side == k_paths_side,

@@ -39,6 +39,7 @@ void add_effect_commands(Registry& registry, const OpenScene& open);
 void add_path_commands(Workspace& work);
 void add_region_commands(Workspace& work);
 void add_viewer_commands(Workspace& work);
+void add_layer_commands(Workspace& work);
 void add_ocio_commands(Workspace& work);
 void add_compare_commands(Workspace& work);
 void add_solver_commands(Registry& registry, const OpenScene& open, SavedFiles& files);

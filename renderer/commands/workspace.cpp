@@ -43,6 +43,7 @@ Workspace::Workspace(session::Session& s, WorkspaceEvents e)
   add_path_commands(*this);
   add_region_commands(*this);
   add_viewer_commands(*this);
+  add_layer_commands(*this);
   add_ocio_commands(*this);
   add_compare_commands(*this);
   add_solver_commands(registry, open, files);

@@ -29,8 +29,10 @@ void check_name(const std::string& name, const std::vector<std::string>& reserve
     throw_error(where, "'{}' is the name of a layer that every picture has; choose another", name);
 }
 
-std::vector<Layer> parse(const std::string& text, const std::vector<std::string>& reserved,
-                         const std::string& where) {
+}  // namespace
+
+std::vector<Layer> parse_layers(const std::string& text, const std::vector<std::string>& reserved,
+                                const std::string& where) {
   std::vector<Layer> layers;
   if (trimmed(text).empty()) return layers;
   for (size_t from = 0; from <= text.size();) {
@@ -52,11 +54,16 @@ std::vector<Layer> parse(const std::string& text, const std::vector<std::string>
   return layers;
 }
 
-}  // namespace
+std::string layers_text(const std::vector<Layer>& layers) {
+  std::string text;
+  for (const Layer& layer : layers)
+    text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", layer.name, layer.expression);
+  return text;
+}
 
 LayerSet::LayerSet(const Automaton& components, const std::string& text,
                    const std::vector<std::string>& reserved, const std::string& where)
-    : layers_(parse(text, reserved, where)) {
+    : layers_(parse_layers(text, reserved, where)) {
   if (layers_.empty()) return;
   std::vector<Automaton> each;
   for (const Layer& layer : layers_) {

@@ -16,13 +16,20 @@ struct Layer {
   bool operator==(const Layer&) const = default;
 };
 
+/// From "NAME = EXPRESSION, NAME = EXPRESSION"; "": none. Throws Error located at `where`: syntax, a name
+/// twice or of `reserved` ones, too many layers. Expressions are not read.
+std::vector<Layer> parse_layers(const std::string& text, const std::vector<std::string>& reserved,
+                                const std::string& where = "film.layers");
+/// The text that parse_layers() reads.
+std::string layers_text(const std::vector<Layer>& layers);
+
 /// At most shared::k_most_layers layers, in their order, and the automaton that finds the layers of a path. A
 /// state of it is one of the components' automaton together with the progress in each expression.
 class LayerSet {
  public:
   LayerSet() = default;
-  /// From "NAME = EXPRESSION, NAME = EXPRESSION"; "": none. Throws Error located at `where`: syntax, a name
-  /// twice or of `reserved` ones, an expression without a word, too many layers or states.
+  /// Throws Error located at `where`: like parse_layers(), an expression that cannot be read or has no word,
+  /// too many states.
   LayerSet(const Automaton& components, const std::string& text, const std::vector<std::string>& reserved,
            const std::string& where = "film.layers");
 

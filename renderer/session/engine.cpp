@@ -106,27 +106,6 @@ solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
           .effects = effects};
 }
 
-paths::LayerSet layer_set(const paths::Automaton& automaton, const plan::Settings& settings) {
-  const std::string& text = settings.text("film.layers");
-  if (text.empty()) return {};
-  // Names of layers and first parts of names in EXR files.
-  std::vector<std::string> reserved = plan::find_option("film.layer")->choices;
-  for (const char* name : {"R", "G", "B", "A", "N", "Z", "odd", "filtered", "light", "lookup"})
-    reserved.emplace_back(name);
-  return {automaton, text, reserved};
-}
-
-void check_shown_layer(const paths::LayerSet& layers, const plan::Settings& settings) {
-  const std::string& name = settings.text("film.layer");
-  const std::vector<std::string>& choices = plan::find_option("film.layer")->choices;
-  if (std::find(choices.begin(), choices.end(), name) != choices.end() ||
-      layers.index_of(name) < layers.size())
-    return;
-  std::vector<std::string> names = choices;
-  for (const paths::Layer& layer : layers.layers()) names.push_back(layer.name);
-  throw_error("film.layer", "there is no layer '{}'; there are {}", name, fmt::join(names, ", "));
-}
-
 Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
                const World& world, const plan::Plan& plan, const plan::Settings& settings,
                gpu::Defines defines, const Engine* before, std::span<const Predecessor> predecessors)

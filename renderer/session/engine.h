@@ -13,6 +13,7 @@
 #include "paths/layers.h"
 #include "plan/plan.h"
 #include "session/frame.h"
+#include "session/layer_status.h"
 #include "session/world.h"
 #include "solvers/capabilities.h"
 
@@ -22,11 +23,6 @@ namespace lucerna::session {
 solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
                       const solvers::SolverInfo& solver, const plan::Settings& settings,
                       const upload::Effects& effects);
-
-/// The layers of the setting film.layers. Throws Error located there.
-paths::LayerSet layer_set(const paths::Automaton& automaton, const plan::Settings& settings);
-/// Checks that film.layer names a layer. Throws Error located there.
-void check_shown_layer(const paths::LayerSet& layers, const plan::Settings& settings);
 
 /// Conditions for which a solver is made, besides its task and its own settings.
 struct MadeFor {

@@ -1,11 +1,50 @@
 #include "session/layer_status.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <numeric>
 
 #include "session/engine.h"
 
 namespace lucerna::session {
+namespace {
+
+/// Names of layers that every picture has, and first parts of names in EXR files.
+std::vector<std::string> reserved_names() {
+  std::vector<std::string> names = plan::find_option("film.layer")->choices;
+  for (const char* name : {"R", "G", "B", "A", "N", "Z", "odd", "filtered", "light", "lookup"})
+    names.emplace_back(name);
+  return names;
+}
+
+}  // namespace
+
+paths::LayerSet layer_set(const paths::Automaton& automaton, const plan::Settings& settings) {
+  const std::string& text = settings.text("film.layers");
+  if (text.empty()) return {};
+  return {automaton, text, reserved_names()};
+}
+
+void check_layers(const std::string& text) {
+  paths::LayerSet(paths::compile_components(), text, reserved_names());
+}
+
+std::vector<paths::Layer> layers_in(const std::string& text) {
+  try {
+    return paths::parse_layers(text, {});
+  } catch (const Error&) {
+    return {};
+  }
+}
+
+void check_shown_layer(const paths::LayerSet& layers, const plan::Settings& settings) {
+  const std::string& name = settings.text("film.layer");
+  std::vector<std::string> names = plan::find_option("film.layer")->choices;
+  for (const paths::Layer& layer : layers.layers()) names.push_back(layer.name);
+  if (std::find(names.begin(), names.end(), name) == names.end())
+    throw_error("film.layer", "there is no layer '{}'; there are {}", name, fmt::join(names, ", "));
+}
 
 std::vector<LayerStatus> layer_status(const Engine& engine, const film::Image& image) {
   const auto components = film::Film::means(image);

@@ -1,9 +1,12 @@
 #pragma once
-// Layers by path expressions (film.layers) of a picture, for display and statistics.
+// Layers by path expressions: the settings film.layers and film.layer, and a picture's layers for display and
+// statistics.
 #include <string>
 #include <vector>
 
 #include "base/math.h"
+#include "paths/layers.h"
+#include "plan/settings.h"
 
 namespace lucerna::film {
 struct Image;
@@ -12,6 +15,15 @@ struct Image;
 namespace lucerna::session {
 
 class Engine;
+
+/// The layers of film.layers. Throws Error located there.
+paths::LayerSet layer_set(const paths::Automaton& automaton, const plan::Settings& settings);
+/// Throws Error like layer_set().
+void check_layers(const std::string& text);
+/// Layers of that text; none if it cannot be read.
+std::vector<paths::Layer> layers_in(const std::string& text);
+/// Checks that film.layer names a layer. Throws Error located there.
+void check_shown_layer(const paths::LayerSet& layers, const plan::Settings& settings);
 
 struct LayerStatus {
   std::string name, expression;

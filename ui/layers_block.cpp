@@ -1,0 +1,108 @@
+#include "layers_block.h"
+
+#include <fmt/format.h>
+#include <imgui.h>
+#include <imgui_stdlib.h>
+
+#include <algorithm>
+
+#include "list_rows.h"
+#include "session/layer_status.h"
+#include "theme.h"
+#include "widgets.h"
+
+namespace lucerna::ui {
+namespace {
+
+/// Layers that are often wanted, for the button that offers them.
+struct Example {
+  const char *name, *expression, *help;
+};
+constexpr Example k_examples[] = {
+    {"direct", "E[SG]*DL", "Direct light on diffuse surfaces, also seen in mirrors."},
+    {"mirrored", "E[SG]+.*L", "All that polished surfaces and glass show at the first sight."},
+    {"matt", "ED.*L", "All light of surfaces that are seen directly, without their gloss."},
+    {"through-glass", "E.*SS.*L", "Light that has passed two mirroring or refracting surfaces in a row."},
+    {"indirect", "E.*D.*D.*L", "Light after at least two diffuse events."}};
+
+/// Share of the picture, once it is known.
+std::string share_text(const session::Snapshot* picture, const std::string& name, std::string& lacks) {
+  if (picture)
+    for (const session::LayerStatus& status : picture->layers)
+      if (status.name == name) {
+        lacks = status.lacks;
+        return fmt::format("{:.1f} %{}", 100 * status.share, status.lacks.empty() ? "" : " +");
+      }
+  return "";
+}
+
+void layer_row(Controls& controls, const paths::Layer& layer) {
+  const bool shown = controls.open.setting("film.layer") == layer.name;
+  ImGui::PushID(layer.name.c_str());
+  const ImVec2 at = ImGui::GetCursorScreenPos();
+  std::string lacks;
+  const std::string share = share_text(controls.open.snapshot.get(), layer.name, lacks);
+  if (list_row("##row", shown, layer.name, share, 0, px(24)))
+    controls.act("set", "film.layer", shown ? std::string("beauty") : layer.name);
+  tooltip(fmt::format("{}{}\nA click shows it; another one the picture. Share: of the picture's light.",
+                      layer.expression,
+                      lacks.empty() ? ""
+                                    : "\nPart of its " + lacks +
+                                          " light is not known, because its solver stores light of several "
+                                          "words together."));
+  if (row_sign(at, "##remove", Sign::close, false, "Removes the layer. The picture starts again."))
+    controls.act("layer.remove", layer.name);
+  ImGui::PopID();
+}
+
+void example_list(Controls& controls) {
+  if (button("##examples", "Examples", false, ImGui::CalcItemWidth())) ImGui::OpenPopup("##example_list");
+  tooltip("Adds one of some layers that are often wanted.");
+  ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {px(8), px(6)});
+  if (ImGui::BeginPopup("##example_list")) {
+    for (const Example& example : k_examples) {
+      if (ImGui::Selectable(fmt::format("{}   {}", example.name, example.expression).c_str()))
+        controls.act("layer.add", example.name, example.expression);
+      tooltip(example.help);
+    }
+    ImGui::EndPopup();
+  }
+  ImGui::PopStyleVar();
+}
+
+}  // namespace
+
+void draw_layers(Controls& controls, TypedLayer& typed) {
+  const std::vector<paths::Layer> layers = session::layers_in(controls.open.setting("film.layers"));
+  // What was typed stays until it has become a layer, for the case that it is refused.
+  if (std::find(layers.begin(), layers.end(), paths::Layer{typed.name, typed.expression}) != layers.end())
+    typed = {};
+  if (layers.empty())
+    quiet_line("Light of the paths that an expression names, shown and saved beside the components.");
+  for (const paths::Layer& layer : layers) layer_row(controls, layer);
+  gap(4);
+  const float width = ImGui::CalcItemWidth(), half = (width - px(4)) / 2;
+  ImGui::SetNextItemWidth(half);
+  ImGui::InputTextWithHint("##name", "Name", &typed.name);
+  tooltip("Name of a layer: letters, digits, '_' and '-'.");
+  ImGui::SameLine(0, px(4));
+  ImGui::SetNextItemWidth(half);
+  const bool entered = ImGui::InputTextWithHint("##expression", "E[SG]*DL", &typed.expression,
+                                                ImGuiInputTextFlags_EnterReturnsTrue);
+  tooltip(
+      "Words of paths: E at the eye, D diffuse, G glossy, S specular, . any of these, L at the light; [SG] "
+      "one "
+      "of several, * any number, + at least one, ? at most one, | or.");
+  const bool complete = !typed.name.empty() && !typed.expression.empty();
+  ImGui::BeginDisabled(!complete);
+  const bool pressed = button("##add", "Add", false, half);
+  ImGui::EndDisabled();
+  tooltip("Adds the layer, or changes the one of that name, and shows it. The picture starts again.");
+  if ((pressed || entered) && complete) controls.act("layer.add", typed.name, typed.expression);
+  ImGui::SameLine(0, px(4));
+  ImGui::PushItemWidth(half);
+  example_list(controls);
+  ImGui::PopItemWidth();
+}
+
+}  // namespace lucerna::ui

@@ -1,0 +1,17 @@
+#pragma once
+// The section Layers: light by path expressions, which can be shown and is written to EXR files.
+#include <string>
+
+#include "controls.h"
+
+namespace lucerna::ui {
+
+/// A layer that is being typed.
+struct TypedLayer {
+  std::string name, expression;
+};
+
+/// Inside a panel's section. Requires a scene.
+void draw_layers(Controls& controls, TypedLayer& typed);
+
+}  // namespace lucerna::ui
