@@ -315,10 +315,10 @@ Image Film::read() const {
     sums_[c].read(halves.data(), halves.size() * sizeof(shared::FilmHalf));
     take_means(halves, ratios, image.samples, image.components[c], &image.odd_half[c]);
   }
-  image.layers.resize(layers_.size());
+  image.layers.resize(layers_.size()), image.odd_layers.resize(layers_.size());
   for (size_t l = 0; l < layers_.size(); ++l) {
     layers_[l].read(halves.data(), halves.size() * sizeof(shared::FilmHalf));
-    take_means(halves, ratios, image.samples, image.layers[l], nullptr);
+    take_means(halves, ratios, image.samples, image.layers[l], &image.odd_layers[l]);
   }
   std::vector<vec4> plane(n);
   albedo_.read(plane.data(), n * 16);

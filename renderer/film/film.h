@@ -24,7 +24,8 @@ struct Image {
   std::vector<vec3> albedo, normal;                        ///< normal: unit or 0
   std::vector<float> depth;  ///< metres along the view axis, mean of hits; 0: none
   std::vector<uint32_t> samples;
-  std::vector<std::vector<vec3>> layers;  ///< radiance of the layers by path expressions
+  std::vector<std::vector<vec3>> layers;      ///< radiance of the layers by path expressions
+  std::vector<std::vector<vec3>> odd_layers;  ///< of the odd samples alone
 };
 
 /// The scale of a heat map: the layers samples, error (relative, of a pixel's block) and cost (device time of

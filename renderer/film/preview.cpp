@@ -62,13 +62,13 @@ void Preview::forget() {
   errors_.restart();
 }
 
-void Preview::keep(const vec3& scale, bool repainted, bool same_light) {
+void Preview::keep(const vec3& scale, bool repainted, bool same_light, float doubt) {
   if (shown_) {
     std::swap(now_, history_.pixels);
     history_.known = true, history_.surfaces = surfaces_known_;
     history_.camera = camera_, history_.exposure = exposure_;
     history_.scale = vec3(1);
-    history_.same_light = true, history_.recoloured = false;
+    history_.same_light = true, history_.recoloured = false, history_.doubt = 0;
     moved_camera_.reset();
     shown_ = false;
   }
@@ -78,6 +78,7 @@ void Preview::keep(const vec3& scale, bool repainted, bool same_light) {
   history_.scale *= scale;
   history_.recoloured |= repainted;
   history_.same_light &= same_light;
+  history_.doubt = std::max(history_.doubt, doubt);
   repainted_ |= repainted;
 }
 
@@ -464,7 +465,8 @@ PreviewShares Preview::develop(gpu::Stream& stream, const Film& film, const Film
                                    .blocks_down = blocks.y,
                                    .surfaces = surfaces,
                                    .moved = moved,
-                                   .tint = view.tint_former};
+                                   .tint = view.tint_former,
+                                   .doubt = history_.doubt};
   stream.dispatch(by_lut(view.display_lut, resolve_, resolve_by_lut_, "film/preview_resolve.comp"),
                   resources_, resolve, groups(pixels()));
   const bool measured = judge(stream, by_draft && draft ? *draft : film, view);

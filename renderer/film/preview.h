@@ -46,8 +46,8 @@ class Preview {
   void forget();
   /// Starts a new picture: the last one becomes the history. `scale`: known factor of the edit on all light;
   /// `repainted`: surfaces may have other colours; `same_light`: only the camera or the computation of light
-  /// has changed.
-  void keep(const vec3& scale = vec3(1), bool repainted = false, bool same_light = false);
+  /// has changed; `doubt`: expected relative change of light whose change is not known.
+  void keep(const vec3& scale = vec3(1), bool repainted = false, bool same_light = false, float doubt = 0);
   /// Starts a new picture with better light. The history stays unchanged.
   void better();
   /// Makes the film's picture, for layers that show light (View::layer up to shared::k_layer_primary + 3).
@@ -107,6 +107,7 @@ class Preview {
     /// Light is unchanged, but its appearance may depend on the direction.
     bool same_light = true;
     bool recoloured = false;  ///< surfaces had other colours
+    float doubt = 0;          ///< expected relative change of its light by edits since
     vec3 scale_for(const View& view) const { return scale * (view.exposure / exposure); }
   };
   void make_pixels(Pixels& to);

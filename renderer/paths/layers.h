@@ -41,7 +41,7 @@ class LayerSet {
   uint32_t classify(std::string_view word) const;
 
   /// Stored light contains the light of many words together; a layer that has some of these but not others
-  /// cannot be told from it.
+  /// cannot be separated from it.
   struct Routed {
     shared::LayerTable table;
     /// By layer: components (bits) of whose stored light it has an unknown part; 0: the layer is complete.

@@ -15,7 +15,7 @@ constexpr uint32_t k_draft_until = 4;
 
 }  // namespace
 
-void Display::restart(const scene::Changes& changes, const vec3& scale, bool same_light) {
+void Display::restart(const scene::Changes& changes, const vec3& scale, bool same_light, float doubt) {
   const auto is = [&](scene::Change c) { return changes.edits.contains(c); };
   const bool repainted =
       is(scene::Change::colour) || is(scene::Change::material) || is(scene::Change::shaders);
@@ -23,7 +23,7 @@ void Display::restart(const scene::Changes& changes, const vec3& scale, bool sam
   if (changes.other_surfaces() || is(scene::Change::size))
     preview_.forget();
   else
-    preview_.keep(scale, repainted, same_light);
+    preview_.keep(scale, repainted, same_light, doubt);
   plan_.restart();
   former_is_preview_ = false;
   ++version_;

@@ -19,8 +19,8 @@ class Display {
       : device_(device), preview_(device, compiler), sight_(device, compiler) {}
 
   /// Call when the picture begins with other light or another view. `scale`: known factor of the edit on all
-  /// light. `same_light`: only the computation or the view has changed.
-  void restart(const scene::Changes& changes, const vec3& scale, bool same_light);
+  /// light. `same_light`: only the computation or the view has changed. `doubt`: as in film::Preview::keep.
+  void restart(const scene::Changes& changes, const vec3& scale, bool same_light, float doubt);
   /// Call before that, while the film still holds samples of every pixel: keeps it as the shown picture, if
   /// plain() says so. `noise`: factor on the standard errors of its halves. True if taken.
   bool take(gpu::Stream& stream, const film::Film& film, double noise = 1);

@@ -85,7 +85,7 @@ film::FilmImage picture_layers(const Setup& setup, const film::Image& image) {
   return out;
 }
 
-void add_noise_layers(film::FilmImage& out, const film::Film& film, const film::Image& image, bool looks_up) {
+void add_noise_layers(film::FilmImage& out, const Setup& setup, const film::Image& image, bool looks_up) {
   constexpr uint32_t k_tile = 16;
   std::vector<vec3> sum(image.samples.size(), vec3(0));
   for (const auto& component : image.odd_half)
@@ -93,8 +93,11 @@ void add_noise_layers(film::FilmImage& out, const film::Film& film, const film::
   film::add_plane(out, "odd.", "RGB", sum);
   for (int c = 0; c < film::k_components; ++c)
     film::add_plane(out, std::string("odd.") + paths::k_component_names[c] + ".", "RGB", image.odd_half[c]);
+  for (size_t l = 0; l < image.odd_layers.size(); ++l)
+    film::add_plane(out, "odd." + setup.engine->layers().layers().at(l).name + ".", "RGB",
+                    image.odd_layers[l]);
   if (!looks_up) return;
-  const std::vector<film::TileError> tiles = film::tile_errors(film, k_tile);
+  const std::vector<film::TileError> tiles = film::tile_errors(*setup.film, k_tile);
   const uint32_t across = (image.width + k_tile - 1) / k_tile;
   std::vector<float> noise(sum.size()), bias(sum.size());
   for (size_t i = 0; i < sum.size(); ++i) {

@@ -11,6 +11,6 @@ film::FilmImage picture_layers(const Setup& setup, const film::Image& image);
 /// Adds what the noise is known by, for film::compare_stochastic(): the mean of the odd samples ("odd.R",
 /// "odd.primary.R", ...) and, with `looks_up`, per tile of 16x16 pixels the noise and bias of lookups in the
 /// mean luminance ("lookup.noise", "lookup.bias").
-void add_noise_layers(film::FilmImage& out, const film::Film& film, const film::Image& image, bool looks_up);
+void add_noise_layers(film::FilmImage& out, const Setup& setup, const film::Image& image, bool looks_up);
 
 }  // namespace lucerna::session

@@ -236,7 +236,7 @@ film::FilmImage PictureOutput::film_image_with_halves() {
   mix_.settle();
   const film::Image image = setup_.film->read();
   film::FilmImage out = layers_of(image);
-  add_noise_layers(out, *setup_.film, image, !setup_.engine->solvers().empty());
+  add_noise_layers(out, setup_, image, !setup_.engine->solvers().empty());
   return out;
 }
 
@@ -310,8 +310,8 @@ bool PictureOutput::keep_former(const std::vector<vec3>* factors) {
                         filtered ? std::sqrt(filtered->error.over_noise) : 1);
 }
 
-void PictureOutput::restart(const scene::Changes& changes, const vec3& scale, bool same_light) {
-  if (display_) display_->restart(changes, scale, same_light);
+void PictureOutput::restart(const scene::Changes& changes, const vec3& scale, bool same_light, float doubt) {
+  if (display_) display_->restart(changes, scale, same_light, doubt);
 }
 
 void PictureOutput::worked(double seconds) {

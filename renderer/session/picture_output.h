@@ -109,7 +109,7 @@ class PictureOutput {
   /// null: none. True if it is shown.
   bool keep_former(const std::vector<vec3>* factors);
   /// Call when the picture begins (Display::restart).
-  void restart(const scene::Changes& changes, const vec3& scale, bool same_light);
+  void restart(const scene::Changes& changes, const vec3& scale, bool same_light, float doubt);
   /// Estimates the error of the window's filtered picture again, from the samples added since.
   void judge_filtered();
   /// Call after a work item that took that time [s].

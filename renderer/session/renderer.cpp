@@ -156,9 +156,14 @@ bool shows_light(const std::vector<vec3>& factors) {
   });
 }
 
+/// Expected relative change of light by another sky, or by a growth that the former picture cannot show: so
+/// large that older light is only used where there is no new light.
+constexpr float k_other_light = 4;
+
 }  // namespace
 
-void Renderer::restart(const scene::Changes& changes, const std::optional<std::vector<vec3>>& factors) {
+void Renderer::restart(const scene::Changes& changes, const std::optional<std::vector<vec3>>& factors,
+                       bool other_sky) {
   if (!setup_.engine || !setup_.film) return;
   setup_.kept.note(changes.edits);
   pilot_.reset();  // of another view, or of other light
@@ -179,7 +184,8 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
   wavefront.reset_stats();
   mix_.restart();
   sampling_.restart();
-  output_.restart(changes, factor.value_or(vec3(1)), known);
+  const bool unlike = !known && (other_sky || (factors && !shown));
+  output_.restart(changes, factor.value_or(vec3(1)), known, unlike ? k_other_light : 0);
   if (changes.other_surfaces() || changes.edits.contains(scene::Change::shaders)) overlays_.forget_surfaces();
   begun_lens_ = setup_.camera.lens;
   previews_.restart(known);

@@ -202,8 +202,9 @@ class Renderer {
   void light_by(std::shared_ptr<scene::Scene> edited, const scene::Environment& environment);
   void edit(Transaction::Target target, const scene::Changes& changes, bool factors);
   /// `factors`: known factor on the light of each group, if the edit is no more than that
-  /// (scene::light_factors).
-  void restart(const scene::Changes& changes, const std::optional<std::vector<vec3>>& factors = {});
+  /// (scene::light_factors). `other_sky`: the environment is another one.
+  void restart(const scene::Changes& changes, const std::optional<std::vector<vec3>>& factors = {},
+               bool other_sky = false);
   PictureView picture_view() const { return setup_.view(automaton_); }
   /// True if the picture's light is unchanged, whatever its computation and camera.
   bool keeps_light(const scene::Changes& changes) const;

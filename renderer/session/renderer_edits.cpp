@@ -22,6 +22,11 @@ bool same_light(const std::vector<scene::Light>& a, const std::vector<scene::Lig
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), equal);
 }
 
+/// True if the environment is another one, and not only brighter or turned.
+bool other_sky(const scene::Environment& a, const scene::Environment& b) {
+  return a.image != b.image || a.radiance != b.radiance || a.file != b.file || a.sky != b.sky;
+}
+
 }  // namespace
 
 void Renderer::set_light_list(const std::vector<scene::Light>& lights) {
@@ -161,6 +166,7 @@ void Renderer::edit(Transaction::Target target, const scene::Changes& changes, b
   const bool by_group = after.separate && before.separate && *after.groups == *before.groups;
   const std::optional<std::vector<vec3>> light =
       scene::light_factors(*setup_.world.lit, *after.lit, by_group ? after.groups.get() : nullptr);
+  const bool sky = other_sky(setup_.world.lit->environment, after.lit->environment);
   // Only the emission of materials has changed.
   const scene::Changes what = light && factors ? scene::Changes(scene::Change::lamp) : changes;
   transaction.edit_world(factors);
@@ -168,7 +174,7 @@ void Renderer::edit(Transaction::Target target, const scene::Changes& changes, b
   const bool rebuilt = transaction.has_engine();
   commit(transaction);
   if (rebuilt) notify_settings_changed();
-  restart(what, light);
+  restart(what, light, sky);
 }
 
 }  // namespace lucerna::session

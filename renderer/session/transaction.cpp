@@ -37,7 +37,7 @@ Transaction::Transaction(const SetupContext& context, Setup& setup, Target targe
     target_.settings.set("film.layer", "beauty");
   check_shown_layer(layers, target_.settings);
   if (layers_ > 0 && target_.settings.text("relight.enabled") == "on")
-    throw_error("film.layers", "layers cannot be told apart by light groups; use relight.enabled=compact");
+    throw_error("film.layers", "layers are not stored by light group; use relight.enabled=compact");
 }
 
 Relight Transaction::make_relight() const {

@@ -261,7 +261,6 @@ Wavefront::Wavefront(gpu::Device& device, gpu::ShaderCompiler& compiler, const u
   w.film_add_images = gpu::Kernel(device, compiler, "film/add.comp", images);
   if (w.layers > 0) {
     gpu::Defines of_layer = defines;
-    of_layer["LUCERNA_FILM_LAYER"] = "1";
     w.layer_add = gpu::Kernel(device, compiler, "film/add_layer.comp", of_layer);
     of_layer["LUCERNA_FILM_IMAGES"] = "1";
     w.layer_add_images = gpu::Kernel(device, compiler, "film/add_layer.comp", of_layer);

@@ -1,5 +1,6 @@
 // Adds a batch's finished paths to a layer of the film (shared/layers.h), before film/add.comp counts its samples: one
 // invocation a pixel, samples in their order, as there.
+#define LUCERNA_FILM_LAYER 1
 #include "lib/variants.glsl"
 #include "lib/film.glsl"
 #include "lib/blocks.glsl"

@@ -4,7 +4,8 @@
 // For new light N of variance v and older light O of variance u, the difference d = N - O measures the change: the mean of
 // its square is v + u + change^2. The mix w O + (1 - w) N has the least error for w = v / (v + u + change^2). Both are
 // filtered for the difference, so that detail lost in filtering does not count as change. Before that, O is scaled by the
-// change measured over many pixels (film/preview_change.comp).
+// change measured over many pixels (film/preview_change.comp). Another sky, or another colour of light, may look alike in
+// luminance: the edit says how much change to expect at least (doubt).
 #include "lib/display.glsl"
 #include "lib/invocation.glsl"
 #include "lib/picture.glsl"
@@ -324,13 +325,13 @@ void main() {
       }
       float difference = luminance(modulation) * before_smooth[c] * inverse - smooth_luminance;
       // Chance alone must not count as change: it would show as specks.
-      float change = max(square(difference) - by_chance * (u + v), 0.0);
+      float change = max(square(difference) - by_chance * (u + v), square(push.doubt * luminance(before)));
       float keep = kept ? unsure * v / (v + u + change) : 0.0;
       bool nothing = weights <= 1e-5 && here.samples <= 0.0;
       if (nothing) keep = kept ? 1.0 : 0.0;
       now = mix(now, before, keep);
       // Where light has changed, the reported error counts all that samples hold against the old, chance or not.
-      float doubt = push.same_light != 0u ? change : max(square(difference) - u - v, 0.0);
+      float doubt = push.same_light != 0u ? change : max(square(difference) - u - v, square(push.doubt * luminance(before)));
       float of_before = keep * keep * (u + doubt), left = sqrt(square((1.0 - keep) * error) + of_before);
       result.of[c] = vec4(now, nothing && !kept ? -1.0 : left);
       if ((push.show >> c & 1u) != 0u) color += now;

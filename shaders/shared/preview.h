@@ -114,6 +114,7 @@ struct PreviewResolvePush {
   uint surfaces;         ///< k_preview_surface_*
   uint moved;            ///< not 0: the camera has moved since the previous picture
   uint tint;             ///< not 0: tints light from before the last edit
+  float doubt;           ///< expected change of the previous picture's light by the edit, relative
 };
 
 /// Colour of light from before the last edit, sRGB.

@@ -56,7 +56,12 @@ TEST_CASE("a layer with a component's expression is that component, and changes 
       {"gallery", {{"relight.enabled", "compact"}}}};
   for (const Case& c : cases) {
     INFO(c.scene << " " << (c.settings.empty() ? "" : c.settings.begin()->first));
-    test::Render plain{.scene = c.scene, .width = 32, .height = 32, .samples = 6, .settings = c.settings};
+    test::Render plain{.scene = c.scene,
+                       .width = 24,
+                       .height = 24,
+                       .samples = 3,
+                       .settings = c.settings,
+                       .validated = &c == cases};
     test::Render layered = plain;
     layered.settings["film.layers"] = k_components;
     const test::Result a = test::render(plain), b = test::render(layered);
@@ -67,6 +72,7 @@ TEST_CASE("a layer with a component's expression is that component, and changes 
     for (size_t k = 0; k < 4; ++k) {
       INFO(paths::k_component_names[k]);
       CHECK(worst_difference(b.image.layers[1 + k], b.image.components[k]) < 1e-6);
+      CHECK(worst_difference(b.image.odd_layers[1 + k], b.image.odd_half[k]) < 1e-6);
     }
     CHECK(test::mean(b.image.layers[0]) > 0.01);
     CHECK(worst_difference(b.image.layers[0], sum_of(b.image)) < 1e-5);
@@ -180,6 +186,9 @@ TEST_CASE("layers are shown and written, and another set of them restarts the pi
   CHECK(has("mirrored.R"));
   CHECK(has("first.B"));
   CHECK(has("primary.G"));
+  // The halves, for the noise of a pixel.
+  const film::FilmImage halves = renderer.output().film_image_with_halves();
+  CHECK(halves.layer("odd.mirrored").size() == 3);
   // Refused, and nothing has changed.
   for (const auto& [key, value] : test::Settings{{"film.layers", "a = DL"}, {"film.layer", "nothing"}}) {
     INFO(key);

@@ -117,6 +117,33 @@ TEST_CASE("after an edit the previous picture stays until new light contradicts 
   for (const float v : stage.shown()) REQUIRE(v == 0);
 }
 
+TEST_CASE("light of another colour and equal luminance is replaced where much change is expected") {
+  // Luminance cannot show the change, and noisy new light does not contradict the old.
+  const vec3 green(0, 0.2f, 0), red(0.2f * luminance(vec3(0, 1, 0)) / luminance(vec3(1, 0, 0)), 0, 0);
+  for (const float doubt : {0.0f, 4.0f}) {
+    INFO("doubt " << doubt);
+    Stage stage(64, 48);
+    stage.sample(stage.film, 8, [&](uint32_t, uint32_t) { return Sample{.light = green}; });
+    stage.show();
+    stage.preview.keep(vec3(1), false, false, doubt);
+    stage.film.clear(stage.stream);
+    // Without new light the old picture stays in any case.
+    CHECK(stage.show().stale == Approx(1));
+    std::mt19937 random(5);
+    std::exponential_distribution<float> noise(1);
+    stage.sample(stage.film, 2, [&](uint32_t, uint32_t) { return Sample{.light = red * noise(random)}; });
+    const film::PreviewShares shares = stage.show();
+    const double shown = mean_of(stage.shown()) / double(red.x);
+    if (doubt > 0) {
+      CHECK(shares.stale < 0.05);
+      CHECK(shown == Approx(1).margin(0.15));
+    } else {
+      CHECK(shares.stale > 0.3);
+      CHECK(shown < 0.7);
+    }
+  }
+}
+
 TEST_CASE("the previous picture is scaled by the change that few samples of many pixels show") {
   // Shadows too fine for the new noise, in a room where one side gets dimmer and the other brighter.
   Stage stage(192, 96);

@@ -150,7 +150,7 @@ std::vector<SharedStruct> structs() {
       SHARED("preview.h", PreviewFetchPush, width, height, across, down, projections, keep, before, now),
       SHARED("preview.h", PreviewResolvePush, width, height, across, down, show, curve, filtering, history,
              repainted, history_scale, step, sampled, same_light, recoloured, blocks_across, blocks_down,
-             surfaces, moved, tint),
+             surfaces, moved, tint, doubt),
       SHARED("preview.h", PreviewChangePush, across, down, blocks_across, blocks_down, all),
       SHARED("preview.h", PreviewShares, all, stale, filtered),
       SHARED("preview.h", PreviewJudgePush, width, height, film_width, film_height, step),

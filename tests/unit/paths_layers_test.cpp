@@ -66,7 +66,7 @@ TEST_CASE("a layer knows its part of stored light if all of its words agree") {
   const Automaton automaton = compile_components();
   const LookupRoutes cached = lookup_routes(automaton, 15, k_secondary_bit | k_tertiary_bit);
   const auto routed = [&](const char* text) { return layers(text).routed(cached, {}); };
-  // By what comes before the record, and by component, stored light can be told apart ...
+  // By what comes before the record, and by component, stored light can be separated ...
   for (const char* known : {"a = E.*L", "a = ES.*L", "a = ED.*L", "a = E[SG]*D[SG]*DL", "a = E[SG]*DL",
                             "a = E[SG]*D[SG]+L", "a = E[SG]+D.*D.*L"}) {
     INFO(known);
