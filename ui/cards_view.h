@@ -16,11 +16,20 @@ struct CardsView {
   struct {
     std::string text;
     double until = 0;
+    bool of_click = false;  ///< says what the next click does, and stays until then
   } note;
   /// Shows such a sentence.
   void notice(const std::string& text, double seconds = 6) {
-    note.text = text, note.until = actions.now() + seconds;
+    note = {text, actions.now() + seconds, false};
     actions.wake(3);
+  }
+  /// Says what the next click in the picture does, until end_click_notice().
+  void click_notice(const std::string& text) {
+    note = {text, 1e300, true};
+    actions.wake(3);
+  }
+  void end_click_notice() {
+    if (note.of_click) note = {};
   }
   std::vector<std::string> errors;  ///< the strip's, newest last
   bool welcome = false;             ///< the first steps are shown

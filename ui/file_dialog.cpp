@@ -1,8 +1,8 @@
 // The file dialogs: a field with completion, places, and the program's scenes as pictures.
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
-#include <imgui_internal.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>

@@ -72,13 +72,18 @@ void example_list(Controls& controls) {
 
 }  // namespace
 
+std::string layer_count(const Controls& controls) {
+  const size_t n = session::layers_in(controls.open.setting("film.layers")).size();
+  return n > 0 ? fmt::format("{}", n) : "";
+}
+
 void draw_layers(Controls& controls, TypedLayer& typed) {
   const std::vector<paths::Layer> layers = session::layers_in(controls.open.setting("film.layers"));
   // What was typed stays until it has become a layer, for the case that it is refused.
   if (std::find(layers.begin(), layers.end(), paths::Layer{typed.name, typed.expression}) != layers.end())
     typed = {};
   if (layers.empty())
-    quiet_line("Light of the paths that an expression names, shown and saved beside the components.");
+    paragraph("Light of the paths that an expression names, shown and saved beside the components.");
   for (const paths::Layer& layer : layers) layer_row(controls, layer);
   gap(4);
   const float width = ImGui::CalcItemWidth(), half = (width - px(4)) / 2;
@@ -97,7 +102,9 @@ void draw_layers(Controls& controls, TypedLayer& typed) {
   ImGui::BeginDisabled(!complete);
   const bool pressed = button("##add", "Add", false, half);
   ImGui::EndDisabled();
-  tooltip("Adds the layer, or changes the one of that name, and shows it. The picture starts again.");
+  tooltip(
+      "Adds the layer, or changes the one of that name. The picture starts again; a click on its row shows "
+      "it.");
   if ((pressed || entered) && complete) controls.act("layer.add", typed.name, typed.expression);
   ImGui::SameLine(0, px(4));
   ImGui::PushItemWidth(half);

@@ -11,6 +11,8 @@ struct TypedLayer {
   std::string name, expression;
 };
 
+/// For the section's heading; "" if there is none.
+std::string layer_count(const Controls& controls);
 /// Inside a panel's section. Requires a scene.
 void draw_layers(Controls& controls, TypedLayer& typed);
 

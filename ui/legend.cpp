@@ -292,7 +292,8 @@ Area draw_legend(const commands::OpenScene& open, bool light_marks, const Area& 
       of_layer.push_back(
           {.title = layer.name,
            .note = fmt::format(
-               "Light of the paths {}.{}", layer.expression,
+               "Light of the paths {}.{}{}", layer.expression,
+               picture.coarse ? " It appears with the first sample." : "",
                layer.lacks.empty() ? "" : " Part of its " + layer.lacks + " light is not known.")});
   const auto add = [&](const solvers::Legend& legend) {
     blocks.push_back({legend.title, legend.note, body_height(legend),

@@ -223,7 +223,7 @@ void draw_light_panel(Controls& controls, TypedLayer& typed_layer, bool expanded
                 controls.open.setting("effects.off").empty() ? "" : "some are off", 8,
                 [&] { draw_effects(controls); });
   if (controls.open.scene)
-    panel_block(controls, "Layers", false, controls.open.setting("film.layers").empty() ? "" : "own", 10,
+    panel_block(controls, "Layers", false, layer_count(controls), 10,
                 [&] { draw_layers(controls, typed_layer); });
   panel_block(controls, "Render", true, "", 12, [&] { render_rows(controls); });
   hairline();

@@ -35,6 +35,7 @@ bool Viewport::cancel_drag() {
 }
 
 void Viewport::take_click() {
+  cards.end_click_notice();
   dropper = scene_view.focusing = scene_view.highlighting = region.picks = false;
   paths.pick = PathsView::Pick::none;
   paths.marquee.reset(), region.marquee.reset();
@@ -465,6 +466,7 @@ void draw_toolbar(Actions& actions, const commands::OpenScene& open, bool droppe
 
 void draw_picture(Viewport& v, const Keys& keys, const std::vector<std::string>& recent, bool paths_marks,
                   const Area& area) {
+  if (!v.click_taken()) v.cards.end_click_notice();
   begin_panel("##picture", area, colour::surround, false);
   v.area = area;
   ImDrawList* list = ImGui::GetWindowDrawList();

@@ -161,7 +161,7 @@ void add_picture_commands(Ui& ui, const Add& add) {
         ui.viewport.take_click();
         ui.viewport.dropper = a.boolean("on");
         if (ui.viewport.dropper)
-          ui.cards.notice("Click a grey point to show it as middle grey. Esc cancels.");
+          ui.cards.click_notice("Click a grey point to show it as middle grey. Esc cancels.");
       },
       false);
   add(
@@ -169,7 +169,7 @@ void add_picture_commands(Ui& ui, const Add& add) {
       [&ui](const Arguments& a) {
         ui.viewport.take_click();
         ui.scene_view.focusing = a.boolean("on");
-        if (ui.scene_view.focusing) ui.cards.notice("Click a surface to focus on it. Esc cancels.");
+        if (ui.scene_view.focusing) ui.cards.click_notice("Click a surface to focus on it. Esc cancels.");
       },
       false);
   add(
@@ -181,7 +181,7 @@ void add_picture_commands(Ui& ui, const Add& add) {
         ui.viewport.take_click();
         ui.scene_view.highlighting = a.boolean("on");
         if (ui.scene_view.highlighting)
-          ui.cards.notice("Click where the light's highlight shall be. Esc cancels.");
+          ui.cards.click_notice("Click where the light's highlight shall be. Esc cancels.");
       },
       false);
   add(
@@ -198,8 +198,9 @@ void add_picture_commands(Ui& ui, const Add& add) {
         if (ui.paths.pick == Pick::none) return;
         ui.side = k_paths_side;
         set_open(ui.layout, "right", true);
-        ui.cards.notice(ui.paths.pick == Pick::pixel ? "Click a pixel to trace its paths. Esc cancels."
-                                                     : "Drag a rectangle to explain its noise. Esc cancels.");
+        ui.cards.click_notice(ui.paths.pick == Pick::pixel
+                                  ? "Click a pixel to trace its paths. Esc cancels."
+                                  : "Drag a rectangle to explain its noise. Esc cancels.");
       },
       false);
   add(
@@ -207,7 +208,7 @@ void add_picture_commands(Ui& ui, const Add& add) {
       [&ui](const Arguments& a) {
         ui.viewport.take_click();
         ui.region.picks = a.boolean("on");
-        if (ui.region.picks) ui.cards.notice("Drag a rectangle: it gets all samples. Esc cancels.");
+        if (ui.region.picks) ui.cards.click_notice("Drag a rectangle: it gets all samples. Esc cancels.");
       },
       false);
   add("view.histogram",

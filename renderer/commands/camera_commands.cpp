@@ -243,20 +243,20 @@ void add_selection_commands(Workspace& work) {
              const Navigation& camera = work.camera;
              work.open.needs_scene(), camera.needs_view();
              const float right = a.number("right"), down = a.number("down");
-             const Selection lit = light_at(work, right, down);
-             if (lit.kind != Kind::none && lit != camera.selection) {
-               work.run(line(lit.kind == Kind::light ? "select light" : "select material", lit.index + 1));
-               return;
-             }
              const auto hit =
                  session::pick(*work.open.scene, camera.view->camera, right, down, camera.aspect);
-             if (!hit) {
-               if (camera.selection.kind != Kind::none) work.run("select.none");
+             // Clicks at one place: the light, the object, its material, and the light again.
+             if (hit && camera.selection == Selection{Kind::instance, hit->instance}) {
+               work.run(line("select material", hit->material + 1));
                return;
              }
-             const bool again = camera.selection == Selection{Kind::instance, hit->instance};
-             work.run(again ? line("select material", hit->material + 1)
-                            : line("select object", hit->instance + 1));
+             const Selection lit = light_at(work, right, down);
+             if (lit.kind != Kind::none && lit != camera.selection)
+               work.run(line(lit.kind == Kind::light ? "select light" : "select material", lit.index + 1));
+             else if (hit)
+               work.run(line("select object", hit->instance + 1));
+             else if (camera.selection.kind != Kind::none)
+               work.run("select.none");
            },
        .recorded = false});
   work.registry.add({.name = "select.none",

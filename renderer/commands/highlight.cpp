@@ -198,7 +198,7 @@ Selection light_in_highlight(const session::Probe& probe, const std::vector<scen
   return {};
 }
 
-void place_highlight(const session::Probe& probe, const session::PickRay& ray, scene::Light& light) {
+bool place_highlight(const session::Probe& probe, const session::PickRay& ray, scene::Light& light) {
   const auto hit = ray.direction == vec3(0) ? std::nullopt : probe.nearest(ray.origin, ray.direction);
   if (!hit) throw Error("", "there is no surface at this point of the picture");
   const vec3 way = glm::reflect(ray.direction, session::surface_at(probe.scene(), *hit).normal);
@@ -206,15 +206,17 @@ void place_highlight(const session::Probe& probe, const session::PickRay& ray, s
     throw Error("", "the surface is seen edge-on there; its reflection goes into it");
   if (light.kind == scene::LightKind::directional) {
     light.direction = -way, light.sun.reset();
-    return;
+    return true;
   }
-  float distance = glm::distance(light.position, hit->position);
+  const float before = glm::distance(light.position, hit->position);
+  float distance = before;
   const vec2 half = scene::half_size(light);
   const vec3 start = off_the_surface(*hit, way);
   if (const auto wall = probe.nearest(start, way, 1.2f * distance + std::max(half.x, half.y)))
     distance = std::min(distance, std::max(0.8f * wall->distance, wall->distance - std::max(half.x, half.y)));
   light.position = hit->position + distance * way;
   if (can_be_aimed(light)) scene::turn_to(light, -way);
+  return distance == before;
 }
 
 }  // namespace lucerna::commands

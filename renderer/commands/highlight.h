@@ -18,7 +18,8 @@ Selection light_in_highlight(const session::Probe& probe, const std::vector<scen
 
 /// Moves a light so that the ray meets its highlight: a lamp to the reflected ray, as far from the surface as
 /// it is now, or as there is room; a sun so that it comes from there (without a date then). Lights with a
-/// direction are aimed at the surface. Throws Error: no surface there, or the reflection goes into it.
-void place_highlight(const session::Probe& probe, const session::PickRay& ray, scene::Light& light);
+/// direction are aimed at the surface. False if something is in the way of a lamp, which is nearer now.
+/// Throws Error: no surface there, or the reflection goes into it.
+bool place_highlight(const session::Probe& probe, const session::PickRay& ray, scene::Light& light);
 
 }  // namespace lucerna::commands

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "commands/command_list.h"
 #include "commands/text.h"
 #include "commands/workspace.h"
@@ -13,9 +14,9 @@ void add_layer_commands(Workspace& work) {
   const auto layers = [&work] { return session::layers_in(work.open.setting("film.layers")); };
   work.registry.add(
       {.name = "layer.add",
-       .help =
-           "Adds a layer of the light of certain paths (film.layers), or gives one another expression, and "
-           "shows it. The picture starts again.",
+       .help = "Adds a layer of the light of certain paths (film.layers), or gives one another expression. "
+               "The picture "
+               "starts again; film.layer shows a layer.",
        .parameters = {{.name = "name", .help = "letters, digits, '_' and '-'"},
                       {.name = "expression",
                        .help = "of words from E, the eye, over D, G and S, diffuse, glossy and specular "
@@ -27,13 +28,14 @@ void add_layer_commands(Workspace& work) {
              const auto at = std::find_if(all.begin(), all.end(), [&](const paths::Layer& layer) {
                return layer.name == a.text("name");
              });
+             if (at != all.end() && at->expression != a.text("expression"))
+               log::info("layer '{}' is now {}; it was {}", at->name, a.text("expression"), at->expression);
              if (at != all.end())
                at->expression = a.text("expression");
              else
                all.push_back({a.text("name"), a.text("expression")});
              session::check_layers(paths::layers_text(all));
              work.run(line("set", "film.layers", paths::layers_text(all)));
-             work.run(line("set", "film.layer", a.text("name")));
            },
        .recorded = false});
   work.registry.add({.name = "layer.remove",

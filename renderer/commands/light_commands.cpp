@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "base/error.h"
+#include "base/log.h"
 #include "commands/command_list.h"
 #include "commands/highlight.h"
 #include "commands/light_placement.h"
@@ -254,10 +255,14 @@ void add_light_place_commands(Workspace& work) {
              const session::Probe* probe = work.camera.probe(true);
              if (!probe) throw Error("", "the scene's surfaces are not known");
              const scene::Light before = light;
-             place_highlight(*probe,
-                             session::pick_ray(work.camera.view->camera, a.number("right"), a.number("down"),
-                                               work.camera.aspect),
-                             light);
+             const bool free = place_highlight(*probe,
+                                               session::pick_ray(work.camera.view->camera, a.number("right"),
+                                                                 a.number("down"), work.camera.aspect),
+                                               light);
+             if (!free)
+               log::info("light '{}' is nearer to its highlight now: something is in the way", light.name);
+             if (light.kind == scene::LightKind::directional && light.direction.y > 0)
+               log::warning("sun '{}' shines from below the horizon", light.name);
              follow_sun(work.open, before, light);
            },
        .undoable = true});

@@ -45,6 +45,9 @@ bool Display::take(gpu::Stream& stream, const film::Film& film, double noise) {
 
 void Display::plain(const Engine& engine, const PictureView& view, const film::View& shown) {
   shares_ = {};
+  plain_.reset();
+  // A layer of its own scale, or of some paths, is no picture to go on from; the last developed one is.
+  if (shown.layer >= shared::k_layer_albedo) return;
   plain_ = {preview_camera(engine.frame(view, view.width, view.height)), shown};
 }
 

@@ -145,7 +145,7 @@ TEST_CASE("a lamp goes where its highlight is at the point, as far away as befor
       if (kind == Kind::directional) light.sun = scene::SunTime();
       const vec3 eye{across(random), up(random), across(random)}, at{across(random), 0, across(random)};
       const float before = glm::distance(light.position, at);
-      place_highlight(probe, ray(eye, at), light);
+      CHECK(place_highlight(probe, ray(eye, at), light));
       INFO("kind " << int(kind) << ", trial " << trial);
       // Angles in and out are equal, in one plane: the lamp lies on the line from the eye's image.
       const vec3 from_image = glm::normalize(at - vec3(eye.x, -eye.y, eye.z));
@@ -168,7 +168,7 @@ TEST_CASE("a lamp stays in front of walls, and impossible highlights are refused
   const session::Probe probe = probe_of(s);
   scene::Light light = lamp();
   light.position = {8, 1, 0};
-  place_highlight(probe, ray({-1, 1, 0}, vec3(0)), light);
+  CHECK_FALSE(place_highlight(probe, ray({-1, 1, 0}, vec3(0)), light));
   CHECK(light.position.y < 2);
   CHECK(light.position.y > 1);
   CHECK(light.position.x == Approx(light.position.y).epsilon(1e-3));
