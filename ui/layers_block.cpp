@@ -95,16 +95,15 @@ void draw_layers(Controls& controls, TypedLayer& typed) {
   const bool entered = ImGui::InputTextWithHint("##expression", "E[SG]*DL", &typed.expression,
                                                 ImGuiInputTextFlags_EnterReturnsTrue);
   tooltip(
-      "Words of paths: E at the eye, D diffuse, G glossy, S specular, . any of these, L at the light; [SG] "
-      "one "
-      "of several, * any number, + at least one, ? at most one, | or.");
+      "Words of paths: E at the eye, D diffuse, G glossy, S specular, . any of these, L at the light; "
+      "[SG] one of several, * any number, + at least one, ? at most one, | or.");
   const bool complete = !typed.name.empty() && !typed.expression.empty();
   ImGui::BeginDisabled(!complete);
   const bool pressed = button("##add", "Add", false, half);
   ImGui::EndDisabled();
   tooltip(
-      "Adds the layer, or changes the one of that name. The picture starts again; a click on its row shows "
-      "it.");
+      "Adds the layer, or changes the one of that name. The picture starts again; a click on its row "
+      "shows it.");
   if ((pressed || entered) && complete) controls.act("layer.add", typed.name, typed.expression);
   ImGui::SameLine(0, px(4));
   ImGui::PushItemWidth(half);
