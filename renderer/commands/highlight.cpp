@@ -29,24 +29,21 @@ vec3 off_the_surface(const session::Picked& hit, const vec3& to) {
 
 float schlick(float f0, float cosine) { return f0 + (1 - f0) * std::pow(1 - cosine, 5.0f); }
 
-/// A lobe of a surface: perceptual roughness and reflectance.
 struct Lobe {
-  float alpha, f0, strength;
+  float alpha;     ///< width of GGX: the squared roughness
+  float f0;        ///< reflectance of perpendicular light
+  float strength;  ///< 0..1
 };
 
 struct Reflector {
   session::PickedSurface surface;
-  vec3 point, to_eye;
+  vec3 to_eye;
   float diffuse;  ///< reflectance
   Lobe lobes[2];  ///< of the surface and of its coat
 };
 
 Reflector reflector_at(const scene::Scene& scene, const session::Picked& hit, const vec3& direction) {
-  Reflector r{.surface = session::surface_at(scene, hit),
-              .point = hit.position,
-              .to_eye = -direction,
-              .diffuse = 0,
-              .lobes = {}};
+  Reflector r{.surface = session::surface_at(scene, hit), .to_eye = -direction, .diffuse = 0, .lobes = {}};
   const scene::Material& m = scene.materials[hit.material];
   const float ratio = (m.ior - 1) / (m.ior + 1), base = luminance(r.surface.base_color);
   const float dielectric = std::min(1.0f, ratio * ratio * m.specular * luminance(m.specular_color));
@@ -75,15 +72,17 @@ struct Seen {
   float size = 0;               ///< sine of the angle of half its extent
 };
 
+vec3 shortened(const vec3& v, float most) {
+  const float length = glm::length(v);
+  return length > most ? most / length * v : v;
+}
+
 /// The point of a lamp with a shape that is nearest to a ray.
 vec3 nearest_point(const scene::Light& light, const vec3& from, const vec3& ray) {
   if (!has_shape(light.kind)) return light.position;
   const vec3 way = light.position - from;
-  if (light.kind == scene::LightKind::sphere) {
-    const vec3 off = glm::dot(way, ray) * ray - way;
-    const float length = glm::length(off);
-    return light.position + (length > light.radius ? light.radius / length : 1.0f) * off;
-  }
+  if (light.kind == scene::LightKind::sphere)
+    return light.position + shortened(glm::dot(way, ray) * ray - way, light.radius);
   if (light.kind == scene::LightKind::tube) {
     // Nearest points of two lines: of the ray and of the axis.
     const float along = glm::dot(light.right, ray), det = 1 - along * along;
@@ -92,11 +91,8 @@ vec3 nearest_point(const scene::Light& light, const vec3& from, const vec3& ray)
   }
   const float towards = glm::dot(ray, light.direction);
   if (std::abs(towards) < 1e-6f || glm::dot(way, light.direction) / towards <= 0) return light.position;
-  vec3 off = glm::dot(way, light.direction) / towards * ray - way;
-  if (light.kind == scene::LightKind::disk) {
-    const float length = glm::length(off);
-    return light.position + (length > light.radius ? light.radius / length : 1.0f) * off;
-  }
+  const vec3 off = glm::dot(way, light.direction) / towards * ray - way;
+  if (light.kind == scene::LightKind::disk) return light.position + shortened(off, light.radius);
   const vec3 up = glm::cross(light.right, light.direction);
   return light.position +
          std::clamp(glm::dot(off, light.right), -0.5f * light.width, 0.5f * light.width) * light.right +

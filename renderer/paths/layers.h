@@ -68,7 +68,7 @@ class LayerSet {
   std::vector<State> states_;
 };
 
-/// "reflections lacks tertiary light, ..." for the window and messages: `unknown` as in LayerSet::Routed.
+/// Names of components (bits) for a sentence: "secondary and caustic"; "": none.
 std::string unknown_text(uint32_t unknown);
 
 }  // namespace lucerna::paths

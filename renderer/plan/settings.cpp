@@ -170,7 +170,7 @@ void add_display_options(std::vector<OptionInfo>& list) {
       "film.layers",
       "Layers of light by path expressions, beside the components: NAME = EXPRESSION, NAME = EXPRESSION. "
       "Words begin with E at the eye, have D, G or S for a diffuse, glossy or specular event, and end with L "
-      "at the light: mirrored = ESD.*L, glow = ED[SG]*DL."));
+      "at the light: mirrored = ESD.*L, glow = ED[SG]+L."));
   list.push_back(without_restart(boolean_option(
       "overlay.tiles", "false", "Draws active tiles and the ratio of their error to the target.")));
   list.push_back(without_restart(
