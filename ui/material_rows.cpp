@@ -67,7 +67,10 @@ class MaterialRows {
     if (m_.normal_texture)
       number("normal_scale", "Relief", m_.normal_scale, "Strength of the normal texture.",
              {.lo = 0, .hi = 2, .decimals = 2, .typed_lo = -100, .typed_hi = 100});
+    if (m_.height_texture) relief();
     if (m_.metallic >= 1 || m_.unlit) return;
+    number("diffuse_roughness", with("Diffuse roughness", m_.diffuse_roughness_texture), m_.diffuse_roughness,
+           "0 is smooth plaster and paint; 1 is flat and dusty, as sandstone, clay and the moon.");
     number("specular", with("Reflection", m_.specular_texture), m_.specular,
            "Strength of a dielectric's reflection; 1 is physical.");
     if (m_.specular > 0)
@@ -75,6 +78,26 @@ class MaterialRows {
             m_.specular_color_texture, "Colour of the reflection seen from the front; white is physical.");
     number("ior", "Index of refraction", m_.ior, "Air 1, water 1.33, most paints and glass 1.5, diamond 2.4.",
            {.lo = 1, .hi = 2.5f, .decimals = 3, .typed_hi = 100});
+  }
+
+  // By the height texture.
+  void relief() {
+    number("height", "Height", m_.height,
+           "Height of the relief where the texture is white over where it is black; below 0 it is turned "
+           "inside out.",
+           {.lo = 0,
+            .hi = 0.05f,
+            .decimals = 4,
+            .unit = "m",
+            .typed_lo = -scene::k_max_height,
+            .typed_hi = scene::k_max_height});
+    bool deep = m_.deep_relief;
+    if (button("##deep_relief", "Hides and shadows itself", deep, ImGui::CalcItemWidth()))
+      set(named("deep_relief", !deep));
+    tooltip(
+        "Deep relief: rays are followed into it, white lying on the surface. If not, the relief only turns "
+        "the "
+        "shading normal, which costs less.");
   }
 
   void emission() {
@@ -201,7 +224,9 @@ constexpr const char* k_slot_labels[] = {"Base colour",
                                          "Sheen roughness",
                                          "Brushing",
                                          "Thin film",
-                                         "Film thickness"};
+                                         "Film thickness",
+                                         "Diffuse roughness",
+                                         "Height"};
 static_assert(std::size(k_slot_labels) == std::size(scene::k_texture_slots));
 
 /// The file or the image that a slot shows.

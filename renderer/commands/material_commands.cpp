@@ -19,6 +19,7 @@ using scene::MaterialFactors;
 using scene::TextureSource;
 
 constexpr double k_most = double{scene::k_max_strength};
+constexpr float k_usual_height = 0.01f;
 
 struct NumberWord {
   const char* name;
@@ -37,6 +38,11 @@ constexpr NumberWord k_numbers[] = {
      0, 1e6, "m"},
     {"diffuse_transmission", &MaterialFactors::diffuse_transmission,
      "share of light that is transmitted diffusely, as by leaves and lampshades", 0, 1},
+    {"diffuse_roughness", &MaterialFactors::diffuse_roughness,
+     "of the diffuse reflection; 1: as dusty as sandstone or clay", 0, 1},
+    {"height", &MaterialFactors::height,
+     "of relief by the height texture, from black to white; below 0: black is high (not with deep_relief)",
+     -double{scene::k_max_height}, double{scene::k_max_height}, "m"},
     {"cutoff", &MaterialFactors::alpha_cutoff, "coverage below it is none, with alpha=mask", 0, 1},
     {"normal_scale", &MaterialFactors::normal_scale, "strength of the normal map", -1000, 1000},
     {"clearcoat", &MaterialFactors::clearcoat, "strength of a coat of varnish", 0, 1},
@@ -115,6 +121,7 @@ std::vector<Parameter> material_parameters(const OpenScene& open) {
       real("strength", "emitted radiance of the strongest channel, before the colour", 0, 1e9, "cd/m2"));
   list.push_back(flag("on", "turns emission on or off"));
   list.push_back(flag("two_sided", "the back emits too"));
+  list.push_back(flag("deep_relief", "relief by the height texture hides and shadows itself"));
   using scene::LightUnit;
   for (Parameter& p : strength_parameters({LightUnit::lumen, LightUnit::watt, LightUnit::nit}))
     list.push_back(std::move(p));
@@ -209,8 +216,13 @@ void set_material(OpenScene& open, const Arguments& a) {
   if (a.has("absorb_distance"))
     m.attenuation_distance = a.number("absorb_distance") > 0 ? a.number("absorb_distance") : k_infinity;
   take(a, "two_sided", m.double_sided);
+  take(a, "deep_relief", m.deep_relief);
+  if (m.deep_relief && m.height < 0) m.height = -m.height;
   take_emission(open, a, index, m);
   take_textures(open, a, index, m);
+  // A height texture alone would show nothing.
+  if (a.has("height_texture") && !a.has("height") && m.height == 0 && a.text("height_texture") != "none")
+    m.height = k_usual_height;
 }
 
 }  // namespace
@@ -229,6 +241,7 @@ std::string material_words(const Document::Material& m) {
   if (std::isfinite(m.attenuation_distance)) put("absorb_distance", m.attenuation_distance, -1.0f);
   for (const ColourWord& w : k_colours) put(w.name, m.*w.value, plain.*w.value);
   put("two_sided", m.double_sided, false);
+  put("deep_relief", m.deep_relief, false);
   put("on", m.emits, true);
   for (const auto& [slot, source] : m.textures)
     if (source.kind == TextureSource::Kind::file)

@@ -107,6 +107,16 @@ bool absorbs(const Material& m) {
 void drop_absorption(Material& m) { m.attenuation_distance = k_infinity; }
 bool is_dispersive(const Material& m) { return is_solid_glass(m) && m.dispersion > 0; }
 void drop_dispersion(Material& m) { m.dispersion = 0; }
+bool has_rough_diffuse(const Material& m) { return m.diffuse_roughness > 0 && has_diffuse(m); }
+void drop_rough_diffuse(Material& m) { m.diffuse_roughness = 0, m.diffuse_roughness_texture = {}; }
+bool has_shallow_relief(const Material& m) { return has_relief(m) && !m.deep_relief && !m.unlit; }
+void drop_shallow_relief(Material& m) {
+  if (!m.deep_relief) m.height = 0, m.height_texture = {};
+}
+bool has_deep_relief(const Material& m) { return has_relief(m) && m.deep_relief; }
+void drop_deep_relief(Material& m) {
+  if (m.deep_relief) m.height = 0, m.height_texture = {};
+}
 bool is_translucent(const Material& m) { return m.diffuse_transmission > 0; }
 void drop_translucency(Material& m) { m.diffuse_transmission = 0; }
 bool has_clearcoat(const Material& m) { return m.clearcoat > 0 && !m.unlit; }
@@ -266,6 +276,12 @@ std::vector<Row> surface_rows() {
        of_materials<is_dispersive>, of_each<drop_dispersion>},
       {"diffuse_transmission", "Translucent sheets", group, "diffuse lobe to the other side",
        "no surface has it", of_materials<is_translucent>, of_each<drop_translucency>},
+      {"diffuse_roughness", "Rough diffuse surfaces", group, "diffuse lobe that depends on the view",
+       "no surface has it", of_materials<has_rough_diffuse>, of_each<drop_rough_diffuse>},
+      {"bump", "Relief by height", group, "shading normals by slopes", "no surface has it",
+       of_materials<has_shallow_relief>, of_each<drop_shallow_relief>},
+      {"parallax", "Deep relief", group, "rays followed into the relief", "no surface has it",
+       of_materials<has_deep_relief>, of_each<drop_deep_relief>},
       {"clearcoat", "Clear coats", group, "specular lobe over the material", "no surface has it",
        of_materials<has_clearcoat>, of_each<drop_clearcoat>},
       {"sheen", "Sheen of fibres", group, "lobe at grazing angles over the material", "no surface has it",
@@ -330,6 +346,10 @@ std::vector<Row> texture_rows() {
       {"iridescence_thickness_texture", "Thickness of film", group, "texture array", none,
        of_texture<&Material::iridescence_thickness_texture>,
        drop_texture<&Material::iridescence_thickness_texture>},
+      {"diffuse_roughness_texture", "Diffuse roughness", group, "texture array", none,
+       of_texture<&Material::diffuse_roughness_texture>, drop_texture<&Material::diffuse_roughness_texture>},
+      {"height_texture", "Height", group, "texture array", none, of_texture<&Material::height_texture>,
+       drop_texture<&Material::height_texture>},
   };
 }
 

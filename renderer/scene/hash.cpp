@@ -75,14 +75,16 @@ uint64_t materials(const Scene& scene, Images& images) {
     const auto& [base_color, metallic, roughness, normal_scale, emission, alpha_mode, alpha_cutoff,
                  double_sided, unlit, ior, specular, specular_color, transmission, thickness,
                  attenuation_color, attenuation_distance, dispersion, diffuse_transmission,
-                 diffuse_transmission_color, clearcoat, clearcoat_roughness, clearcoat_normal_scale,
-                 sheen_color, sheen_roughness, anisotropy, anisotropy_rotation, iridescence, iridescence_ior,
-                 iridescence_minimum, iridescence_maximum] = static_cast<const MaterialFactors&>(m);
+                 diffuse_transmission_color, diffuse_roughness, height, deep_relief, clearcoat,
+                 clearcoat_roughness, clearcoat_normal_scale, sheen_color, sheen_roughness, anisotropy,
+                 anisotropy_rotation, iridescence, iridescence_ior, iridescence_minimum,
+                 iridescence_maximum] = static_cast<const MaterialFactors&>(m);
     add_all(hash, base_color, metallic, roughness, normal_scale, emission, alpha_mode, alpha_cutoff,
             double_sided, unlit, ior, specular, specular_color, transmission, thickness, attenuation_color,
-            attenuation_distance, dispersion, diffuse_transmission, diffuse_transmission_color, clearcoat,
-            clearcoat_roughness, clearcoat_normal_scale, sheen_color, sheen_roughness, anisotropy,
-            anisotropy_rotation, iridescence, iridescence_ior, iridescence_minimum, iridescence_maximum);
+            attenuation_distance, dispersion, diffuse_transmission, diffuse_transmission_color,
+            diffuse_roughness, height, deep_relief, clearcoat, clearcoat_roughness, clearcoat_normal_scale,
+            sheen_color, sheen_roughness, anisotropy, anisotropy_rotation, iridescence, iridescence_ior,
+            iridescence_minimum, iridescence_maximum);
     for (const TextureSlot& slot : k_texture_slots) images.add(hash, m.*slot.use);
   }
   return hash.low();

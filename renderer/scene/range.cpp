@@ -116,6 +116,11 @@ void check_range(const Material& m) {
                 m.anisotropy);
   if (!within(m.dispersion, 0, k_max_dispersion))
     throw_error(where, "its dispersion is {:.4g}, expected 0 to {}", m.dispersion, k_max_dispersion);
+  if (!within(m.diffuse_roughness, 0, 1))
+    throw_error(where, "its diffuse roughness is {:.4g}, expected 0 to 1", m.diffuse_roughness);
+  if (!within(m.height, m.deep_relief ? 0 : -k_max_height, k_max_height))
+    throw_error(where, "the height of its relief is {:.4g} m, expected {} to {}", m.height,
+                m.deep_relief ? 0 : -k_max_height, k_max_height);
   if (!within(m.iridescence, 0, 1) || !within(m.iridescence_ior, 1, k_max_strength) ||
       !within(m.iridescence_minimum, 0, k_max_strength) || !within(m.iridescence_maximum, 0, k_max_strength))
     throw_error(where, "its thin film has a strength, index or thickness out of range");

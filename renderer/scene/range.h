@@ -21,6 +21,7 @@ inline constexpr uint32_t k_max_blades = 32;
 inline constexpr float k_least_lamp = 1e-4f, k_max_lamp = 1e4f;
 /// Largest lens shift, in sizes of the picture.
 inline constexpr float k_max_shift = 20;
+inline constexpr float k_max_height = 10;      ///< Material::height, and its negative [m]
 inline constexpr float k_max_dispersion = 20;  ///< Material::dispersion: an Abbe number of 1
 
 /// True if all coordinates are finite and at most k_max_coordinate.

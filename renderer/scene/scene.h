@@ -73,6 +73,11 @@ struct MaterialFactors {
   float dispersion = 0;            ///< KHR_materials_dispersion, of solids: 20 / Abbe number; 0: none
   float diffuse_transmission = 0;  ///< KHR_materials_diffuse_transmission
   vec3 diffuse_transmission_color{1};
+  float diffuse_roughness = 0;  ///< EXT_materials_diffuse_roughness: 0 is Lambert's model, 1 is sandstone
+  /// Relief by the height texture: metres from black to white along the front normal, and whether it hides
+  /// and shadows itself, white on the surface and all else below; if not, it only turns the shading normal.
+  float height = 0;
+  bool deep_relief = false;
   float clearcoat = 0;  ///< KHR_materials_clearcoat: strength of a coat of varnish
   float clearcoat_roughness = 0;
   float clearcoat_normal_scale = 1;
@@ -107,6 +112,8 @@ struct Material : MaterialFactors {
   TextureUse anisotropy_texture;                  ///< rg direction, b strength
   TextureUse iridescence_texture;                 ///< r
   TextureUse iridescence_thickness_texture;       ///< g
+  TextureUse diffuse_roughness_texture;           ///< r
+  TextureUse height_texture;                      ///< r: extras.lucerna.height.texture
   std::string group;  ///< light group, if it emits: extras.light_group; "": none given (light_groups.h)
   bool operator==(const Material&) const = default;
 };
@@ -135,7 +142,11 @@ inline constexpr TextureSlot k_texture_slots[] = {
     {"anisotropy", &Material::anisotropy_texture},
     {"iridescence", &Material::iridescence_texture},
     {"iridescence_thickness", &Material::iridescence_thickness_texture},
+    {"diffuse_roughness", &Material::diffuse_roughness_texture},
+    {"height", &Material::height_texture},
 };
+/// Whether it has relief by a height texture.
+inline bool has_relief(const Material& m) { return m.height_texture && m.height != 0; }
 /// Whether shading needs the directions of texture coordinates on the surface: Primitive::tangents.
 inline bool needs_tangents(const Material& m) {
   return m.normal_texture || m.clearcoat_normal_texture || m.anisotropy > 0;

@@ -97,6 +97,10 @@ gpu::Defines defines_of(const HitClass& hits, const gpu::Defines& all) {
   keep("LUCERNA_ANISOTROPY", needs(k_feature_anisotropy));
   keep("LUCERNA_TEX_ANISOTROPY", needs(k_feature_anisotropy_texture));
   keep("LUCERNA_DISPERSION", needs(k_feature_dispersion));
+  keep("LUCERNA_ROUGH_DIFFUSE", needs(k_feature_rough_diffuse));
+  keep("LUCERNA_TEX_DIFFUSE_ROUGHNESS", needs(k_feature_diffuse_roughness_texture));
+  keep("LUCERNA_HEIGHTS", needs(k_feature_relief));
+  keep("LUCERNA_PARALLAX", needs(k_feature_deep_relief));
   keep("LUCERNA_IRIDESCENCE", needs(k_feature_iridescence));
   keep("LUCERNA_TEX_IRIDESCENCE", needs(k_feature_iridescence_texture));
   return d;

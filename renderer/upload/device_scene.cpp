@@ -194,6 +194,10 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_ANISOTROPY", e.anisotropy);
   set("LUCERNA_TEX_ANISOTROPY", e.tex_anisotropy);
   set("LUCERNA_DISPERSION", e.dispersion);
+  set("LUCERNA_ROUGH_DIFFUSE", e.rough_diffuse);
+  set("LUCERNA_TEX_DIFFUSE_ROUGHNESS", e.tex_diffuse_roughness);
+  set("LUCERNA_HEIGHTS", e.heights);
+  set("LUCERNA_PARALLAX", e.deep_relief);
   set("LUCERNA_IRIDESCENCE", e.iridescence);
   set("LUCERNA_TEX_IRIDESCENCE", e.tex_iridescence);
   set("LUCERNA_UV_TRANSFORMS", e.uv_transforms);
@@ -215,7 +219,9 @@ gpu::Defines DeviceScene::defines() const {
                                             "LUCERNA_SHEEN_ROUGHNESS_BUCKETS",
                                             "LUCERNA_ANISOTROPY_BUCKETS",
                                             "LUCERNA_IRIDESCENCE_BUCKETS",
-                                            "LUCERNA_IRIDESCENCE_THICKNESS_BUCKETS"};
+                                            "LUCERNA_IRIDESCENCE_THICKNESS_BUCKETS",
+                                            "LUCERNA_DIFFUSE_ROUGHNESS_BUCKETS",
+                                            "LUCERNA_HEIGHT_BUCKETS"};
   static_assert(std::size(k_masks) == shared::k_texture_uses);
   for (uint32_t use = 0; use < shared::k_texture_uses; ++use)
     d[k_masks[use]] = fmt::format("{}u", e.texture_buckets[use]);

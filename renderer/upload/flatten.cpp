@@ -90,6 +90,7 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
   e.specular = e.solid_glass = e.thin_glass = e.diffuse_transmission = false;
   e.volumes = e.unlit = e.alpha = e.glass_specular = false;
   e.clearcoat = e.sheen = e.anisotropy = e.iridescence = e.dispersion = false;
+  e.rough_diffuse = e.deep_relief = false;
   e.plain_emitters = true;
   const MaterialKinds kinds = material_kinds(scene.materials);
   flat.materials.resize(scene.materials.size() * k_material_texels);
@@ -126,14 +127,17 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
     out[k_material_detail] = vec4(m.normal_scale, m.alpha_cutoff, 0, as_float(kinds.of_material[i]));
     out[k_material_coat] = vec4(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale, m.dispersion);
     out[k_material_sheen] = vec4(m.sheen_color, m.sheen_roughness);
-    out[k_material_grain] =
-        vec4(m.anisotropy, std::cos(m.anisotropy_rotation), std::sin(m.anisotropy_rotation), 0);
+    out[k_material_grain] = vec4(m.anisotropy, std::cos(m.anisotropy_rotation),
+                                 std::sin(m.anisotropy_rotation), m.diffuse_roughness);
+    out[k_material_relief].x = m.height, out[k_material_relief].y = m.deep_relief ? 1 : 0;
     out[k_material_film] =
         vec4(m.iridescence, m.iridescence_ior, m.iridescence_minimum, m.iridescence_maximum);
     e.clearcoat |= m.clearcoat > 0;
     e.sheen |= any(m.sheen_color);
     e.anisotropy |= m.anisotropy > 0;
     e.iridescence |= m.iridescence > 0;
+    e.rough_diffuse |= m.diffuse_roughness > 0;
+    e.deep_relief |= has_relief(m) && m.deep_relief;
     e.dispersion |= solid && m.dispersion > 0;
     const bool lets_all_through = m.transmission >= 1 && !m.transmission_texture;
     e.specular |= !m.unlit && (m.metallic > 0 || (m.specular > 0 && !lets_all_through) || is_layered(m));
@@ -192,6 +196,13 @@ void flatten_textures(const scene::Scene& scene, FlatScene& flat) {
     e.tex_sheen |= m.sheen_color_texture || m.sheen_roughness_texture;
     e.tex_anisotropy |= bool(m.anisotropy_texture);
     e.tex_iridescence |= m.iridescence_texture || m.iridescence_thickness_texture;
+    e.tex_diffuse_roughness |= bool(m.diffuse_roughness_texture);
+    e.heights |= bool(m.height_texture);
+    if (const scene::TextureUse& use = m.height_texture;
+        use && scene.textures[use.texture].image != scene::k_none) {
+      const scene::Image& image = scene.images[scene.textures[use.texture].image];
+      out[k_material_relief].z = 1 / float(image.width), out[k_material_relief].w = 1 / float(image.height);
+    }
   }
 }
 

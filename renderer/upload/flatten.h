@@ -26,7 +26,8 @@ struct Effects {
        tex_metallic_roughness = false, tex_emission = false, tex_specular = false, tex_transmission = false,
        tex_diffuse_transmission = false, tangents = false, clearcoat = false, sheen = false,
        anisotropy = false, iridescence = false, dispersion = false, tex_clearcoat = false,
-       clearcoat_normals = false, tex_sheen = false, tex_anisotropy = false, tex_iridescence = false;
+       clearcoat_normals = false, tex_sheen = false, tex_anisotropy = false, tex_iridescence = false,
+       rough_diffuse = false, tex_diffuse_roughness = false, heights = false, deep_relief = false;
   bool plain_emitters = true;  ///< no emissive surface has an emission texture or alpha transparency
   /// Number of lamps from which a light sample is resampled by their light at the point; 0: few lamps.
   uint32_t lamp_candidates = 0;

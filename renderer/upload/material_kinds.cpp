@@ -46,6 +46,10 @@ uint32_t features_of(const scene::Material& m) {
   has(k_feature_anisotropy, m.anisotropy > 0);
   has(k_feature_anisotropy_texture, m.anisotropy > 0 && m.anisotropy_texture);
   has(k_feature_dispersion, glass && m.thickness > 0 && m.dispersion > 0);
+  has(k_feature_rough_diffuse, m.diffuse_roughness > 0);
+  has(k_feature_diffuse_roughness_texture, m.diffuse_roughness > 0 && m.diffuse_roughness_texture);
+  has(k_feature_relief, scene::has_relief(m));
+  has(k_feature_deep_relief, scene::has_relief(m) && m.deep_relief);
   has(k_feature_iridescence, m.iridescence > 0);
   has(k_feature_iridescence_texture,
       m.iridescence > 0 && (m.iridescence_texture || m.iridescence_thickness_texture));

@@ -39,7 +39,11 @@ enum MaterialFeature : uint32_t {
   k_feature_iridescence = 1u << 23,
   k_feature_iridescence_texture = 1u << 24,  ///< of strength or thickness
   k_feature_dispersion = 1u << 25,
-  k_all_features = (1u << 26) - 1u,
+  k_feature_rough_diffuse = 1u << 26,
+  k_feature_diffuse_roughness_texture = 1u << 27,
+  k_feature_relief = 1u << 28,
+  k_feature_deep_relief = 1u << 29,
+  k_all_features = (1u << 30) - 1u,
 };
 
 /// Whether it has a coat, sheen, brushing or a thin film: their code needs that of the specular lobe.

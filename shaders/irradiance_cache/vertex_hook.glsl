@@ -134,7 +134,7 @@ vec3 cache_cosine(VertexIn v, inout cache_Vertex x, vec2 u, vec3 cosine) {
 void cache_weigh(VertexIn v, cache_Vertex x, vec3 direction, inout BsdfSample b) {
 #if LUCERNA_CACHE_GATHERS
   if (x.guide.total > 0.0 && !b.transmitted && b.pdf > 0.0)
-    b.weight *= b.pdf / (b.pdf + v.bsdf.p_diffuse * k_inv_pi * b.wi.z * (guide_density(x.guide, direction) - 1.0));
+    b.weight *= b.pdf / (b.pdf + (v.bsdf.p_diffuse - bsdf_drawn_rough(v.bsdf)) * k_inv_pi * b.wi.z * (guide_density(x.guide, direction) - 1.0));
 #endif
 }
 

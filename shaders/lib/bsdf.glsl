@@ -3,6 +3,7 @@
 //   conductor m            GGX, F = base + (1-base) w                                       G (S when smooth)
 //   dielectric (1-m)(1-t)  GGX, F = f0 + (f90-f0) w                                         G (S)
 //                          Lambert base/pi, coupled by (1-E(wo))(1-E(wi))/(1-E_avg)         D
+//                          (rough: lib/rough_diffuse.glsl times that coupling)
 //                          diffuse transmission, coupled likewise                           D
 //   glass (1-m)t           GGX reflection and refraction with exact Fresnel (solid), or slab (thin)   G (S)
 //   over these, from below:
@@ -24,8 +25,8 @@
 //
 // Local frame: z is the shading normal on wo's side, so wo.z > 0. Radiance transport: refraction includes (n_o/n_i)^2.
 // Compiled in only if the scene needs it: LUCERNA_SPECULAR, LUCERNA_SOLID_GLASS, LUCERNA_THIN_GLASS,
-// LUCERNA_DIFFUSE_TRANSMISSION, LUCERNA_CLEARCOAT, LUCERNA_SHEEN, LUCERNA_ANISOTROPY, LUCERNA_IRIDESCENCE. The last four need
-// LUCERNA_SPECULAR.
+// LUCERNA_DIFFUSE_TRANSMISSION, LUCERNA_ROUGH_DIFFUSE, LUCERNA_CLEARCOAT, LUCERNA_SHEEN, LUCERNA_ANISOTROPY,
+// LUCERNA_IRIDESCENCE. The last four need LUCERNA_SPECULAR.
 #ifndef LUCERNA_LIB_BSDF
 #define LUCERNA_LIB_BSDF
 #include "lib/variants.glsl"
@@ -36,6 +37,9 @@
 #endif
 #if LUCERNA_IRIDESCENCE
 #include "lib/thin_film.glsl"
+#endif
+#if LUCERNA_ROUGH_DIFFUSE
+#include "lib/rough_diffuse.glsl"
 #endif
 
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
@@ -65,6 +69,9 @@ struct SurfaceParameters {
   bool solid;
   bool inside;           // wo is on the inner side of a solid
   int glass_row;
+#if LUCERNA_ROUGH_DIFFUSE
+  float diffuse_roughness;
+#endif
 #if LUCERNA_CLEARCOAT
   float clearcoat;       // strength; 0 on the inner side of a solid
   float clearcoat_roughness;
@@ -85,6 +92,9 @@ struct SurfaceParameters {
 };
 
 const float k_coat_f0 = 0.04;  // of index 1.5
+#if LUCERNA_ROUGH_DIFFUSE
+const float k_rough_excess = 0.0088;  // of energy, per roughness; computed by quadrature over all angles
+#endif
 
 // Reflectance of glass: one value for all channels, or one for each. Choices use glass_choice().
 #if LUCERNA_GLASS_SPECULAR
@@ -102,6 +112,9 @@ struct Bsdf {
   // Reflectance and transmittance of these for uniform light from a side. For other light it is an
   // approximation, exact without a coat: the variation of a coat's coupling with wi is neglected.
   vec3 diffuse_albedo, transmitted_albedo;
+#if LUCERNA_ROUGH_DIFFUSE
+  RoughDiffuse rough;    // factor of the diffuse lobe on wo's side
+#endif
   float alpha;
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
   float roughness;
@@ -343,6 +356,9 @@ Bsdf make_bsdf(SurfaceParameters s, vec3 wo) {
   b.p_specular_ms = 0.0;
   b.p_glass = 0.0;
   b.p_glass_ms = 0.0;
+#if LUCERNA_ROUGH_DIFFUSE
+  b.rough = rough_diffuse(s.base, s.diffuse_roughness, wo);
+#endif
 #if LUCERNA_SPECULAR || LUCERNA_GLASS
   b.delta = b.alpha < k_delta_alpha;
   b.roughness = s.roughness;
@@ -427,6 +443,17 @@ Bsdf make_bsdf(SurfaceParameters s, vec3 wo) {
 #else
   b.diffuse_albedo = b.diffuse;
   b.transmitted_albedo = b.transmitted;
+#endif
+#if LUCERNA_ROUGH_DIFFUSE
+  if (s.diffuse_roughness > 0.0) {
+    b.diffuse_albedo *= rough_albedo(b.rough);
+#if LUCERNA_SPECULAR
+    // A rough lobe has more light where the coupling lets more pass, near the normal: at most this much more.
+    float excess = 1.0 + s.specular * k_rough_excess * s.diffuse_roughness / (1.0 + 0.3 * s.diffuse_roughness);
+    b.diffuse /= excess;
+    b.diffuse_albedo /= excess;
+#endif
+  }
 #endif
   b.p_diffuse = luminance(b.diffuse_albedo);
   b.p_transmitted = luminance(b.transmitted_albedo);
@@ -575,6 +602,15 @@ vec3 clearcoat_sample(Bsdf b, vec3 wo, vec2 u) {
 }
 #endif
 
+// Probability of the draws of the diffuse lobe that do not follow a cosine.
+float bsdf_drawn_rough(Bsdf b) {
+#if LUCERNA_ROUGH_DIFFUSE
+  return b.rough.roughness > 0.0 ? k_rough_drawn_share * b.p_diffuse : 0.0;
+#else
+  return 0.0;
+#endif
+}
+
 // All lobes but the deltas.
 BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
   BsdfValue v;
@@ -584,6 +620,9 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
   vec3 diffuse = same_side ? b.diffuse : b.transmitted;
   v.pdf = (same_side ? b.p_diffuse : b.p_transmitted) * lambert;
   v.glossy = vec3(0.0);
+#if LUCERNA_ROUGH_DIFFUSE
+  if (b.rough.roughness > 0.0 && same_side) diffuse *= rough_shape(b.rough, wi);
+#endif
 #if LUCERNA_SPECULAR
   diffuse *= dielectric_transmittance(b, cos_i);
 #endif
@@ -672,6 +711,10 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
   }
 #endif
 #endif
+#if LUCERNA_ROUGH_DIFFUSE
+  // Last, so that the rounding of other surfaces does not depend on it.
+  if (b.rough.roughness > 0.0 && same_side) v.pdf += bsdf_drawn_rough(b) * (rough_pdf(b.rough, wi) - lambert);
+#endif
   return v;
 }
 
@@ -679,6 +722,9 @@ BsdfValue bsdf_eval(Bsdf b, vec3 wo, vec3 wi) {
 vec3 bsdf_diffuse(Bsdf b, vec3 wi) {
   float cos_i = abs(wi.z);
   vec3 diffuse = wi.z > 0.0 ? b.diffuse : b.transmitted;
+#if LUCERNA_ROUGH_DIFFUSE
+  if (b.rough.roughness > 0.0 && wi.z > 0.0) diffuse *= rough_shape(b.rough, wi);
+#endif
 #if LUCERNA_SPECULAR
   diffuse *= dielectric_transmittance(b, cos_i);
 #endif
@@ -746,6 +792,9 @@ BsdfSample bsdf_sample(Bsdf b, vec3 wo, vec2 u, vec3 cosine, vec2 lobe) {
 #if LUCERNA_LAYERS
   bool in_coat = at < b.p_coat, in_sheen = !in_coat && at < b.p_coat + b.p_sheen;
   at -= b.p_coat + b.p_sheen;
+#endif
+#if LUCERNA_ROUGH_DIFFUSE
+  if (at >= 0.0 && at < bsdf_drawn_rough(b)) s.wi = rough_sample(b.rough, u);
 #endif
   bool through = at >= b.p_diffuse && at < b.p_diffuse + b.p_transmitted;
   if (through) s.wi = vec3(cosine.xy, -cosine.z);

@@ -19,6 +19,9 @@ uniform samplerBuffer scene_tangents;
 uniform samplerBuffer scene_extra;
 #endif
 #include "lib/textures.glsl"
+#if LUCERNA_HEIGHTS
+#include "lib/relief.glsl"
+#endif
 
 struct Surface {
   vec3 position;
@@ -31,6 +34,9 @@ struct Surface {
 #endif
 #if LUCERNA_ANISOTROPY
   vec3 grain;        // direction in which a brushed surface reflects most widely; need not be in the tangent plane; 0: none
+#endif
+#if LUCERNA_PARALLAX
+  Relief relief;
 #endif
 #if LUCERNA_DISPERSION
   uint wavelength;   // of light that passes (lib/dispersion.glsl); 0: all
@@ -126,6 +132,34 @@ Surface make_surface(Ray ray, Hit hit) {
         uv.y * texelFetch(scene_extra, int(2u * tri.z + 1u)).xy;
   base *= color;
 #endif
+#if LUCERNA_HEIGHTS
+  vec2 t0 = vec2(a0.w, b0.w), t1 = vec2(a1.w, b1.w), t2 = vec2(a2.w, b2.w), at = s.uv0;
+#if LUCERNA_VERTEX_EXTRA
+  uint height_bits = floatBitsToUint(texelFetch(scene_materials, m + int(k_material_textures + k_texture_texels * k_use_height + 1u)).x);
+  if ((height_bits & k_texture_uv1) != 0u) {
+    t0 = texelFetch(scene_extra, int(2u * tri.x + 1u)).xy;
+    t1 = texelFetch(scene_extra, int(2u * tri.y + 1u)).xy;
+    t2 = texelFetch(scene_extra, int(2u * tri.z + 1u)).xy;
+    at = uv1;
+  }
+#endif
+  Relief relief = make_relief(m, a0.xyz, a1.xyz, a2.xyz, t0, t1, t2, at);
+#if LUCERNA_PARALLAX
+  relief.deep = relief.deep && s.front;
+  relief.inside = uv;
+  if (relief.deep) {
+    relief_meet(relief, ray.direction, s.normal_g);
+    // All textures are read where the ray meets the relief.
+    vec2 by = vec2(dot(relief.across_1, relief.shift), dot(relief.across_2, relief.shift));
+    s.uv0 += by.x * vec2(a1.w - a0.w, b1.w - b0.w) + by.y * vec2(a2.w - a0.w, b2.w - b0.w);
+#if LUCERNA_VERTEX_EXTRA
+    vec2 v0 = texelFetch(scene_extra, int(2u * tri.x + 1u)).xy;
+    uv1 += by.x * (texelFetch(scene_extra, int(2u * tri.y + 1u)).xy - v0) + by.y * (texelFetch(scene_extra, int(2u * tri.z + 1u)).xy - v0);
+#endif
+  }
+  s.relief = relief;
+#endif
+#endif
 #if LUCERNA_TEX_BASE
   base *= read_use(m, k_use_base, LUCERNA_BASE_BUCKETS, s.uv0, uv1, vec4(1.0));
 #endif
@@ -150,6 +184,14 @@ Surface make_surface(Ray ray, Hit hit) {
   vec3 local = 2.0 * read_use(m, k_use_normal, LUCERNA_NORMAL_BUCKETS, s.uv0, uv1, vec4(0.5, 0.5, 1.0, 1.0)).xyz - 1.0;
   local.xy *= detail.x;
   s.normal_s = mapped_normal(s.normal_s, t, local);
+#endif
+#if LUCERNA_HEIGHTS
+  if (relief.height != 0.0) {
+    s.normal_s = relief_normal(relief, s.normal_s);
+#if LUCERNA_CLEARCOAT
+    s.normal_c = relief_normal(relief, s.normal_c);
+#endif
+  }
 #endif
 #if LUCERNA_TEX_EMISSION
   emission.rgb *= read_use(m, k_use_emission, LUCERNA_EMISSION_BUCKETS, s.uv0, uv1, vec4(1.0)).rgb;
@@ -241,6 +283,13 @@ Surface make_surface(Ray ray, Hit hit) {
   p.film = p.film_thickness > 0.0 ? clamp(film.x, 0.0, 1.0) : 0.0;
   p.film_ior = film.y;
 #endif
+#if LUCERNA_ROUGH_DIFFUSE
+  p.diffuse_roughness = texelFetch(scene_materials, m + int(k_material_grain)).w;
+#if LUCERNA_TEX_DIFFUSE_ROUGHNESS
+  p.diffuse_roughness *= read_use(m, k_use_diffuse_roughness, LUCERNA_DIFFUSE_ROUGHNESS_BUCKETS, s.uv0, uv1, vec4(1.0)).r;
+#endif
+  p.diffuse_roughness = clamp(p.diffuse_roughness, 0.0, 1.0);
+#endif
   p.solid = (s.flags & k_flag_solid) != 0u;
   p.inside = p.solid && !s.front;
 #if LUCERNA_DISPERSION
@@ -320,6 +369,41 @@ vec3 offset_origin(Surface s, vec3 direction) {
   ivec3 bits = floatBitsToInt(moved) + ivec3(sign(n)) * (1 - 2 * ivec3(lessThan(moved, vec3(0.0))));
   bvec3 tiny = lessThan(abs(moved), vec3(1e-30));
   return mix(intBitsToFloat(bits), moved, tiny);
+}
+
+// Whether relief hides the point from that direction.
+bool hidden_by_relief(Surface s, vec3 direction) {
+#if LUCERNA_PARALLAX
+  vec3 met;
+  return dot(direction, s.normal_g) > 0.0 && relief_hides(s.relief, direction, s.normal_g, met);
+#else
+  return false;
+#endif
+}
+
+// Whether a path that is reflected or transmitted may leave that way: transmitted, below the surface; reflected, above it, or
+// within its relief.
+bool can_leave(Surface s, vec3 side, vec3 direction, bool transmitted) {
+#if LUCERNA_PARALLAX
+  if (s.relief.deep && !transmitted) return true;
+#endif
+  return (dot(direction, side) > 0.0) == !transmitted;
+}
+
+// Origin of its next ray. If relief hides the point from there, the path goes on straight down onto the place that hides it,
+// or onto where it has met the surface if that place is beyond the triangle.
+vec3 next_origin(Surface s, bool transmitted, inout vec3 direction) {
+#if LUCERNA_PARALLAX
+  vec3 met;
+  if (!transmitted && relief_hides(s.relief, direction, s.normal_g, met)) {
+    direction = -s.normal_g;
+    met += s.relief.shift;
+    vec2 inside = s.relief.inside + vec2(dot(s.relief.across_1, met), dot(s.relief.across_2, met));
+    if (inside.x >= 0.0 && inside.y >= 0.0 && inside.x + inside.y <= 1.0) s.position += met;
+    return offset_origin(s, s.normal_g);
+  }
+#endif
+  return offset_origin(s, direction);
 }
 
 #if LUCERNA_VOLUMES

@@ -85,7 +85,16 @@ vec3 reflected_to_eye(Surface surface, vec3 towards, vec3 wi_world) {
   mat3 to_world = shading_frame(surface, towards);
   vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
   Bsdf bsdf = surface_bsdf(surface, to_world, towards);
-  return diffuse_of_flux(bsdf, to_world, surface.normal_g, wi_world, dot(wi_world, side) > 0.0);
+  vec3 light = diffuse_of_flux(bsdf, to_world, surface.normal_g, wi_world, dot(wi_world, side) > 0.0);
+#if LUCERNA_PARALLAX
+  if (surface.relief.deep) {
+    // Light has met a place of the relief that it sees; eye paths choose from those that the eye sees.
+    vec3 n = to_world[2], g = surface.normal_g;
+    light *= abs(dot(towards, n) * dot(wi_world, g)) / max(abs(dot(towards, g) * dot(wi_world, n)), 1e-4);
+    if (hidden_by_relief(surface, towards)) light = vec3(0.0);
+  }
+#endif
+  return light;
 }
 
 void main() {
@@ -111,6 +120,14 @@ void main() {
   eye = lens_point(sample_vertex(random, depth, k_pad_light_uv));  // free behind the emission
 #endif
   Seen seen = camera_sees(v.surface.position, eye);
+#if LUCERNA_PARALLAX
+  // The eye sees this place of the relief through another point of the surface than the light.
+  vec3 met = v.surface.position;
+  if (v.surface.relief.deep) {
+    v.surface.position += v.surface.relief.shift + v.surface.relief.depth * relief_aside(seen.towards, v.surface.normal_g);
+    seen = camera_sees(v.surface.position, eye);
+  }
+#endif
   wanted = wanted && seen.inside;
 #if LUCERNA_SECTION
   // What the plane cuts off is not visible; what lies behind it is, whatever is before the plane.
@@ -146,5 +163,8 @@ void main() {
     store_shadow_state(slot, ShadowState(light, seen.pixel, vec3(0.0), stratum));
     shadow_queue[queue_place(k_counter_shadow, k_counter_shadow_rays, automaton_account(state))] = slot;
   }
+#if LUCERNA_PARALLAX
+  v.surface.position = met;
+#endif
   light_continue(slot, v, path, ray, path.travelled + hit.t, min(frame.max_depth, k_most_light_events) - 1u, random);
 }

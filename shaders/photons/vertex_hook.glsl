@@ -124,7 +124,11 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
         if (!wanted || agree <= k_photon_normals || abs(dot(away, v.surface.normal_g)) >= k_photon_slab * r) continue;
         // The facet is rotated into this plane, so flux is divided by the cosine at the photon's own facet.
         wi = reflected ? turn_along(wi, side, v.side) : turn_along(wi, front, v.surface.normal_g);
-        vec3 flux = diffuse_of_flux(v.bsdf, v.to_world, v.surface.normal_g, wi, reflected) * b.rgb, light = flux * photon_kernel(d2, r);
+        vec3 flux = diffuse_of_flux(v.bsdf, v.to_world, v.surface.normal_g, wi, reflected) * b.rgb;
+#if LUCERNA_PARALLAX
+        if (hidden_by_relief(v.surface, wi)) flux = vec3(0.0);
+#endif
+        vec3 light = flux * photon_kernel(d2, r);
 #if LUCERNA_PATH_EVENTS
         uint to = components >> 4u * part & 15u;
         if (to < k_component_count) ++o.served[to], o.reader[to] = k_path_photons;

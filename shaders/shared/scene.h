@@ -16,7 +16,7 @@ LUCERNA_CONST uint k_triangle_flipped =
 // (rgba) (u1, v1, 0, 0).
 
 // scene_materials: k_material_texels a material.
-LUCERNA_CONST uint k_material_texels = 62u;
+LUCERNA_CONST uint k_material_texels = 69u;
 LUCERNA_CONST uint k_material_base = 0u;       ///< base colour rgba
 LUCERNA_CONST uint k_material_emission = 1u;   ///< radiance rgb, bits: flags
 LUCERNA_CONST uint k_material_surface = 2u;    ///< metallic, roughness, ior, specular
@@ -27,9 +27,12 @@ LUCERNA_CONST uint k_material_detail = 6u;  ///< normal scale, alpha cutoff, med
                                             ///< bits of the kind of hits on it
 LUCERNA_CONST uint k_material_coat = 7u;       ///< clear coat: strength, roughness, normal scale; dispersion
 LUCERNA_CONST uint k_material_sheen = 8u;      ///< sheen colour rgb, roughness
-LUCERNA_CONST uint k_material_grain = 9u;      ///< anisotropy, cosine and sine of its rotation, 0
+LUCERNA_CONST uint k_material_grain = 9u;      ///< anisotropy, cosine and sine of its rotation; diffuse
+                                               ///< roughness
 LUCERNA_CONST uint k_material_film = 10u;      ///< iridescence, index, minimum and maximum thickness [nm]
-LUCERNA_CONST uint k_material_textures = 11u;  ///< then k_texture_texels for each use:
+LUCERNA_CONST uint k_material_relief = 11u;    ///< height [m], 1: deep relief; size of a texel of the height
+                                               ///< texture in its coordinates
+LUCERNA_CONST uint k_material_textures = 12u;  ///< then k_texture_texels for each use:
 // (rectangle on the page: x, y, width, height over the page's size) (bits:texture, m2, m5, 0) (m0 m1 m3 m4)
 LUCERNA_CONST uint k_texture_texels = 3u;
 
@@ -51,7 +54,9 @@ LUCERNA_CONST uint k_use_sheen_roughness = 13u;
 LUCERNA_CONST uint k_use_anisotropy = 14u;
 LUCERNA_CONST uint k_use_iridescence = 15u;
 LUCERNA_CONST uint k_use_iridescence_thickness = 16u;
-LUCERNA_CONST uint k_texture_uses = 17u;
+LUCERNA_CONST uint k_use_diffuse_roughness = 17u;
+LUCERNA_CONST uint k_use_height = 18u;
+LUCERNA_CONST uint k_texture_uses = 19u;
 
 // Texture bits: 0-10 page (layer), 11-15 bucket, 16-17 wrap u, 18-19 wrap v (0 repeat, 1 clamp, 2 mirror), 20
 // nearest, 21 second UV set, 31 present.

@@ -251,7 +251,8 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
   if (l.sky && sky_known) shadow.diffuse = vec3(0.0);
 #endif
   bool finite = is_finite(shadow.diffuse) && is_finite(shadow.glossy);
-  bool contributes = wanted && sides_agree && l.pdf > 0.0 && (!finite || max3(shadow.diffuse) + max3(shadow.glossy) > 0.0);
+  bool contributes = wanted && sides_agree && l.pdf > 0.0 && !hidden_by_relief(surface, l.direction) &&
+                     (!finite || max3(shadow.diffuse) + max3(shadow.glossy) > 0.0);
   if (contributes && !finite) atomicAdd(counters[k_counter_dropped], 1u);
 #if LUCERNA_LEARNED
   for (uint once = 0u; once < (frame.learning != 0u && wanted && (path.nulls & k_nulls_mask) == 0u && depth < k_learned_vertices ? 1u : 0u); ++once)

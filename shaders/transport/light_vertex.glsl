@@ -89,7 +89,7 @@ LightVertex light_vertex(inout PathState path, Ray ray, Hit hit, Sampler random)
 // keeps the flux of surviving paths as constant as their colour allows (J. Arvo and D. Kirk 1990).
 void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float travelled, uint most_events, Sampler random) {
   uint depth = path_depth(path);
-  vec3 direction = ray.direction;
+  vec3 direction = ray.direction, origin = offset_origin(v.surface, direction);
   bool go_on = false;
   if (v.passed) {
     go_on = max3(path.throughput) > 0.0;
@@ -106,6 +106,9 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     vec3 edge = cross(v.to_world[2], side);
     float sine = length(edge), lean = atan(sine, dot(v.to_world[2], side));
     bool leans = sine > 1e-4 && (v.bsdf.p_diffuse > 0.0 || bsdf_glossy(v.bsdf));
+#if LUCERNA_PARALLAX
+    leans = leans && !v.surface.relief.deep;
+#endif
     float below = leans ? lean / k_pi : 0.0;
     BsdfSample b;
     if (lobe.x < below) {
@@ -121,7 +124,7 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
       direction = normalize(v.to_world * b.wi);
       b.pdf *= 1.0 - below, b.weight /= 1.0 - below;
     }
-    bool sides_agree = (dot(direction, side) > 0.0) == !b.transmitted;
+    bool sides_agree = can_leave(v.surface, side, direction, b.transmitted);
     // Refraction scales radiance, but not flux.
     vec3 normal = v.to_world[2];
     bool tilted = false;  // a lobe about another normal than the shading frame's
@@ -129,7 +132,12 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     if (b.mirrored_by_coat) normal = v.to_world * v.bsdf.coat_normal;
     tilted = v.bsdf.p_coat > 0.0 && v.bsdf.coat_normal.z < 0.999999;
 #endif
-    vec3 weight = b.weight * (adjoint_correction(v.surface.normal_g, normal, ray.direction, direction) / b.eta2);
+    float correction = adjoint_correction(v.surface.normal_g, normal, ray.direction, direction);
+#if LUCERNA_PARALLAX
+    // The normals of deep relief are those of its geometry.
+    if (v.surface.relief.deep) correction = 1.0;
+#endif
+    vec3 weight = b.weight * (correction / b.eta2);
     if ((leans || tilted) && sides_agree && !b.transmitted && b.event != k_event_specular)
       reflect_as_seen(v, -ray.direction, direction, b.pdf, lobe.y, weight, b.event);
     uint wavelength = 0u;
@@ -158,10 +166,11 @@ void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float tra
     path.bits = next | (depth + 1u) << k_path_events_shift | wavelength;
     path.travelled = 0.0;
     path.nulls = 0u;
+    origin = next_origin(v.surface, b.transmitted, direction);
 #if LUCERNA_VOLUMES
     if (b.transmitted) path.media = media_behind(v.surface, path.media);
 #endif
   }
-  if (go_on) queue_ray(slot, path, offset_origin(v.surface, direction), direction);
+  if (go_on) queue_ray(slot, path, origin, direction);
 }
 #endif

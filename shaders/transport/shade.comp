@@ -67,13 +67,14 @@ vec3 emission_met(uint slot, PathState path, Surface surface, Hit hit, float tra
 
 // Samples a lobe and a direction and updates the path; true if the path continues. `branches`: number of branches, of which
 // this is one.
-bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint branches, inout PathState path, out vec3 direction) {
+bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint branches, inout PathState path, out vec3 origin,
+             out vec3 direction) {
   vec2 u = sample_vertex(v.random, v.depth, k_pad_direction);
   vec3 cosine = hooks_cosine(v, hooks, u, sample_cosine(u));
   BsdfSample b = bsdf_sample(v.bsdf, wo, u, cosine, sample_vertex(v.random, v.depth, k_pad_lobe));
   direction = normalize(v.to_world * b.wi);
   hooks_weigh(v, hooks, direction, b);
-  bool sides_agree = (dot(direction, v.side) > 0.0) == !b.transmitted;
+  bool sides_agree = can_leave(v.surface, v.side, direction, b.transmitted);
   uint next = hooks_state(v, hooks, b, automaton_after(v.state, b.event));
   vec3 throughput = path.throughput * b.weight;
   uint wavelength = 0u;
@@ -133,6 +134,7 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
 #if LUCERNA_VOLUMES
   if (b.transmitted) path.media = media_behind(v.surface, path.media);
 #endif
+  origin = next_origin(v.surface, b.transmitted, direction);
   return go_on;
 }
 
@@ -281,7 +283,7 @@ void main() {
     float travelled = path.travelled + hit.t;
     bool go_on = false;   // a next ray is traced
     bool passed = false;  // ... undeflected, without an event
-    vec3 direction = ray.direction;
+    vec3 origin, direction = ray.direction;
 
 #if LUCERNA_TRANSPARENT
     Sampler random_null = null_sampler(random, path.nulls & k_nulls_mask);
@@ -338,7 +340,7 @@ void main() {
           v.random = make_sampler(path.pixel, frame.width, path.sample_index, frame.seed);
         }
 #endif
-        if (!passed) go_on = scatter(v, hooks, wo, found.sky_known, found.branches, path, direction);
+        if (!passed) go_on = scatter(v, hooks, wo, found.sky_known, found.branches, path, origin, direction);
 #if LUCERNA_LEARNED && LUCERNA_LIGHTS
         if (!passed) path.light_group = row;
 #endif
@@ -355,11 +357,12 @@ void main() {
 #endif
     }
     if (passed) {
+      origin = offset_origin(surface, direction);
       go_on = max3(path.throughput) > 0.0;
       path.travelled = travelled;
       ++path.nulls;
     }
-    if (go_on) queue_ray(slot, path, offset_origin(surface, direction), direction);
+    if (go_on) queue_ray(slot, path, origin, direction);
 #if LUCERNA_PATH_EVENTS
     continues = go_on;
     if (passed) {

@@ -11,6 +11,7 @@ namespace bsdf_energy_tests {
 
 using namespace lucerna;
 using namespace lucerna::test;
+using namespace lucerna::test::bsdf;
 
 namespace {
 

@@ -11,6 +11,7 @@ namespace bsdf_layers_tests {
 
 using namespace lucerna;
 using namespace lucerna::test;
+using namespace lucerna::test::bsdf;
 
 namespace {
 
@@ -36,6 +37,7 @@ Material any_layered(std::mt19937& random) {
   m.anisotropy = random() % 2 ? uniform(random) : 0;
   m.film = random() % 2 ? factor(random) : 0;
   m.film_ior = 1 + uniform(random), m.film_thickness = 1200 * uniform(random);
+  m.diffuse_roughness = random() % 2 ? uniform(random) : 0;
   return m;
 }
 

@@ -12,6 +12,7 @@ namespace bsdf_sampling_tests {
 
 using namespace lucerna;
 using namespace lucerna::test;
+using namespace lucerna::test::bsdf;
 
 namespace {
 
@@ -44,6 +45,12 @@ std::vector<Named> materials() {
   for (const float r : {0.f, 0.35f})
     add("thin mixture", r,
         [](Material& m) { m.metallic = 0.3f, m.transmission = 0.5f, m.diffuse_transmission = 0.5f; });
+  for (const float r : {0.1f, 0.5f, 1.f}) {
+    add("rough diffuse", r, [](Material& m) { m.specular = 0; });
+    list.back().material.diffuse_roughness = r;
+    add("rough diffuse below a coat, translucent", r, [](Material& m) { m.diffuse_transmission = 0.3f; });
+    list.back().material.diffuse_roughness = r;
+  }
   const vec3 tilted = glm::normalize(vec3(0.2f, -0.1f, 1));
   add("clear coat over paint", 0.5f, [](Material& m) { m.clearcoat = 1; });
   add("clear coat over metal", 0.1f,

@@ -11,7 +11,7 @@
 #include "gpu/stream.h"
 #include "upload/bsdf_table.h"
 
-namespace lucerna::test {
+namespace lucerna::test::bsdf {
 
 /// SurfaceParameters of the shader, with the layout of the kernel's buffer.
 struct Material {
@@ -29,6 +29,7 @@ struct Material {
   float anisotropy = 0;
   vec2 grain{0.6f, 0.8f};
   float film = 0, film_ior = 1.3f, film_thickness = 400;
+  float diffuse_roughness = 0;
 
   float alpha() const { return roughness * roughness; }
   /// Index of refraction on the other side over that on wo's side.
@@ -59,9 +60,10 @@ enum class Subject { bsdf, visible_normals, cosine };
 /// #defines with every effect of the surface model on, or off except for those named.
 inline gpu::Defines surface_effects(bool all, std::initializer_list<const char*> on = {}) {
   gpu::Defines defines;
-  for (const char* name : {"LUCERNA_SPECULAR", "LUCERNA_SOLID_GLASS", "LUCERNA_THIN_GLASS",
-                           "LUCERNA_GLASS_SPECULAR", "LUCERNA_DIFFUSE_TRANSMISSION", "LUCERNA_CLEARCOAT",
-                           "LUCERNA_SHEEN", "LUCERNA_ANISOTROPY", "LUCERNA_IRIDESCENCE"})
+  for (const char* name :
+       {"LUCERNA_SPECULAR", "LUCERNA_SOLID_GLASS", "LUCERNA_THIN_GLASS", "LUCERNA_GLASS_SPECULAR",
+        "LUCERNA_DIFFUSE_TRANSMISSION", "LUCERNA_CLEARCOAT", "LUCERNA_SHEEN", "LUCERNA_ANISOTROPY",
+        "LUCERNA_IRIDESCENCE", "LUCERNA_ROUGH_DIFFUSE"})
     defines[name] = all ? "1" : "0";
   for (const char* name : on) defines[name] = "1";
   return defines;
@@ -358,4 +360,4 @@ inline std::vector<Sphere> integrate(Probe& probe, const std::vector<View>& view
   return spheres;
 }
 
-}  // namespace lucerna::test
+}  // namespace lucerna::test::bsdf

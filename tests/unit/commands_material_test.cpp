@@ -21,7 +21,9 @@ TEST_CASE("every number of a material can be set, and is sent") {
   b.run(
       "material.set 1 alpha=mask coverage=0.6 cutoff=0.3 normal_scale=2 two_sided=true "
       "diffuse_transmission=0.25 diffuse_transmission_color=0.1,0.2,0.3");
-  b.run("material.set 1 clearcoat_normal_scale=0.5 film_ior=1.4 film_thickness=300 film_thickness_min=50");
+  b.run(
+      "material.set 1 clearcoat_normal_scale=0.5 film_ior=1.4 film_thickness=300 film_thickness_min=50 "
+      "diffuse_roughness=0.7 height=-0.03");
   REQUIRE(b.settled());
   const scene::Material m = b.session.scene()->materials[0];
   CHECK((m.ior == 1.7f && m.specular == 0.5f && m.specular_color == vec3(1, 2, 0.5f)));
@@ -32,6 +34,7 @@ TEST_CASE("every number of a material can be set, and is sent") {
   CHECK((m.diffuse_transmission == 0.25f && m.diffuse_transmission_color == vec3(0.1f, 0.2f, 0.3f)));
   CHECK((m.clearcoat_normal_scale == 0.5f && m.iridescence_ior == 1.4f));
   CHECK((m.iridescence_minimum == 50 && m.iridescence_maximum == 300));
+  CHECK((m.diffuse_roughness == 0.7f && m.height == -0.03f));
   b.run("material.set 1 absorb_distance=0");
   CHECK(b.work.open.material(0).attenuation_distance == k_infinity);
   for (int i = 0; i < 4; ++i) b.run("undo");
@@ -39,6 +42,25 @@ TEST_CASE("every number of a material can be set, and is sent") {
   CHECK(b.work.open.document() == before);
   CHECK_THAT(b.failure("material.set 1 ior=0.5"), Contains("a number from 1 to 100"));
   CHECK_THAT(b.failure("material.set 1 alpha=half"), Contains("opaque, mask, blend"));
+}
+
+TEST_CASE("a height texture has a height at once, and deep relief is never inside out") {
+  TempFolder folder;
+  write_image<uint8_t>(folder / "bricks.png", 2, 1, 4, {0, 0, 0, 255, 255, 255, 255, 255});
+  WorkspaceBench b;
+  b.open();
+  const std::string file = "material.set 1 height_texture=" + (folder / "bricks.png").string();
+  b.run(file);
+  REQUIRE(b.settled());
+  CHECK(b.session.scene()->materials[0].height == 0.01f);
+  CHECK(scene::has_relief(b.session.scene()->materials[0]));
+  b.run(file + " height=-0.25");
+  b.run("material.set 1 deep_relief=true");
+  REQUIRE(b.settled());
+  CHECK(b.session.scene()->materials[0].height == 0.25f);
+  b.run("material.set 1 height_texture=none");
+  REQUIRE(b.settled());
+  CHECK_FALSE(scene::has_relief(b.session.scene()->materials[0]));
 }
 
 TEST_CASE("textures come from files, and scripts find them from any folder") {

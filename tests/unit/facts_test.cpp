@@ -122,7 +122,9 @@ TEST_CASE("without an effect, a scene no longer calls for it, and keeps all othe
   m.clearcoat = 0.5f, m.sheen_color = vec3(0.5f), m.anisotropy = 0.5f, m.iridescence = 0.5f;
   for (const scene::TextureSlot& slot : scene::k_texture_slots)
     if (slot.use != &scene::Material::transmission_texture) (m.*slot.use).texture = 0;
+  m.diffuse_roughness = 0.5f, m.height = 0.01f;
   scene::Material& glass = full.materials[1];
+  glass.height_texture.texture = 0, glass.height = 0.01f, glass.deep_relief = true;
   glass.transmission = 1, glass.thickness = 1, glass.attenuation_distance = 1, glass.roughness = 0.3f;
   glass.dispersion = 0.3f, glass.attenuation_color = vec3(0.5f), glass.alpha_mode = scene::AlphaMode::blend;
   glass.transmission_texture.texture = 0;

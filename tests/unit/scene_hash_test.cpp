@@ -76,6 +76,10 @@ TEST_CASE("a change of light changes the hash of its part, and no other") {
   CHECK(moved([](Scene& s) { s.materials[1].clearcoat = 1; }) == "m");
   CHECK(moved([](Scene& s) { s.materials[1].sheen_color.y = 1; }) == "m");
   CHECK(moved([](Scene& s) { s.materials[1].dispersion = 0.3f; }) == "m");
+  CHECK(moved([](Scene& s) { s.materials[1].diffuse_roughness = 0.3f; }) == "m");
+  CHECK(moved([](Scene& s) { s.materials[1].height = 0.1f; }) == "m");
+  CHECK(moved([](Scene& s) { s.materials[1].deep_relief = true; }) == "m");
+  CHECK(moved([](Scene& s) { s.materials[0].height_texture.texture = 1; }) == "m");
   CHECK(moved([](Scene& s) { s.materials[1].iridescence_maximum = 300; }) == "m");
   CHECK(moved([](Scene& s) { s.materials[0].anisotropy_texture.texture = 1; }) == "m");
   CHECK(moved([](Scene& s) { s.materials[0].base_color_texture.texture = 1; }) == "m");

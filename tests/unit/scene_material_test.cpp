@@ -2,6 +2,7 @@
 // Materials with their extensions, textures and images.
 #include <cmath>
 
+#include "scene/range.h"
 #include "unit/scene_support.h"
 
 namespace scene_material_tests {
@@ -136,7 +137,38 @@ TEST_CASE("extensions of materials") {
   CHECK(m.iridescence_minimum == 100);
   CHECK(m.iridescence_maximum == 550);
   CHECK(load_material(extension("KHR_materials_dispersion", {{"dispersion", 0.25}})).dispersion == 0.25f);
+  for (const char* name : {"EXT_materials_diffuse_roughness", "KHR_materials_diffuse_roughness"})
+    CHECK(load_material(extension(name, {{"diffuseRoughnessFactor", 0.25}})).diffuse_roughness == 0.25f);
   CHECK(load_material(extension("KHR_materials_unlit", json::object())).unlit);
+}
+
+TEST_CASE("relief by a height texture: from extras, in metres, shallow unless it says deep") {
+  const auto with = [](const json& height) { return json{{"extras", {{"lucerna", {{"height", height}}}}}}; };
+  Asset asset;
+  const json texture{
+      {"index", asset.add("textures", {{"source", asset.add("images", {{"uri", "no.png"}})}})}};
+  asset.textured_triangle(with({{"texture", texture}, {"height", 0.02}, {"deep", true}}));
+  asset.textured_triangle(with({{"texture", texture}, {"height", -0.02}}));
+  asset.textured_triangle(with({{"texture", texture}, {"height", -0.02}, {"deep", true}}));
+  asset.textured_triangle(with({{"texture", texture}, {"height", 1e9}}));
+  asset.textured_triangle(with({{"height", 0.5}}));
+  const Scene scene = asset.load();
+  const auto& m = scene.materials;
+  CHECK((m[0].height == 0.02f && m[0].deep_relief && has_relief(m[0])));
+  CHECK((m[1].height == -0.02f && !m[1].deep_relief && has_relief(m[1])));
+  // Deep relief lies below the surface: it has no negative height.
+  CHECK((m[2].height == 0 && m[2].deep_relief && !has_relief(m[2])));
+  CHECK(m[3].height == scene::k_max_height);
+  CHECK_FALSE(has_relief(m[4]));
+  CHECK(warnings_with(scene, "2 values of materials outside their range") == 1);
+  for (const json& bad :
+       {json{{"texture", texture}, {"height", "high"}}, json{{"texture", texture}, {"deep", 3}},
+        json{{"texture", {{"index", 99}}}}, json(3)}) {
+    INFO(bad.dump());
+    Asset broken = asset;
+    broken.doc["materials"][0]["extras"]["lucerna"]["height"] = bad;
+    CHECK_THROWS_WITH(broken.load(), Catch::Contains("height"));
+  }
 }
 
 TEST_CASE("values outside their range are clamped, with one warning") {

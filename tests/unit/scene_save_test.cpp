@@ -524,7 +524,8 @@ TEST_CASE("materials' factors read back exactly, also of the default material") 
     m.clearcoat = 0.3f, m.clearcoat_roughness = 0.12f;
     m.sheen_color = {0.1f, 0.2f, 0.7f}, m.sheen_roughness = 0.35f;
     m.anisotropy = 0.45f, m.anisotropy_rotation = 1.2f;
-    m.dispersion = 0.25f;
+    m.dispersion = 0.25f, m.diffuse_roughness = 0.6f;
+    m.height = 0.0123f, m.deep_relief = true;
     m.iridescence = 0.9f, m.iridescence_maximum = 333.3f;
   }
   const Scene back = b.saved();

@@ -30,6 +30,8 @@ const std::set<std::string_view> k_known_extensions{"KHR_materials_emissive_stre
                                                     "KHR_materials_anisotropy",
                                                     "KHR_materials_iridescence",
                                                     "KHR_materials_dispersion",
+                                                    "EXT_materials_diffuse_roughness",
+                                                    "KHR_materials_diffuse_roughness",
                                                     "KHR_materials_variants",
                                                     "KHR_mesh_quantization",
                                                     "KHR_node_visibility",

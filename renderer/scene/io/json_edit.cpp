@@ -110,6 +110,10 @@ EditedJson& extension_at(EditedJson& root, EditedJson& parent, const char* name)
 
 void remove_extension(EditedJson& parent, const char* name) { remove_from(parent, "extensions", name); }
 
+EditedJson& own_at(EditedJson& parent, const char* key) {
+  return object_at(object_at(object_at(parent, "extras"), "lucerna"), key);
+}
+
 void set_own(EditedJson& parent, const char* key, EditedJson value) {
   object_at(object_at(parent, "extras"), "lucerna")[key] = std::move(value);
 }

@@ -30,6 +30,8 @@ void remove_from(EditedJson& parent, const char* object, const char* key);
 EditedJson& extension_at(EditedJson& root, EditedJson& parent, const char* name);
 /// Removes parent.extensions[name].
 void remove_extension(EditedJson& parent, const char* name);
+/// extras.lucerna[key] of an object, an object itself: made if it is missing.
+EditedJson& own_at(EditedJson& parent, const char* key);
 /// Sets extras.lucerna[key] of an object.
 void set_own(EditedJson& parent, const char* key, EditedJson value);
 /// Removes extras.lucerna[key] of an object, and what is then empty.

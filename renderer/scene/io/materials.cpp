@@ -196,6 +196,11 @@ void MaterialLoader::read(const Item& item, Material& m, MaterialNeeds& needs) {
   m.double_sided = item.boolean("doubleSided", false);
   if (const auto extensions = item.find("extensions")) read_extensions(*extensions, m, needs);
   read_own_emission(item, m);
+  if (const auto relief = own_height(item)) {
+    m.height_texture = texture_use(*relief, "texture", Use::data, needs);
+    m.deep_relief = relief->boolean("deep", false);
+    m.height = factor(*relief, "height", 0, m.deep_relief ? 0 : -k_max_height, k_max_height);
+  }
   // Black light needs no texture.
   if (m.emission == vec3(0) && m.off_emission == vec3(0)) m.emission_texture = TextureUse();
 }
@@ -239,6 +244,13 @@ void MaterialLoader::read_extensions(const Item& extensions, Material& m, Materi
     m.diffuse_transmission_color_texture =
         texture_use(*e, "diffuseTransmissionColorTexture", Use::colour, needs);
   }
+  // The draft of Khronos became an extension of several vendors.
+  for (const char* name : {"EXT_materials_diffuse_roughness", "KHR_materials_diffuse_roughness"})
+    if (const auto e = extensions.find(name)) {
+      m.diffuse_roughness = factor(*e, "diffuseRoughnessFactor", 0, 0, 1);
+      m.diffuse_roughness_texture = texture_use(*e, "diffuseRoughnessTexture", Use::data, needs);
+      break;
+    }
   m.unlit = extensions.find("KHR_materials_unlit").has_value();
   read_layers(extensions, m, needs);
 }

@@ -95,6 +95,11 @@ std::optional<Item> own_picture(const Item& definition) {
   return own ? own->find("picture") : std::nullopt;
 }
 
+std::optional<Item> own_height(const Item& item) {
+  const auto own = own_extras(item);
+  return own ? own->find("height") : std::nullopt;
+}
+
 void read_own_emission(const Item& item, Material& material) {
   const auto own = own_extras(item);
   const auto off = own ? own->find("off_emission") : std::nullopt;

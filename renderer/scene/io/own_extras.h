@@ -33,6 +33,10 @@ std::optional<Item> own_picture(const Item& definition);
 /// Of a material {"off_emission": [r, g, b]}: emission that is switched off. Ignored beside other emission.
 void read_own_emission(const Item& item, Material& material);
 
+/// Of a material {"height": {"texture": textureInfo, "height": metres, "deep": false}}: Material::height; or
+/// nothing.
+std::optional<Item> own_height(const Item& item);
+
 /// Of a camera: {"section": {"normal": [x, y, z], "offset": metres}}, in the file's coordinates.
 void read_own_section(const Item& camera, Camera& result);
 

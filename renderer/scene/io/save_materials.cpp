@@ -14,6 +14,9 @@ namespace lucerna::scene {
 namespace {
 
 constexpr const char* k_emissive = "KHR_materials_emissive_strength";
+constexpr const char* k_diffuse_roughness = "EXT_materials_diffuse_roughness";
+/// Its name in older files.
+constexpr const char* k_former_diffuse_roughness = "KHR_materials_diffuse_roughness";
 constexpr const char* k_alpha_modes[] = {"OPAQUE", "MASK", "BLEND"};
 
 void write_emission(EditedJson& root, EditedJson& m, const vec3& emission) {
@@ -97,6 +100,14 @@ void write_layers(EditedJson& root, EditedJson& m, const Material& before, const
     e["anisotropyStrength"] = number_json(after.anisotropy);
     e["anisotropyRotation"] = number_json(after.anisotropy_rotation);
   }
+  if (differs(&Material::diffuse_roughness))
+    extension_at(root, m, k_diffuse_roughness)["diffuseRoughnessFactor"] =
+        number_json(after.diffuse_roughness);
+  if (differs(&Material::height, &Material::deep_relief)) {
+    EditedJson& relief = own_at(m, "height");
+    relief["height"] = number_json(after.height);
+    relief["deep"] = after.deep_relief;
+  }
   if (differs(&Material::dispersion))
     extension_at(root, m, "KHR_materials_dispersion")["dispersion"] = number_json(after.dispersion);
   if (differs(&Material::iridescence, &Material::iridescence_ior, &Material::iridescence_minimum,
@@ -109,6 +120,20 @@ void write_layers(EditedJson& root, EditedJson& m, const Material& before, const
   }
 }
 
+/// Writes it by its present name.
+void rename_diffuse_roughness(EditedJson& root) {
+  if (!root.contains("materials")) return;
+  const EditedJson::json_pointer former(std::string("/extensions/") + k_former_diffuse_roughness);
+  for (EditedJson& m : root["materials"]) {
+    if (!m.contains(former)) continue;
+    EditedJson values = m[former];
+    remove_extension(m, k_former_diffuse_roughness);
+    EditedJson& present = extension_at(root, m, k_diffuse_roughness);
+    if (present.empty()) present = std::move(values);
+  }
+  drop_unused_extension(root, k_former_diffuse_roughness);
+}
+
 /// A material in place of glTF's default one, on all primitives without a material.
 size_t add_default_material(EditedJson& root, const std::string& name) {
   EditedJson& list = array_at(root, "materials");
@@ -119,29 +144,33 @@ size_t add_default_material(EditedJson& root, const std::string& name) {
   return list.size() - 1;
 }
 
-/// Where a material's texture is in the file; `extension`: null for glTF's own.
+/// Where a material's texture is in the file: in the material itself, an object of it, an extension, or
+/// extras.lucerna.
 struct TextureKey {
-  const char* extension;
+  enum Place { material, object, extension, own } place;
+  const char* holder;
   const char* key;
 };
 constexpr TextureKey k_texture_keys[] = {
-    {"", "baseColorTexture"},  // of pbrMetallicRoughness, as the next
-    {"", "metallicRoughnessTexture"},
-    {nullptr, "normalTexture"},
-    {nullptr, "emissiveTexture"},
-    {"KHR_materials_specular", "specularTexture"},
-    {"KHR_materials_specular", "specularColorTexture"},
-    {"KHR_materials_transmission", "transmissionTexture"},
-    {"KHR_materials_diffuse_transmission", "diffuseTransmissionTexture"},
-    {"KHR_materials_diffuse_transmission", "diffuseTransmissionColorTexture"},
-    {"KHR_materials_clearcoat", "clearcoatTexture"},
-    {"KHR_materials_clearcoat", "clearcoatRoughnessTexture"},
-    {"KHR_materials_clearcoat", "clearcoatNormalTexture"},
-    {"KHR_materials_sheen", "sheenColorTexture"},
-    {"KHR_materials_sheen", "sheenRoughnessTexture"},
-    {"KHR_materials_anisotropy", "anisotropyTexture"},
-    {"KHR_materials_iridescence", "iridescenceTexture"},
-    {"KHR_materials_iridescence", "iridescenceThicknessTexture"},
+    {TextureKey::object, "pbrMetallicRoughness", "baseColorTexture"},
+    {TextureKey::object, "pbrMetallicRoughness", "metallicRoughnessTexture"},
+    {TextureKey::material, "", "normalTexture"},
+    {TextureKey::material, "", "emissiveTexture"},
+    {TextureKey::extension, "KHR_materials_specular", "specularTexture"},
+    {TextureKey::extension, "KHR_materials_specular", "specularColorTexture"},
+    {TextureKey::extension, "KHR_materials_transmission", "transmissionTexture"},
+    {TextureKey::extension, "KHR_materials_diffuse_transmission", "diffuseTransmissionTexture"},
+    {TextureKey::extension, "KHR_materials_diffuse_transmission", "diffuseTransmissionColorTexture"},
+    {TextureKey::extension, "KHR_materials_clearcoat", "clearcoatTexture"},
+    {TextureKey::extension, "KHR_materials_clearcoat", "clearcoatRoughnessTexture"},
+    {TextureKey::extension, "KHR_materials_clearcoat", "clearcoatNormalTexture"},
+    {TextureKey::extension, "KHR_materials_sheen", "sheenColorTexture"},
+    {TextureKey::extension, "KHR_materials_sheen", "sheenRoughnessTexture"},
+    {TextureKey::extension, "KHR_materials_anisotropy", "anisotropyTexture"},
+    {TextureKey::extension, "KHR_materials_iridescence", "iridescenceTexture"},
+    {TextureKey::extension, "KHR_materials_iridescence", "iridescenceThicknessTexture"},
+    {TextureKey::extension, k_diffuse_roughness, "diffuseRoughnessTexture"},
+    {TextureKey::own, "height", "texture"},
 };
 static_assert(std::size(k_texture_keys) == std::size(k_texture_slots));
 
@@ -180,23 +209,20 @@ class TextureWriter {
   EditedJson found(size_t material, const TextureKey& key) const {
     if (material >= before_.size()) return nullptr;
     const EditedJson& m = before_[material];
-    const EditedJson* holder = &m;
-    if (key.extension) {
-      const std::string path =
-          *key.extension ? std::string("/extensions/") + key.extension : "/pbrMetallicRoughness";
-      const EditedJson::json_pointer pointer(path);
-      if (!m.contains(pointer)) return nullptr;
-      holder = &m[pointer];
-    }
-    return holder->contains(key.key) ? (*holder)[key.key] : EditedJson();
+    static constexpr const char* k_paths[] = {"", "/", "/extensions/", "/extras/lucerna/"};
+    const EditedJson::json_pointer pointer(std::string(k_paths[key.place]) + key.holder);
+    if (!m.contains(pointer)) return nullptr;
+    const EditedJson& holder = m[pointer];
+    return holder.contains(key.key) ? holder[key.key] : EditedJson();
   }
 
   void put(size_t material, const TextureKey& key, EditedJson info) {
     EditedJson& m = root_["materials"][material];
     if (info.is_null() && found(material, key).is_null()) return;
-    EditedJson& holder = !key.extension   ? m
-                         : *key.extension ? extension_at(root_, m, key.extension)
-                                          : object_at(m, "pbrMetallicRoughness");
+    EditedJson& holder = key.place == TextureKey::material    ? m
+                         : key.place == TextureKey::object    ? object_at(m, key.holder)
+                         : key.place == TextureKey::extension ? extension_at(root_, m, key.holder)
+                                                              : own_at(m, key.holder);
     if (info.is_null())
       holder.erase(key.key);
     else
@@ -235,6 +261,7 @@ class TextureWriter {
 
 void write_materials(EditedJson& root, const SaveRequest& request, const Folders& folders) {
   const Scene &loaded = *request.loaded, &edited = *request.edited;
+  rename_diffuse_roughness(root);
   TextureWriter textures(root, request, folders);
   for (uint32_t i = 0; i < std::min(loaded.materials.size(), edited.materials.size()); ++i) {
     if (i >= loaded.material_indices.size()) continue;

@@ -28,6 +28,7 @@ struct Material {
   float anisotropy;
   vec2 grain;
   float film, film_ior, film_thickness;
+  float diffuse_roughness;
 };
 struct Question {
   uint material;
@@ -81,6 +82,9 @@ SurfaceParameters parameters(Material m) {
   s.film = m.film;
   s.film_ior = m.film_ior;
   s.film_thickness = m.film_thickness;
+#endif
+#if LUCERNA_ROUGH_DIFFUSE
+  s.diffuse_roughness = m.diffuse_roughness;
 #endif
   return s;
 }
