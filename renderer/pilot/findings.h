@@ -5,7 +5,7 @@
 
 namespace lucerna::pilot {
 
-/// Of a small picture with `samples` per pixel, half of them in each half. Sets energy and variance of the
+/// Of a picture with `samples` per pixel, half of them in each half. Sets energy and variance of the
 /// components.
 ///
 /// Variance: of one sample's luminance, from the two halves, over the squared luminance around the pixel: the

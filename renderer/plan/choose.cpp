@@ -240,7 +240,7 @@ std::array<Choice, 4> choose(const SceneFacts& facts, const Settings& settings, 
     } else if (const std::optional<Choice> known = by_facts(facts, c)) {
       choices[c] = *known;
     } else {
-      choices[c] = {"path", "to be decided by a pilot"};
+      choices[c] = {"path", "to be decided by the first samples"};
       undecided |= 1u << c;
       continue;
     }

@@ -18,7 +18,7 @@ namespace lucerna::plan {
 struct Plan {
   /// By component: the solver's name as in components.X, and why it was chosen if the setting is auto.
   std::array<Choice, paths::k_component_count> choices{};
-  /// A choice waits for the findings of a pilot; paths compute those components meanwhile.
+  /// A choice waits for the findings of the first samples; paths compute those components meanwhile.
   bool undecided = false;
   std::array<const solvers::SolverInfo*, paths::k_component_count> solver{};  ///< null: off
   /// If `solver` computes only directly visible light (SolverInfo::directly_visible_only): the solver that

@@ -33,7 +33,7 @@ OptionInfo component_option(int c) {
   const std::string key = std::string("components.") + paths::k_component_names[size_t(c)];
   const std::string help = fmt::format(
       "Solver of the {} component: {}. auto: chosen for the scene, "
-      "by what it contains and by a short pilot.",
+      "by what it contains and by the first samples of paths.",
       paths::k_component_names[size_t(c)], k_component_help[size_t(c)]);
   return choice_option(key.c_str(), fallback.c_str(), std::move(choices), "", help.c_str());
 }

@@ -340,14 +340,6 @@ shared::Frame Engine::pilot_frame(const PictureView& picture, uint32_t width, ui
   return frame;
 }
 
-bool Engine::try_paths(const PictureView& picture, const schedule::WorkItem& item, film::Film& film,
-                       const std::function<bool()>& cancel) {
-  wavefront_->set_frame(pilot_frame(picture, film.width(), film.height()), plan_.enabled());
-  const bool complete = wavefront_->try_out(item, film, cancel);
-  wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
-  return complete;
-}
-
 bool Engine::waits() const {
   const solvers::Solver* next = unready();
   return next && solvers::offered<solvers::Preparation>(*next)->waits();

@@ -94,10 +94,6 @@ class Engine {
   /// Discards what was learned from another view and used for preview samples; the picture must not depend on
   /// former views.
   void begin_samples(const PictureView& picture);
-  /// Traces an item of all components by paths, as if no other solver computed any, into a film of another
-  /// size, with samples that no picture uses. False if cancelled.
-  bool try_paths(const PictureView& picture, const schedule::WorkItem& item, film::Film& film,
-                 const std::function<bool()>& cancel);
   /// Records that generation. False if cancelled.
   bool learn(const PictureView& picture, const std::function<bool()>& cancel);
 

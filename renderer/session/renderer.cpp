@@ -103,7 +103,7 @@ void Renderer::install(Transaction::Target target, const Progress& progress, con
   transaction.build(changes);
   PictureOutput::WindowParts window_parts = output_.make_window_parts(false);
   commit(transaction);
-  facts_ = std::move(facts), findings_.reset(), pilot_.reset();
+  facts_ = std::move(facts), findings_.reset(), reviewed_ = false;
   output_.adopt(std::move(window_parts));
   notify_settings_changed();
   restart(changes);
@@ -166,7 +166,7 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
                        bool other_sky) {
   if (!setup_.engine || !setup_.film) return;
   setup_.kept.note(changes.edits);
-  pilot_.reset();  // of another view, or of other light
+  pilot_.restart();
   setup_.engine->begin(picture_view(), changes, factors);
   transport::Wavefront& wavefront = setup_.engine->wavefront();
   const bool shown = factors && shows_light(*factors);

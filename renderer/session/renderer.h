@@ -146,12 +146,12 @@ class Renderer {
   const plan::SceneFacts& facts() const { return facts_; }
   /// Solver of each component, and why it was chosen if the setting is auto; empty before the first scene.
   const std::array<plan::Choice, paths::k_component_count>& choices() const;
-  /// The pilot's findings, once solvers have been chosen by it.
+  /// The findings of the picture's first samples, once solvers have been chosen by them.
   const std::optional<solvers::Findings>& findings() const { return findings_; }
   /// Rendering will end after this many seconds: solvers with the setting auto are chosen for that. Call
   /// before the first step().
   void expect_seconds(std::optional<double> seconds) { seconds_limit_ = seconds; }
-  /// True while a pilot must run before solvers are chosen (components.X=auto).
+  /// True until the first samples of the picture are there, by which solvers are chosen (components.X=auto).
   bool choosing() const { return setup_.engine && setup_.engine->plan().undecided; }
   /// Runs one work item; cancellable between bounces. False if there is nothing to do, if cancelled, or if
   /// preparation waits.
@@ -212,8 +212,8 @@ class Renderer {
   /// of lights to `changes` if the settings cause them.
   bool apply_plan(Transaction::Target target, scene::Changes& changes);
   void notify_settings_changed();  ///< informs the solvers
-  /// Runs a part of the pilot, and then chooses the solvers. False if cancelled.
-  bool run_pilot(const std::function<bool()>& cancel);
+  /// While solvers wait for it: notes a work item of that time [s]; chooses them once the pilot is complete.
+  void judge_pilot(double seconds);
   /// Chooses the solvers by the findings; another choice begins another picture.
   void choose_solvers();
   /// With a limit of time: chooses again once the cost of the chosen solvers is measured.
@@ -240,10 +240,11 @@ class Renderer {
   std::map<std::string, std::string> applied_;  ///< settings of the present picture
   std::shared_ptr<const scene::Scene> loaded_;  ///< as passed to set_scene()
   plan::SceneFacts facts_;                      ///< of the scene as it was installed, without effects.off
-  std::unique_ptr<Pilot> pilot_;                ///< while it runs
+  Pilot pilot_;
   std::optional<solvers::Findings> findings_;   ///< of this scene's pilot
   std::optional<double> seconds_limit_;
   ChoiceReview review_;
+  bool reviewed_ = false;
   scene::Lens begun_lens_;  ///< of the picture begun last
   uint64_t restarts_ = 0;
   double load_seconds_ = 0;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "base/log.h"
+#include "pilot/findings.h"
 #include "session/renderer.h"
 
 namespace lucerna::session {
@@ -18,7 +19,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   progress_.resume();
   const Timer timer;
   setup_.engine->begin_samples(picture_view());
-  const bool prepares = preparing() || choosing(), learns = setup_.engine->learns(samples());
+  const bool prepares = preparing(), learns = setup_.engine->learns(samples());
   const bool progress = render_item(cancel);
   if (sampling_.region_due()) sampling_.change(progress_);
   output_.judge_filtered();
@@ -28,7 +29,10 @@ bool Renderer::step(const std::function<bool()>& cancel) {
     progress_.note_prepared();
   else if (progress && !learns)
     progress_.note(false);
-  if (!prepares) review_choice();
+  if (!prepares && choosing())
+    judge_pilot(timer.seconds());
+  else if (!prepares)
+    review_choice();
   if (done()) progress_.rest();
   return progress;
 }
@@ -36,7 +40,6 @@ bool Renderer::step(const std::function<bool()>& cancel) {
 bool Renderer::render_item(const std::function<bool()>& cancel) {
   const PictureView view = picture_view();
   transport::Wavefront& wavefront = setup_.engine->wavefront();
-  if (choosing()) return run_pilot(cancel);
   if (setup_.engine->learns(samples())) return setup_.engine->learn(view, cancel);
   if (solvers::Solver* next = setup_.engine->unready()) {
     const bool rounds = setup_.engine->in_rounds(), went = setup_.engine->prepare(*next, view, cancel);
@@ -80,14 +83,20 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
   return false;
 }
 
-bool Renderer::run_pilot(const std::function<bool()>& cancel) {
-  if (!pilot_) pilot_ = std::make_unique<Pilot>(*device_, *setup_.engine, setup_.width, setup_.height);
-  if (!pilot_->step(*setup_.engine, picture_view(), cancel)) return false;
-  if (!pilot_->done()) return true;
-  findings_ = pilot_->findings(setup_.settings.text("lights.sampling") == "learned");
-  pilot_.reset();
+void Renderer::judge_pilot(double seconds) {
+  pilot_.note(samples(), seconds);
+  if (!pilot_.complete(plan::goal_of(setup_.settings, nullptr), seconds_limit_, sampling_.max_samples()))
+    return;
+  findings_ = pilot::evaluate(setup_.film->read(), samples());
+  findings_->pixels = double(setup_.width) * setup_.height;
+  findings_->seconds = pilot_.sample_seconds();
+  if (seconds_limit_ && findings_->seconds > 0) {
+    // Other solvers begin the picture again.
+    findings_->begun = solvers::Findings::Begun{
+        .samples = double(samples()), .sample = 1, .spent = progress_.seconds() / findings_->seconds};
+    findings_->begun->solvers.fill("path");
+  }
   choose_solvers();
-  return true;
 }
 
 void Renderer::choose_solvers() {
@@ -115,14 +124,15 @@ void Renderer::choose_solvers() {
 }
 
 void Renderer::review_choice() {
-  if (!seconds_limit_ || !findings_ || findings_->begun || findings_->seconds <= 0) return;
+  if (!seconds_limit_ || !findings_ || reviewed_ || findings_->seconds <= 0) return;
   const std::array<plan::Choice, 4>& chosen = choices();
   // Paths cost what the pilot has measured.
   if (std::all_of(chosen.begin(), chosen.end(),
                   [](const plan::Choice& c) { return c.reason.empty() || c.solver == "path"; }))
     return;
-  findings_->begun = review_.note(samples(), progress_.seconds(), findings_->seconds);
-  if (!findings_->begun) return;
+  const auto begun = review_.note(samples(), progress_.seconds(), findings_->seconds);
+  if (!begun) return;
+  findings_->begun = begun, reviewed_ = true;
   for (size_t c = 0; c < chosen.size(); ++c) findings_->begun->solvers[c] = chosen[c].solver;
   choose_solvers();
 }

@@ -10,7 +10,7 @@
 
 namespace lucerna::solvers {
 
-/// Results of a pilot: path tracing in a small picture of the same view (pilot/findings.h).
+/// Results of a pilot: the picture's first samples, by paths (pilot/findings.h).
 struct Findings {
   struct Component {
     double energy = 0;    ///< share of the picture's light, 0..1

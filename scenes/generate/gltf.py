@@ -158,14 +158,16 @@ class Scene:
 
     def material(self, name, color=(0.8, 0.8, 0.8), rough=1.0, metal=0.0, lambert=False, emit=None, strength=1.0,
                  glass=None, thin=False, ior=None, double=False, maps=None, metres=None, through=None,
-                 through_color=None, normal_scale=1.0, attenuation=None, specular=None, layers=None):
+                 through_color=None, normal_scale=1.0, attenuation=None, specular=None, layers=None, relief=None,
+                 diffuse_rough=None):
         """Adds a material once and returns its name.
 
         lambert: a pure Lambertian (KHR_materials_specular with factor 0). emit: emitted radiance per `strength`.
         glass: roughness of a refracting solid (or thin wall with thin=True). through: share of the diffuse light
         that passes (KHR_materials_diffuse_transmission). maps: {"color", "normal", "rough"} -> files;
         metres: size of one repeat of the maps where uv is in metres. layers: further extensions, such as
-        {"clearcoat": {"clearcoatFactor": 1}}, without the prefix KHR_materials_.
+        {"clearcoat": {"clearcoatFactor": 1}}, without the prefix KHR_materials_. relief: (file of heights, metres of
+        one repeat, metres from black to white, deep). diffuse_rough: roughness of the diffuse reflection, 0 to 1.
         """
         if name in self.material_ids:
             return name
@@ -206,6 +208,12 @@ class Scene:
                     m["normalTexture"]["scale"] = normal_scale
         for key, values in (layers or {}).items():
             ext["KHR_materials_" + key] = values
+        if diffuse_rough is not None:
+            ext["EXT_materials_diffuse_roughness"] = {"diffuseRoughnessFactor": diffuse_rough}
+        if relief:
+            file, size, height, deep = relief
+            m["extras"] = {"lucerna": {"height": {"texture": self.texture_info(file, size), "height": height,
+                                                  "deep": deep}}}
         if double:
             m["doubleSided"] = True
         if ext:
