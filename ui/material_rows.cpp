@@ -32,6 +32,8 @@ class MaterialRows {
       : controls_(controls), index_(index), m_(controls.open.material(index)) {}
 
   void draw() {
+    catcher();
+    if (m_.shadow_catcher) return;
     colours();
     emission();
     if (!m_.unlit) layers(), transmission(), coverage();
@@ -78,6 +80,16 @@ class MaterialRows {
             m_.specular_color_texture, "Colour of the reflection seen from the front; white is physical.");
     number("ior", "Index of refraction", m_.ior, "Air 1, water 1.33, most paints and glass 1.5, diamond 2.4.",
            {.lo = 1, .hi = 2.5f, .decimals = 3, .typed_hi = 100});
+  }
+
+  void catcher() {
+    bool catches = m_.shadow_catcher;
+    if (button("##shadow_catcher", "Shadow catcher", catches, ImGui::CalcItemWidth()))
+      set(named("shadow_catcher", !catches));
+    tooltip(
+        "The surface looks like the sky's picture behind it, with the shadows and reflections of objects on "
+        "it: the "
+        "ground of a photograph. It blocks no light.");
   }
 
   // By the height texture.

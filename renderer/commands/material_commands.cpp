@@ -121,6 +121,7 @@ std::vector<Parameter> material_parameters(const OpenScene& open) {
       real("strength", "emitted radiance of the strongest channel, before the colour", 0, 1e9, "cd/m2"));
   list.push_back(flag("on", "turns emission on or off"));
   list.push_back(flag("two_sided", "the back emits too"));
+  list.push_back(flag("shadow_catcher", "shows what is behind it, and the shadows of objects on it"));
   list.push_back(flag("deep_relief", "relief by the height texture hides and shadows itself"));
   using scene::LightUnit;
   for (Parameter& p : strength_parameters({LightUnit::lumen, LightUnit::watt, LightUnit::nit}))
@@ -217,6 +218,7 @@ void set_material(OpenScene& open, const Arguments& a) {
     m.attenuation_distance = a.number("absorb_distance") > 0 ? a.number("absorb_distance") : k_infinity;
   take(a, "two_sided", m.double_sided);
   take(a, "deep_relief", m.deep_relief);
+  take(a, "shadow_catcher", m.shadow_catcher);
   if (m.deep_relief && m.height < 0) m.height = -m.height;
   take_emission(open, a, index, m);
   take_textures(open, a, index, m);
@@ -242,6 +244,7 @@ std::string material_words(const Document::Material& m) {
   for (const ColourWord& w : k_colours) put(w.name, m.*w.value, plain.*w.value);
   put("two_sided", m.double_sided, false);
   put("deep_relief", m.deep_relief, false);
+  put("shadow_catcher", m.shadow_catcher, false);
   put("on", m.emits, true);
   for (const auto& [slot, source] : m.textures)
     if (source.kind == TextureSource::Kind::file)

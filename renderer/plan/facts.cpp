@@ -115,8 +115,10 @@ void drop_shallow_relief(Material& m) {
 }
 bool has_deep_relief(const Material& m) { return has_relief(m) && m.deep_relief; }
 void drop_deep_relief(Material& m) {
-  if (m.deep_relief) m.height = 0, m.height_texture = {};
+  m.deep_relief = false;  // its slopes remain
 }
+bool catches_shadows(const Material& m) { return m.shadow_catcher; }
+void drop_catcher(Material& m) { m.shadow_catcher = false; }
 bool is_translucent(const Material& m) { return m.diffuse_transmission > 0; }
 void drop_translucency(Material& m) { m.diffuse_transmission = 0; }
 bool has_clearcoat(const Material& m) { return m.clearcoat > 0 && !m.unlit; }
@@ -282,6 +284,8 @@ std::vector<Row> surface_rows() {
        of_materials<has_shallow_relief>, of_each<drop_shallow_relief>},
       {"parallax", "Deep relief", group, "rays followed into the relief", "no surface has it",
        of_materials<has_deep_relief>, of_each<drop_deep_relief>},
+      {"shadow_catcher", "Shadow catchers", group, "the background's colour on the surface",
+       "no surface is one", of_materials<catches_shadows>, of_each<drop_catcher>},
       {"clearcoat", "Clear coats", group, "specular lobe over the material", "no surface has it",
        of_materials<has_clearcoat>, of_each<drop_clearcoat>},
       {"sheen", "Sheen of fibres", group, "lobe at grazing angles over the material", "no surface has it",

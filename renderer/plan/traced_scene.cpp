@@ -10,7 +10,7 @@ std::shared_ptr<const scene::Scene> traced_scene(std::shared_ptr<const scene::Sc
                                                  const Settings& settings) {
   scene = scene::with_variant(std::move(scene), settings.text("scene.variant"), "scene.variant");
   if (settings.boolean("scene.clay")) scene = scene::in_clay(std::move(scene));
-  return without_effects(std::move(scene), effects_off(settings));
+  return scene::with_plain_catchers(without_effects(std::move(scene), effects_off(settings)));
 }
 
 std::string traced_scene_key(const Settings& settings) {

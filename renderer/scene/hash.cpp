@@ -75,17 +75,24 @@ uint64_t materials(const Scene& scene, Images& images) {
     const auto& [base_color, metallic, roughness, normal_scale, emission, alpha_mode, alpha_cutoff,
                  double_sided, unlit, ior, specular, specular_color, transmission, thickness,
                  attenuation_color, attenuation_distance, dispersion, diffuse_transmission,
-                 diffuse_transmission_color, diffuse_roughness, height, deep_relief, clearcoat,
-                 clearcoat_roughness, clearcoat_normal_scale, sheen_color, sheen_roughness, anisotropy,
-                 anisotropy_rotation, iridescence, iridescence_ior, iridescence_minimum,
+                 diffuse_transmission_color, diffuse_roughness, height, deep_relief, shadow_catcher,
+                 clearcoat, clearcoat_roughness, clearcoat_normal_scale, sheen_color, sheen_roughness,
+                 anisotropy, anisotropy_rotation, iridescence, iridescence_ior, iridescence_minimum,
                  iridescence_maximum] = static_cast<const MaterialFactors&>(m);
     add_all(hash, base_color, metallic, roughness, normal_scale, emission, alpha_mode, alpha_cutoff,
             double_sided, unlit, ior, specular, specular_color, transmission, thickness, attenuation_color,
-            attenuation_distance, dispersion, diffuse_transmission, diffuse_transmission_color,
-            diffuse_roughness, height, deep_relief, clearcoat, clearcoat_roughness, clearcoat_normal_scale,
-            sheen_color, sheen_roughness, anisotropy, anisotropy_rotation, iridescence, iridescence_ior,
-            iridescence_minimum, iridescence_maximum);
-    for (const TextureSlot& slot : k_texture_slots) images.add(hash, m.*slot.use);
+            attenuation_distance, dispersion, diffuse_transmission, diffuse_transmission_color, clearcoat,
+            clearcoat_roughness, clearcoat_normal_scale, sheen_color, sheen_roughness, anisotropy,
+            anisotropy_rotation, iridescence, iridescence_ior, iridescence_minimum, iridescence_maximum);
+    // What came later counts where it is used, so that results that were stored for other scenes stay valid.
+    if (diffuse_roughness != 0) add_all(hash, 'r', diffuse_roughness);
+    if (height != 0 || deep_relief) add_all(hash, 'h', height, deep_relief);
+    if (shadow_catcher) hash.add_value('c');
+    constexpr size_t k_first_slots = 17;
+    for (size_t s = 0; s < std::size(k_texture_slots); ++s) {
+      const TextureUse& use = m.*k_texture_slots[s].use;
+      if (s < k_first_slots || use) images.add(hash, use);
+    }
   }
   return hash.low();
 }

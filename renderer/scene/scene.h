@@ -78,6 +78,8 @@ struct MaterialFactors {
   /// and shadows itself, white on the surface and all else below; if not, it only turns the shading normal.
   float height = 0;
   bool deep_relief = false;
+  /// Shows what is behind it, with the shadows and reflections of objects on it (scene/variants.h).
+  bool shadow_catcher = false;
   float clearcoat = 0;  ///< KHR_materials_clearcoat: strength of a coat of varnish
   float clearcoat_roughness = 0;
   float clearcoat_normal_scale = 1;

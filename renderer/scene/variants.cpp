@@ -21,10 +21,26 @@ std::shared_ptr<const Scene> with_variant(std::shared_ptr<const Scene> scene, co
   return other;
 }
 
+std::shared_ptr<const Scene> with_plain_catchers(std::shared_ptr<const Scene> scene) {
+  const auto catches = [](const Material& m) { return m.shadow_catcher; };
+  if (std::none_of(scene->materials.begin(), scene->materials.end(), catches)) return scene;
+  auto other = std::make_shared<Scene>(*scene);
+  for (Material& m : other->materials) {
+    if (!m.shadow_catcher) continue;
+    Material plain;
+    plain.name = m.name, plain.group = m.group, plain.shadow_catcher = true;
+    plain.metallic = 0, plain.specular = 0;
+    m = plain;
+  }
+  return other;
+}
+
 std::shared_ptr<const Scene> in_clay(std::shared_ptr<const Scene> scene) {
   auto other = std::make_shared<Scene>(*scene);
   for (Material& m : other->materials) {
-    if (m.unlit || m.transmission > 0 || m.diffuse_transmission > 0 || m.emission != vec3(0)) continue;
+    if (m.unlit || m.shadow_catcher || m.transmission > 0 || m.diffuse_transmission > 0 ||
+        m.emission != vec3(0))
+      continue;
     Material clay;
     clay.name = m.name, clay.group = m.group;
     clay.base_color = vec4(vec3(k_clay_reflectance), m.base_color.w);

@@ -14,6 +14,8 @@ std::shared_ptr<const Scene> with_variant(std::shared_ptr<const Scene> scene, co
 
 /// The scene in matt grey clay. What transmits light or emits it stays as it is, and so do holes (alpha).
 std::shared_ptr<const Scene> in_clay(std::shared_ptr<const Scene> scene);
+/// Shadow catchers without all that they do not show: colours, reflections, textures, emission.
+std::shared_ptr<const Scene> with_plain_catchers(std::shared_ptr<const Scene> scene);
 inline constexpr float k_clay_reflectance = 0.5f;
 
 }  // namespace lucerna::scene

@@ -144,9 +144,9 @@ bool needs_flattening(const scene::Scene& before, const scene::Scene& after, uin
     if (x.*slot.use != y.*slot.use) return true;
   const bool alpha = y.alpha_mode != scene::AlphaMode::opaque &&
                      (x.base_color.w != y.base_color.w || x.alpha_cutoff != y.alpha_cutoff);
-  return alpha || x.alpha_mode != y.alpha_mode || (x.transmission > 0) != (y.transmission > 0) ||
-         (x.thickness > 0) != (y.thickness > 0) || x.double_sided != y.double_sided ||
-         !before.meshes.shares_with(after.meshes);
+  return alpha || x.alpha_mode != y.alpha_mode || x.shadow_catcher != y.shadow_catcher ||
+         (x.transmission > 0) != (y.transmission > 0) || (x.thickness > 0) != (y.thickness > 0) ||
+         x.double_sided != y.double_sided || !before.meshes.shares_with(after.meshes);
 }
 
 EditedScene with_strengths(const ScenePtr& scene, const LightsEdit& edit) {

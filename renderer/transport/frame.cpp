@@ -49,7 +49,7 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
   f.environment_rotation = flat.environment_rotation;
   f.environment_light_pmf = flat.environment_light_pmf;
   f.light_count = uint32_t(flat.lights.size() / shared::k_light_texels);
-  f.first_lamp = flat.first_lamp, f.lamp_count = uint32_t(flat.lamp_alias.size());
+  f.first_lamp = flat.first_lamp, f.lamp_count = flat.lamp_count;
   f.first_shape = flat.first_shape, f.shape_count = flat.shape_count;
   f.lamp_pmf = flat.lamp_pmf;
   f.max_depth = options.max_depth;

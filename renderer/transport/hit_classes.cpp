@@ -99,6 +99,7 @@ gpu::Defines defines_of(const HitClass& hits, const gpu::Defines& all) {
   keep("LUCERNA_DISPERSION", needs(k_feature_dispersion));
   keep("LUCERNA_ROUGH_DIFFUSE", needs(k_feature_rough_diffuse));
   keep("LUCERNA_TEX_DIFFUSE_ROUGHNESS", needs(k_feature_diffuse_roughness_texture));
+  keep("LUCERNA_CATCHER", needs(k_feature_catcher));
   keep("LUCERNA_HEIGHTS", needs(k_feature_relief));
   keep("LUCERNA_PARALLAX", needs(k_feature_deep_relief));
   keep("LUCERNA_IRIDESCENCE", needs(k_feature_iridescence));

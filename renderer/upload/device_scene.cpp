@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "upload/environment_irradiance.h"
+
 namespace lucerna::upload {
 namespace {
 
@@ -60,6 +62,9 @@ EnvironmentBuffers::EnvironmentBuffers(gpu::Device& device, const FlatLights& fl
     : texels(upload_environment(device, flat)),
       alias(upload<vec4>(device, "environment table", flat.environment.alias)),
       sun_cells(upload<vec4>(device, "sun table", flat.environment.sun_cells)),
+      irradiance(upload(
+          device, "irradiance of the environment",
+          environment_irradiance(flat.environment_texels, flat.environment_width, flat.environment_height))),
       of_texels_(flat.environment_texels),
       of_(flat.environment) {}
 
@@ -138,6 +143,7 @@ void DeviceScene::bind(gpu::Resources& r) const {
   r.set("light_profiles", lights_.profiles->texels);
   r.set("light_pictures", lights_.pictures->texels);
   r.set("environment_texels", lights_.environment->texels);
+  r.set("environment_irradiance", lights_.environment->irradiance);
   r.set("environment_alias", lights_.environment->alias);
   r.set("sun_cells", lights_.environment->sun_cells);
   r.set("sun_density", lights_.sun_density);
@@ -198,6 +204,7 @@ gpu::Defines DeviceScene::defines() const {
   set("LUCERNA_TEX_DIFFUSE_ROUGHNESS", e.tex_diffuse_roughness);
   set("LUCERNA_HEIGHTS", e.heights);
   set("LUCERNA_PARALLAX", e.deep_relief);
+  set("LUCERNA_CATCHER", e.catcher);
   set("LUCERNA_IRIDESCENCE", e.iridescence);
   set("LUCERNA_TEX_IRIDESCENCE", e.tex_iridescence);
   set("LUCERNA_UV_TRANSFORMS", e.uv_transforms);

@@ -12,7 +12,7 @@ namespace lucerna::upload {
 struct EnvironmentBuffers {
   EnvironmentBuffers(gpu::Device& device, const FlatLights& flat);
   bool holds(const FlatLights& flat) const;
-  gpu::Buffer texels, alias, sun_cells;
+  gpu::Buffer texels, alias, sun_cells, irradiance;
 
  private:
   SharedVector<vec3> of_texels_;

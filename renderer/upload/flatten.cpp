@@ -65,7 +65,8 @@ void flatten_geometry(const scene::Scene& scene, FlatScene& flat) {
         }
       }
       const bool thin = material.transmission > 0 && material.thickness <= 0;
-      const bool non_opaque = material.alpha_mode != scene::AlphaMode::opaque || thin;
+      const bool non_opaque =
+          material.alpha_mode != scene::AlphaMode::opaque || thin || material.shadow_catcher;
       for (const uvec3& t : p.triangles) {
         for (int k = 0; k < 3; ++k) flat.positions.push_back(vec3(flat.vertices[2 * size_t(first + t[k])]));
         flat.triangles.push_back(uvec4(first + t.x, first + t.y, first + t.z,
@@ -90,7 +91,7 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
   e.specular = e.solid_glass = e.thin_glass = e.diffuse_transmission = false;
   e.volumes = e.unlit = e.alpha = e.glass_specular = false;
   e.clearcoat = e.sheen = e.anisotropy = e.iridescence = e.dispersion = false;
-  e.rough_diffuse = e.deep_relief = false;
+  e.rough_diffuse = e.deep_relief = e.catcher = false;
   e.plain_emitters = true;
   const MaterialKinds kinds = material_kinds(scene.materials);
   flat.materials.resize(scene.materials.size() * k_material_texels);
@@ -112,6 +113,7 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
     if (m.alpha_mode == scene::AlphaMode::blend) flags |= k_flag_blend;
     if (any(m.emission) && !m.unlit) flags |= k_flag_emissive;
     if (solid) flags |= k_flag_solid;
+    if (m.shadow_catcher) flags |= k_flag_catcher;
     vec3 absorption(0);
     if (solid && std::isfinite(m.attenuation_distance) && m.attenuation_distance > 0)
       for (int k = 0; k < 3; ++k)
@@ -151,7 +153,8 @@ void flatten_factors(const scene::Scene& scene, FlatScene& flat) {
       e.plain_emitters &= !m.emission_texture && m.alpha_mode == scene::AlphaMode::opaque;
     e.volumes |= any(absorption);
     e.unlit |= m.unlit;
-    e.alpha |= m.alpha_mode != scene::AlphaMode::opaque;
+    e.catcher |= m.shadow_catcher;
+    e.alpha |= m.alpha_mode != scene::AlphaMode::opaque || m.shadow_catcher;
   }
   e.kinds = kinds.features;
   if (flat.bsdf_tables.empty() || flat.glass_iors != glass_iors || flat.has_sheen != e.sheen)

@@ -27,7 +27,8 @@ struct Effects {
        tex_diffuse_transmission = false, tangents = false, clearcoat = false, sheen = false,
        anisotropy = false, iridescence = false, dispersion = false, tex_clearcoat = false,
        clearcoat_normals = false, tex_sheen = false, tex_anisotropy = false, tex_iridescence = false,
-       rough_diffuse = false, tex_diffuse_roughness = false, heights = false, deep_relief = false;
+       rough_diffuse = false, tex_diffuse_roughness = false, heights = false, deep_relief = false,
+       catcher = false;
   bool plain_emitters = true;  ///< no emissive surface has an emission texture or alpha transparency
   /// Number of lamps from which a light sample is resampled by their light at the point; 0: few lamps.
   uint32_t lamp_candidates = 0;
@@ -75,7 +76,7 @@ struct LightDistribution {
   std::vector<float> primitive_light_pmf;  ///< pmf / area [1/m^2]
   std::vector<vec4>
       lamp_alias;  ///< alias table of the lamps, which are consecutive entries, with the same weights
-  uint32_t first_lamp = 0;                    ///< first entry of a lamp
+  uint32_t first_lamp = 0, lamp_count = 0;    ///< entries of lamps
   float lamp_pmf = 0;                         ///< probability of choosing a lamp
   uint32_t first_shape = 0, shape_count = 0;  ///< entries of lamps with a shape, the last of the lamps
   float environment_light_pmf = 0;

@@ -145,6 +145,7 @@ void choose_lamps(const scene::Scene& scene, const std::vector<double>& weights,
     if (of_lamps.empty()) d.first_lamp = uint32_t(i);
     of_lamps.push_back(weights[i]);
   }
+  d.lamp_count = uint32_t(of_lamps.size());
   if (flat.effects.lamp_candidates == 0 || of_lamps.empty()) return;
   d.lamp_alias = build_alias_table(of_lamps);
   d.lamp_pmf = float(std::accumulate(of_lamps.begin(), of_lamps.end(), 0.0) /

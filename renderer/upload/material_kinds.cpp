@@ -25,7 +25,8 @@ uint32_t features_of(const scene::Material& m) {
                 m.specular_color_texture || m.iridescence > 0));
   has(k_feature_diffuse_transmission, m.diffuse_transmission > 0);
   has(k_feature_unlit, m.unlit);
-  has(k_feature_alpha, m.alpha_mode != scene::AlphaMode::opaque);
+  has(k_feature_alpha, m.alpha_mode != scene::AlphaMode::opaque || m.shadow_catcher);
+  has(k_feature_catcher, m.shadow_catcher);
   has(k_feature_emission, m.emission != vec3(0));
   has(k_feature_normal_map, bool(m.normal_texture));
   has(k_feature_base_texture, bool(m.base_color_texture));

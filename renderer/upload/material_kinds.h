@@ -43,7 +43,8 @@ enum MaterialFeature : uint32_t {
   k_feature_diffuse_roughness_texture = 1u << 27,
   k_feature_relief = 1u << 28,
   k_feature_deep_relief = 1u << 29,
-  k_all_features = (1u << 30) - 1u,
+  k_feature_catcher = 1u << 30,
+  k_all_features = (1u << 31) - 1u,
 };
 
 /// Whether it has a coat, sheen, brushing or a thin film: their code needs that of the specular lobe.

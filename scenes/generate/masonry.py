@@ -1,5 +1,5 @@
-"""A corner of a courtyard in raking sun (`masonry`): hand-made bricks with raked joints, hammered plaster, tooled flags,
-linen, and two balls of chalk on a bench.
+"""A corner of a courtyard in raking sun (`masonry`): hand-made bricks with raked joints, hammered plaster, tooled
+flags, linen, and two balls of chalk on a bench.
 
 The bricks are deep relief: one plane, whose joints hide and shadow themselves by a height texture. Plaster, flags and
 linen are shallow relief, which only turns normals. The balls have one colour: the left one is Lambert's, the right one
@@ -45,9 +45,8 @@ def bricks(s, n=1024):
     """Heights of one repeat, and colours of four of them, so that fewer bricks look alike."""
     shape = (n, n)
     y, x = (np.mgrid[0:n, 0:n] + 0.5) / n * np.array(BRICKS[::-1])[:, None, None]
-    x = x + 0.0011 * noise(shape, 1, 1.3, 3, 60)
-    y = y + 0.0010 * noise(shape, 2, 1.3, 3, 60)
-    which, dx, dy = bond(x, y, 3, 14)
+    wander = 0.0011 * noise(shape, 1, 1.3, 3, 60), 0.0010 * noise(shape, 2, 1.3, 3, 60)
+    which, dx, dy = bond(x + wander[0], y + wander[1], 3, 14)
     r = 0.009
     d = np.where((dx < r) & (dy < r), r - np.hypot(r - dx, r - dy), np.minimum(dx, dy))
     d = d + 0.0007 * noise(shape, 3, 0.9, 20, 200)
@@ -67,26 +66,21 @@ def bricks(s, n=1024):
     def four(a):
         a = a.reshape(n // 2, 2, n // 2, 2).mean((1, 3))
         return np.tile(a, (2, 2))
+
     y, x = (np.mgrid[0:n, 0:n] + 0.5) / n * 2 * np.array(BRICKS[::-1])[:, None, None]
-    which, _, _ = bond(x + np.tile(four_warp(1, n), (2, 2)), y + np.tile(four_warp(2, n), (2, 2)), 6, 28)
+    which, _, _ = bond(x + four(wander[0]), y + four(wander[1]), 6, 28)
     rs = np.random.RandomState(9)
     tone, hue = rs.rand(336), rs.standard_normal(336)
     color = mix(rgb(0.300, 0.175, 0.128), rgb(0.440, 0.305, 0.228), tone[which])
     color = np.where((rs.rand(336) > 0.90)[which][..., None], color * rgb(0.68, 0.67, 0.72), color)
     color = color * (1 + 0.035 * hue[which][..., None] * rgb(1, 0, -1))
-    cloud = np.round(noise(shape, 10, 1.2, 4, 120) * 8) / 8
+    cloud = np.round(noise(shape, 10, 1.5, 4, 90) * 4) / 4   # in steps too small to be seen: a smaller file
     color = color * (1 + 0.055 * cloud)[..., None]
-    lime = 0.30 * smooth(np.round(noise(shape, 11, 1.4, 2, 40) * 16) / 16, 0.6, 2.6)
+    lime = 0.30 * smooth(np.round(noise(shape, 11, 1.6, 2, 40) * 8) / 8, 0.6, 2.6)
     color = mix(color, rgb(0.50, 0.455, 0.395), lime)
     color = mix(rgb(0.375, 0.345, 0.300) * (1 + 0.03 * cloud)[..., None], color, four(face))
     png(os.path.join(s.folder, "bricks_color.png"), textures.to_srgb(color))
     return file
-
-
-def four_warp(seed, n):
-    """The joints' wander of `bricks`, at half its size."""
-    a = (0.0011 if seed == 1 else 0.0010) * noise((n, n), seed, 1.3, 3, 60)
-    return a.reshape(n // 2, 2, n // 2, 2).mean((1, 3))
 
 
 def flags(s, n=512):
@@ -98,7 +92,8 @@ def flags(s, n=512):
     u, v = wx * 2 % 1, wy * 2 % 1
     d = 0.5 * np.minimum(np.minimum(u, 1 - u), np.minimum(v, 1 - v))
     d = np.maximum(d + 0.0006 * noise(shape, 23, 0.9, 20, 160), 0)
-    lines = np.where((i + j) % 2 == 0, noise(shape, 24, 0.2, 24, 80, (9.0, 1.0)), noise(shape, 25, 0.2, 24, 80, (1.0, 9.0)))
+    down, across = noise(shape, 24, 0.2, 24, 80, (9.0, 1.0)), noise(shape, 25, 0.2, 24, 80, (1.0, 9.0))
+    lines = np.where((i + j) % 2 == 0, down, across)
     worn = smooth(d, 0.012, 0.045) * (0.55 + 0.45 * smooth(noise(shape, 26, 1.5, 2, 16), -1, 1))
     h = 0.0042 + 0.00050 * lines * worn + 0.0006 * noise(shape, 27, 1.8, 2, 24)
     h = h - 0.0016 * np.exp(-d / 0.009) - 0.0026 * (1 - smooth(d, 0.0025, 0.0065))
@@ -128,7 +123,8 @@ def hammered(s, n=512):
         p, q = np.cos(a) * ux + np.sin(a) * uy, np.cos(a) * uy - np.sin(a) * ux
         bed = (p / long) ** 2 + (q / short) ** 2
         h = np.minimum(h, 1 - deep * (1 - bed))
-    h = np.fft.ifft2(np.fft.fft2(h) * np.exp(-0.5 * (np.hypot(*np.meshgrid(*2 * [np.fft.fftfreq(n) * n])) / 70) ** 2)).real
+    f = np.fft.fftfreq(n) * n / 70
+    h = np.fft.ifft2(np.fft.fft2(h) * np.exp(-0.5 * (f[:, None] ** 2 + f[None, :] ** 2))).real
     h = h - h.min()
     return grey(s, "plaster_height.png", 0.97 * h / h.max() + 0.008 * noise((n, n), 32, 0.6, 20, 200))
 
@@ -149,10 +145,12 @@ def materials(s):
                relief=(file, BRICKS, 0.012, True), diffuse_rough=0.5)
     s.material("flags", white, lambert=True, relief=(flags(s), FLAGS, 0.010, False), diffuse_rough=0.3,
                maps={"color": "flags_color.png"}, metres=(2 * FLAGS[0], 2 * FLAGS[1]))
-    s.material("plaster", (0.43, 0.405, 0.36), lambert=True, relief=(hammered(s), PLASTER, 0.010, False), diffuse_rough=0.4)
+    s.material("plaster", (0.43, 0.405, 0.36), lambert=True, relief=(hammered(s), PLASTER, 0.008, False),
+               diffuse_rough=0.4)
     s.material("linen", (0.50, 0.47, 0.41), lambert=True, relief=(linen(s), LINEN, 0.0016, False), diffuse_rough=0.6)
     s.material("plain plaster", (0.43, 0.405, 0.36), lambert=True)
     s.material("limestone", (0.46, 0.43, 0.375), lambert=True, diffuse_rough=0.4)
+    s.material("basalt", (0.145, 0.145, 0.142), lambert=True, diffuse_rough=0.4)
     s.material("smooth chalk", (0.58, 0.56, 0.52), lambert=True, diffuse_rough=0)
     s.material("rough chalk", (0.58, 0.56, 0.52), lambert=True, diffuse_rough=1)
     s.material("terracotta", (0.42, 0.235, 0.160), lambert=True, diffuse_rough=0.8)
@@ -163,15 +161,14 @@ def jar(high=0.74):
     """An oil jar: narrow foot, full shoulder, rolled lip; faint rings of the wheel."""
     at = np.array([0, 0.10, 0.28, 0.50, 0.68, 0.80, 0.88, 0.92])
     radius = np.array([0.120, 0.155, 0.215, 0.260, 0.256, 0.210, 0.152, 0.128])
-    t = np.linspace(0, 0.92, 70)
-    # a smooth curve through these points
-    k = np.polyfit(at, radius, 6)
-    r = np.polyval(k, t) + 0.0012 * np.sin(2 * np.pi * t / 0.034) * np.sin(np.pi * np.clip(t / 0.92, 0, 1))
+    t = np.linspace(0, 0.92, 100)
+    rings = 0.0011 * np.sin(2 * np.pi * t / 0.066) * np.sin(np.pi * t / 0.92)
+    r = np.polyval(np.polyfit(at, radius, 6), t) + rings
     body = [(0, 0), (r[0] - 0.012, 0)] + list(zip(r, t * high))[1:]
     end, y = r[-1], 0.92 * high
-    lip = [(end + 0.028 + 0.020 * np.sin(a) - 0.012, y + 0.022 - 0.020 * np.cos(a)) for a in np.linspace(0.4, np.pi, 12)]
+    lip = [(end + 0.016 + 0.020 * np.sin(a), y + 0.022 - 0.020 * np.cos(a)) for a in np.linspace(0.4, np.pi, 12)]
     inside = [(end - 0.012, y + 0.030), (end - 0.020, y), (end, y - 0.10), (0, y - 0.10)]
-    return lathe(body + lip + inside, 72, smooth=40)
+    return lathe(body + lip + inside, 80, smooth=40)
 
 
 def cushion(half=0.235, thick=0.085):
@@ -196,8 +193,8 @@ def walls(s):
     side = quad((x1, 0, 0), (x1, 0, z1), (x1, HIGH, z1), (x1, HIGH, 0))
     s.mesh("plastered wall", [(side.with_uv(side.p[:, [2, 1]] * (1, -1)), "plaster"),
                               (box((x1, 0, 0), (x1 + 0.3, HIGH, z1), "-x"), "plain plaster")])
-    s.mesh("other walls", [(join([box((x0 - 0.3, 0, 0), (x0, 2.45, z1)), box((x0 - 0.3, 0, z1), (x1 + 0.3, HIGH, z1 + 0.3))]),
-                            "plain plaster")])
+    others = [box((x0 - 0.3, 0, 0), (x0, 2.45, z1)), box((x0 - 0.3, 0, z1), (x1 + 0.3, HIGH, z1 + 0.3))]
+    s.mesh("other walls", [(join(others), "plain plaster")])
     ground = quad((x0, 0, z1), (x1, 0, z1), (x1, 0, 0), (x0, 0, 0))
     s.mesh("floor", [(ground.with_uv(ground.p[:, [0, 2]] + (0.17, 0.0)), "flags")])
     stones = []
@@ -217,7 +214,7 @@ def main():
     seat = 0.44
     s.mesh("bench", [(join([chamfer((-1.62, seat - 0.085, 0.05), (0.62, seat, 0.50), 0.008),
                             chamfer((-1.42, 0, 0.09), (-1.20, seat - 0.084, 0.46), 0.008),
-                            chamfer((0.20, 0, 0.09), (0.42, seat - 0.084, 0.46), 0.008)]), "limestone")])
+                            chamfer((0.20, 0, 0.09), (0.42, seat - 0.084, 0.46), 0.008)]), "basalt")])
     s.place("bench")
     ball = sphere(0.19, 96, 48)
     s.mesh("smooth ball", [(ball, "smooth chalk")])
@@ -230,11 +227,11 @@ def main():
     s.place("jar", (1.17, 0, 0.60))
     hdr(os.path.join(s.folder, "sky.hdr"), textures.sky(128, -SUN))
     s.sun("sun", SUN, (1.0, 0.87, 0.70), 9.0)
-    s.camera("main", (-0.42, 1.45, 4.9), (-0.42, 1.45, 0), yfov=30)
-    s.cameras[-1]["extras"] = {"lucerna": {"shift_up": -0.16, "shift_right": 0.035}}
+    s.camera("main", (-0.44, 1.50, 4.9), (-0.44, 1.50, 0), yfov=31)
+    s.cameras[-1]["extras"] = {"lucerna": {"shift_up": -0.19, "shift_right": 0.04}}
     s.camera("close", (1.00, 0.92, 1.55), (0.02, 0.72, 0.1), yfov=36)
-    s.write("A courtyard's corner in raking sun: bricks with raked joints as deep relief, hammered plaster, tooled flags "
-            "and linen as shallow relief, a smooth and a rough ball of chalk, and a terracotta jar.",
+    s.write("A courtyard's corner in raking sun: bricks with raked joints as deep relief, hammered plaster, tooled "
+            "flags and linen as shallow relief, a smooth and a rough ball of chalk, and a terracotta jar.",
             {"film.ev": -0.1, "environment": {"file": "sky.hdr", "scale": 0.8}})
 
 

@@ -212,9 +212,9 @@ uint group_of_light(int at, bool sky) {
 }
 #endif
 
-// Unoccluded luminance that a lamp sends onto a surface with that normal; a little even from behind, where surfaces may
-// transmit light.
-float lamp_sends(uint lamp, vec3 position, vec3 normal) {
+// Unoccluded light of a lamp on a surface with that normal [W/m^2], of lamps with a shape about as if from their middle.
+// `least`: of the cosine.
+vec3 lamp_arrives(uint lamp, vec3 position, vec3 normal, float least) {
   int at = int(lamp * k_light_texels);
   vec4 a = texelFetch(scene_lights, at), b = texelFetch(scene_lights, at + 1), c = texelFetch(scene_lights, at + 2);
   uint kind = floatBitsToUint(a.w);
@@ -226,26 +226,28 @@ float lamp_sends(uint lamp, vec3 position, vec3 normal) {
   if (is_shape(kind)) {
     LampShape shape = lamp_shape(a, b, c, texelFetch(scene_lights, at + 3));
     float extent2 = dot(shape.half_size, shape.half_size);
-    return luminance(b.xyz) * shape_facing(shape, -direction) / (d2 + extent2) * max(dot(direction, normal), 0.05);
+    return b.xyz * (shape_facing(shape, -direction) / (d2 + extent2) * max(dot(direction, normal), least));
   }
 #endif
 #if LUCERNA_PROFILES
   if (kind == k_light_profile) {
     vec4 d = texelFetch(scene_lights, at + 3);
     float density, share = profile_share(light_profile(floatBitsToUint(d.w)), c.xyz, d.xyz, -direction, density);
-    return luminance(b.xyz) * share / d2 * max(dot(direction, normal), 0.05);
+    return b.xyz * (share / d2 * max(dot(direction, normal), least));
   }
 #endif
 #if LUCERNA_PICTURES
   if (kind == k_light_projector) {
     float density;
     vec3 share = picture_share(light_picture(b, c, texelFetch(scene_lights, at + 3)), -direction, density);
-    return luminance(b.xyz * share) / d2 * max(dot(direction, normal), 0.05);
+    return b.xyz * share * (max(dot(direction, normal), least) / d2);
   }
 #endif
   float fall = directional ? 1.0 : (kind == k_light_spot ? spot_share(dot(-direction, c.xyz), b.w, c.w) : 1.0) / d2;
-  return luminance(b.xyz) * fall * max(dot(direction, normal), 0.05);
+  return b.xyz * (fall * max(dot(direction, normal), least));
 }
+// Its luminance; a little even from behind, where surfaces may transmit light.
+float lamp_sends(uint lamp, vec3 position, vec3 normal) { return luminance(lamp_arrives(lamp, position, normal, 0.05)); }
 
 // Replaces a lamp by one resampled from candidates evenly spaced in the table of lamps, from `choice` on; u: in [0, 1). pmf:
 // (effective) probability of the light.

@@ -301,6 +301,15 @@ Surface make_surface(Ray ray, Hit hit) {
   return s;
 }
 
+// A shadow catcher, which only paths see that come from the eye without a diffuse reflection.
+bool is_catcher(Surface s) {
+#if LUCERNA_CATCHER
+  return (s.flags & k_flag_catcher) != 0u;
+#else
+  return false;
+#endif
+}
+
 // Probability that the surface is there: alpha mask and blend.
 float surface_coverage(Surface s) {
 #if LUCERNA_ALPHA

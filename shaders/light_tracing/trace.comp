@@ -11,6 +11,9 @@
 #include "transport/light_vertex.glsl"
 #include "shaders/shared/splat.h"
 #include "lib/emission.glsl"
+#if LUCERNA_CATCHER
+#include "lib/catcher.glsl"
+#endif
 #if LUCERNA_THIN_LENS
 #include "lib/lens.glsl"
 #endif
@@ -83,6 +86,9 @@ vec3 reflected_to_eye(Surface surface, vec3 towards, vec3 wi_world) {
   surface.front = dot(surface.normal_g, towards) > 0.0;
   surface.parameters.inside = surface.parameters.solid && !surface.front;
   mat3 to_world = shading_frame(surface, towards);
+#if LUCERNA_CATCHER
+  if (is_catcher(surface)) surface.parameters.base = catcher_color(surface, -towards);
+#endif
   vec3 side = surface.front ? surface.normal_g : -surface.normal_g;
   Bsdf bsdf = surface_bsdf(surface, to_world, towards);
   vec3 light = diffuse_of_flux(bsdf, to_world, surface.normal_g, wi_world, dot(wi_world, side) > 0.0);

@@ -78,6 +78,7 @@ LUCERNA_CONST uint k_flag_blend = 8u;      ///< alpha blend
 LUCERNA_CONST uint k_flag_emissive = 16u;  ///< some emission: its triangles are in the light table
 LUCERNA_CONST uint k_flag_solid = 32u;     ///< transmits into a volume (thickness > 0)
 LUCERNA_CONST uint k_flag_vertex_color = 64u;
+LUCERNA_CONST uint k_flag_catcher = 128u;  ///< shadow catcher (lib/catcher.glsl)
 
 // scene_lights: k_light_texels a light.
 LUCERNA_CONST uint k_light_texels = 4u;
@@ -138,6 +139,9 @@ LUCERNA_CONST uint k_light_projector = 10u;  ///< a spot with a picture
 // cells in texel 1 x. Its cells are those from which bilinear filtering reaches a texel of the sun.
 // sun_cells: alias table of the cells, like light_alias, then bits of each cell's texel. sun_density: four
 // texels each: density of the texel's directions as the sun's, times the sun's pmf in light_alias.
+// environment_irradiance: one texel a normal (renderer/upload/environment_irradiance.h).
+LUCERNA_CONST uint k_irradiance_width = 48u, k_irradiance_height = 24u;
+//
 // bsdf_table: see renderer/upload/bsdf_table.h.
 //
 // scene_media, if a solid absorbs: media, and the closed shells around them (renderer/upload/media.h).
@@ -177,7 +181,7 @@ struct Frame {
   float lens_rotation;        ///< of its first corner, from camera_right towards camera_up
   vec3 environment_radiance;  ///< factor of the environment map
   uint light_count;
-  uint first_lamp, lamp_count;    ///< lamps among the lights, for resampling (LUCERNA_LAMP_CANDIDATES)
+  uint first_lamp, lamp_count;    ///< lamps among the lights
   uint first_shape, shape_count;  ///< lamps with a shape among the lights (LUCERNA_SHAPES)
   float lamp_pmf;                 ///< probability that the light sampler chooses a lamp
   uint environment_width, environment_height;  ///< 0: there is none

@@ -65,6 +65,7 @@ LightVertex light_vertex(inout PathState path, Ray ray, Hit hit, Sampler random)
   v.coverage = surface_coverage(v.surface);
   v.passed = u_null.x >= v.coverage;
 #endif
+  v.passed = v.passed || is_catcher(v.surface);
   vec3 wo_world = -ray.direction;
   v.to_world = shading_frame(v.surface, wo_world);
   v.wo = wo_world * v.to_world;   // transposed

@@ -12,6 +12,9 @@
 #if LUCERNA_DISPERSION
 #include "lib/dispersion.glsl"
 #endif
+#if LUCERNA_CATCHER
+#include "lib/catcher.glsl"
+#endif
 #include "transport/vertex_hooks.glsl"
 #include "transport/direct_light.glsl"
 #include "lib/path_events.glsl"
@@ -291,6 +294,10 @@ void main() {
 #endif
 #if LUCERNA_ALPHA
     passed = !again && u_null.x >= surface_coverage(surface);
+#endif
+#if LUCERNA_CATCHER
+    passed = passed || (is_catcher(surface) && !automaton_no_diffuse(state));
+    if (is_catcher(surface)) surface.parameters.base = catcher_color(surface, ray.direction);
 #endif
 
     if (!passed) {

@@ -43,7 +43,7 @@ void main() {
   if (blocked) {
     Ray ray = load_shadow_ray(slot);
     Surface surface = make_surface(ray, hit);
-    float coverage = surface_coverage(surface);
+    float coverage = is_catcher(surface) ? 0.0 : surface_coverage(surface);
     vec3 undeflected = vec3(0.0);
 #if LUCERNA_THIN_GLASS
     mat3 to_world = shading_frame(surface, -ray.direction);

@@ -125,6 +125,7 @@ TEST_CASE("without an effect, a scene no longer calls for it, and keeps all othe
   m.diffuse_roughness = 0.5f, m.height = 0.01f;
   scene::Material& glass = full.materials[1];
   glass.height_texture.texture = 0, glass.height = 0.01f, glass.deep_relief = true;
+  glass.shadow_catcher = true;
   glass.transmission = 1, glass.thickness = 1, glass.attenuation_distance = 1, glass.roughness = 0.3f;
   glass.dispersion = 0.3f, glass.attenuation_color = vec3(0.5f), glass.alpha_mode = scene::AlphaMode::blend;
   glass.transmission_texture.texture = 0;

@@ -32,6 +32,7 @@ std::string kind_of(const Material& m) {
   if (m.clearcoat > 0) kind += ", clear coat";
   if (m.sheen_color != vec3(0)) kind += ", sheen";
   if (m.anisotropy > 0) kind += ", anisotropic";
+  if (m.shadow_catcher) kind += ", shadow catcher";
   if (m.diffuse_roughness > 0) kind += ", rough diffuse";
   if (has_relief(m)) kind += m.deep_relief ? ", deep relief" : ", relief";
   if (m.dispersion > 0) kind += ", dispersive";

@@ -196,6 +196,7 @@ void MaterialLoader::read(const Item& item, Material& m, MaterialNeeds& needs) {
   m.double_sided = item.boolean("doubleSided", false);
   if (const auto extensions = item.find("extensions")) read_extensions(*extensions, m, needs);
   read_own_emission(item, m);
+  read_own_catcher(item, m);
   if (const auto relief = own_height(item)) {
     m.height_texture = texture_use(*relief, "texture", Use::data, needs);
     m.deep_relief = relief->boolean("deep", false);

@@ -100,6 +100,11 @@ std::optional<Item> own_height(const Item& item) {
   return own ? own->find("height") : std::nullopt;
 }
 
+void read_own_catcher(const Item& item, Material& material) {
+  const auto own = own_extras(item);
+  if (own) material.shadow_catcher = own->boolean("shadow_catcher", false);
+}
+
 void read_own_emission(const Item& item, Material& material) {
   const auto own = own_extras(item);
   const auto off = own ? own->find("off_emission") : std::nullopt;

@@ -37,6 +37,9 @@ void read_own_emission(const Item& item, Material& material);
 /// nothing.
 std::optional<Item> own_height(const Item& item);
 
+/// Of a material {"shadow_catcher": true}.
+void read_own_catcher(const Item& item, Material& material);
+
 /// Of a camera: {"section": {"normal": [x, y, z], "offset": metres}}, in the file's coordinates.
 void read_own_section(const Item& camera, Camera& result);
 

@@ -103,6 +103,12 @@ void write_layers(EditedJson& root, EditedJson& m, const Material& before, const
   if (differs(&Material::diffuse_roughness))
     extension_at(root, m, k_diffuse_roughness)["diffuseRoughnessFactor"] =
         number_json(after.diffuse_roughness);
+  if (differs(&Material::shadow_catcher)) {
+    if (after.shadow_catcher)
+      set_own(m, "shadow_catcher", true);
+    else
+      remove_own(m, "shadow_catcher");
+  }
   if (differs(&Material::height, &Material::deep_relief)) {
     EditedJson& relief = own_at(m, "height");
     relief["height"] = number_json(after.height);
