@@ -88,7 +88,7 @@ void add_pixels_and_limits(CLI::App* verb, RenderArguments& a) {
       "all pixels then get the same number of samples");
   verb->add_option(
       "--time", a.seconds,
-      "stop after this many seconds, of which solvers prepare for at most half, or earlier "
+      "stop after this many seconds, of which solvers prepare for half, at most three quarters, or earlier "
       "at --error or a number of samples that is given (also by --set or the scene). Alone, and "
       "without components.*, relight.* or sampling.* there, it lets the program choose the solvers (auto)");
 }

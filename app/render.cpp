@@ -350,10 +350,12 @@ double run(session::Renderer& r, const RenderArguments& a, const std::vector<ses
   bool may_prepare = !a.seconds || !makes_picture(a) || !outputs.work().empty();
   while ((makes_picture(a) || !outputs.work().empty()) && !r.done() && !interrupt.signal() &&
          (!a.seconds || timer.seconds() < limit)) {
-    if (!may_prepare && timer.seconds() > plan::k_most_preparation * limit) {
+    const double most = r.solvers().usable() ? plan::k_most_preparation : plan::k_latest_preparation;
+    if (!may_prepare && timer.seconds() > most * limit) {
       may_prepare = true;
       if (r.preparing()) {
-        log::info("half of the time is over: the picture is rendered with the data prepared so far");
+        log::info("{:.0f} % of the time is over: the picture is rendered with the data prepared so far",
+                  100 * timer.seconds() / limit);
         r.solvers().finish_early();
       }
     }

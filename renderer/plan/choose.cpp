@@ -71,7 +71,7 @@ struct Combination {
   /// Squared error after the goal's cost, k_never before the first sample.
   double squared_error(const Goal& goal) const {
     const double left = goal.samples - spent;
-    const double most = goal.cuts_preparation ? k_most_preparation * left : k_never;
+    const double most = goal.cuts_preparation ? k_latest_preparation * left : k_never;
     const double preparation = std::min(sum.preparation, most);
     const double samples = has + (left - preparation) / sample_cost();
     if (!(samples >= 1)) return k_never;

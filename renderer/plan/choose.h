@@ -21,8 +21,8 @@ namespace lucerna::plan {
 struct Goal {
   double samples = 256;           ///< cost that may be spent, in path-traced samples
   std::optional<double> error{};  ///< error as seen to be reached at the least cost
-  /// Preparation ends at k_most_preparation of the cost, as with a limit of time. Where data is missing then,
-  /// paths compute the light.
+  /// Preparation ends at k_latest_preparation of the cost, as with a limit of time. Where data is missing
+  /// then, paths compute the light.
   bool cuts_preparation = false;
 };
 /// The settings' goal: samples, or the target error of adaptive sampling. `seconds`: limit of time, if any;
@@ -38,8 +38,8 @@ struct Choice {
 /// Value of components.X that leaves the choice to choose().
 inline constexpr const char* k_auto = "auto";
 
-/// Share of a limit of time after which preparation ends.
-inline constexpr double k_most_preparation = 0.5;
+/// Share of a limit of time after which preparation ends if its data are usable, and if they are not.
+inline constexpr double k_most_preparation = 0.5, k_latest_preparation = 0.75;
 
 /// Factor of cost, or of squared error, by which another combination must be ahead of paths, or of what the
 /// picture was begun with.

@@ -1,5 +1,7 @@
 #include "session/active_solvers.h"
 
+#include <algorithm>
+
 #include "base/log.h"
 #include "scene/hash.h"
 
@@ -92,6 +94,15 @@ void ActiveSolvers::load(const std::string& name, const std::filesystem::path& f
   setup_.engine->with(found, setup_.view(context_.automaton), [&](const solvers::Picture& picture) {
     solvers::offered<solvers::Persistence>(found)->load(file.string(), setup_.engine->wavefront(), picture,
                                                         provenance());
+  });
+}
+
+bool ActiveSolvers::usable() const {
+  if (!setup_.engine) return true;
+  const auto& all = setup_.engine->solvers();
+  return std::all_of(all.begin(), all.end(), [](const auto& solver) {
+    const auto* preparation = solvers::offered<solvers::Preparation>(*solver);
+    return !preparation || preparation->usable();
   });
 }
 

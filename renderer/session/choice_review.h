@@ -11,29 +11,25 @@ namespace lucerna::session {
 class ChoiceReview {
  public:
   /// Call when a picture begins, and when solvers have been chosen for it.
-  void restart() { first_.reset(); }
+  void restart() { *this = {}; }
   /// Call after a work item: whole samples of the picture so far, and its time with preparation [s]. The cost
-  /// once it is known, from the samples after the first, with which kernels are compiled; costs are in
+  /// once it is known, from the last pass: kernels are compiled during the first ones. Costs are in
   /// `sample_seconds`, the time of a path-traced sample (above 0).
   std::optional<solvers::Findings::Begun> note(uint32_t samples, double seconds, double sample_seconds) {
-    if (samples == 0) return std::nullopt;
-    if (!first_) first_ = First{samples, seconds};
-    if (samples < first_->samples + k_measured) return std::nullopt;
-    return solvers::Findings::Begun{
-        .solvers = {},
-        .samples = double(samples),
-        .sample = (seconds - first_->seconds) / (samples - first_->samples) / sample_seconds,
-        .spent = seconds / sample_seconds};
+    if (samples == samples_) return std::nullopt;
+    const double each = (seconds - seconds_) / (samples - samples_);
+    samples_ = samples, seconds_ = seconds;
+    if (samples < k_measured) return std::nullopt;
+    return solvers::Findings::Begun{.solvers = {},
+                                    .samples = double(samples),
+                                    .sample = each / sample_seconds,
+                                    .spent = seconds / sample_seconds};
   }
 
  private:
-  /// Samples that are measured: a single one may wait for a kernel.
-  static constexpr uint32_t k_measured = 3;
-  struct First {
-    uint32_t samples;
-    double seconds;
-  };
-  std::optional<First> first_;
+  static constexpr uint32_t k_measured = 8;
+  uint32_t samples_ = 0;  ///< after the last complete pass
+  double seconds_ = 0;
 };
 
 }  // namespace lucerna::session

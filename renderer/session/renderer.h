@@ -212,8 +212,9 @@ class Renderer {
   /// of lights to `changes` if the settings cause them.
   bool apply_plan(Transaction::Target target, scene::Changes& changes);
   void notify_settings_changed();  ///< informs the solvers
-  /// While solvers wait for it: notes a work item of that time [s]; chooses them once the pilot is complete.
-  void judge_pilot(double seconds);
+  /// While solvers wait for it: notes a work item of that time [s] and rays; chooses them once the pilot is
+  /// complete.
+  void judge_pilot(double seconds, uint64_t rays);
   /// Chooses the solvers by the findings; another choice begins another picture.
   void choose_solvers();
   /// With a limit of time: chooses again once the cost of the chosen solvers is measured.

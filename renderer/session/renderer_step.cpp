@@ -20,6 +20,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   const Timer timer;
   setup_.engine->begin_samples(picture_view());
   const bool prepares = preparing(), learns = setup_.engine->learns(samples());
+  const uint64_t rays = stats().rays + stats().shadow_rays;
   const bool progress = render_item(cancel);
   if (sampling_.region_due()) sampling_.change(progress_);
   output_.judge_filtered();
@@ -29,9 +30,9 @@ bool Renderer::step(const std::function<bool()>& cancel) {
     progress_.note_prepared();
   else if (progress && !learns)
     progress_.note(false);
-  if (!prepares && choosing())
-    judge_pilot(timer.seconds());
-  else if (!prepares)
+  if (!prepares && choosing()) {
+    if (!learns) judge_pilot(timer.seconds(), stats().rays + stats().shadow_rays - rays);
+  } else if (!prepares)
     review_choice();
   if (done()) progress_.rest();
   return progress;
@@ -83,12 +84,13 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
   return false;
 }
 
-void Renderer::judge_pilot(double seconds) {
-  pilot_.note(samples(), seconds);
+void Renderer::judge_pilot(double seconds, uint64_t rays) {
+  pilot_.note(samples(), seconds, rays);
   if (!pilot_.complete(plan::goal_of(setup_.settings, nullptr), seconds_limit_, sampling_.max_samples()))
     return;
   findings_ = pilot::evaluate(setup_.film->read(), samples());
   findings_->pixels = double(setup_.width) * setup_.height;
+  findings_->rays = pilot_.sample_rays() / findings_->pixels;
   findings_->seconds = pilot_.sample_seconds();
   if (seconds_limit_ && findings_->seconds > 0) {
     // Other solvers begin the picture again.

@@ -68,6 +68,8 @@ class Preparation {
   virtual uint32_t delegated_components() const { return 0; }
   /// True if preparation waits for a command.
   virtual bool waits() const { return false; }
+  /// True once data for most of the picture would remain if preparation ended.
+  virtual bool usable() const { return ready(); }
   /// Ends preparation as soon as possible. Light without data falls back to path tracing.
   virtual void finish_early() {}
   /// True if preparation takes long and all of its kernels have run once.

@@ -18,6 +18,7 @@ struct Findings {
   };
   std::array<Component, 4> components{};  ///< primary, secondary, tertiary, caustic
   double pixels = 0;                      ///< of the picture to be rendered
+  double rays = 7;                        ///< of a sample of a pixel
   double seconds = 0;                     ///< a sample of that picture, measured; for limits of time only
 
   /// What the picture has cost so far with the solvers chosen first; for limits of time only. Measured

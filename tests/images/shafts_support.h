@@ -140,13 +140,24 @@ inline std::vector<Kind> kinds() {
     k.material.iridescence = 1, k.material.iridescence_texture.texture = k_colors;
     k.material.iridescence_thickness_texture.texture = k_colors;
   });
+  add("rough diffuse", plain, [](Kind& k) { k.material.diffuse_roughness = 0.7f; });
+  add("rough coated diffuse by texture", plain, [](Kind& k) {
+    k.material.specular = 1, k.material.roughness = 0.4f;
+    k.material.diffuse_roughness = 1, k.material.diffuse_roughness_texture.texture = k_data;
+  });
+  add("relief by height", plain,
+      [](Kind& k) { k.material.height = 0.1f, k.material.height_texture.texture = k_colors; });
+  add("deep relief", plain, [](Kind& k) {
+    k.material.height = 0.2f, k.material.height_texture.texture = k_colors, k.material.deep_relief = true;
+  });
+  add("shadow catcher", plain, [](Kind& k) { k.material.shadow_catcher = true; });
   // White, so light samples are the same with and without it.
   add("light by texture", plain,
       [](Kind& k) { k.material.emission = vec3(1), k.material.emission_texture.texture = k_white; });
   return list;
 }
 
-inline constexpr uint32_t k_across = 6, k_pixels = 8;
+inline constexpr uint32_t k_across = 7, k_pixels = 8;
 
 /// Shafts with grey walls, seen from above; each contains a surface and below it a floor with gaps. Kinds
 /// that are not `shown` are replaced by the first, and so are unused shafts.

@@ -97,13 +97,12 @@ TEST_CASE("interreflection goes to the cache where it has the noise and there is
   CHECK(with_time[2].reason.find("instead of") != std::string::npos);
   // No time for records.
   CHECK(plan::choose(facts, settings, &noisy, Goal{.samples = 16})[2].solver == "path");
-  // With a limit of time, half of it is for records, which take 91 samples here. With three quarters of them
-  // the rest is less noise than paths everywhere; with less than half it is not.
+  // With a limit of time, at most three quarters of it are for records, which take 45 samples here.
   const auto limited = [&](double samples) {
     return plan::choose(facts, settings, &noisy, Goal{.samples = samples, .cuts_preparation = true});
   };
-  CHECK(limited(80)[2].solver == "path");
-  CHECK(limited(140)[2].solver == "cache");
+  CHECK(limited(36)[2].solver == "path");
+  CHECK(limited(70)[2].solver == "cache");
   // Direct light has the noise: records would only cost.
   const Findings direct = findings(20, 0.5, 0.3, 0);
   CHECK(plan::choose(facts, settings, &direct, Goal{.samples = 400})[2].solver == "path");
@@ -154,20 +153,21 @@ TEST_CASE("solvers that cost more than predicted are replaced while that pays") 
   CHECK(plan::choose(facts, given, &caustics, goal)[3].solver == "photons");
 }
 
-TEST_CASE("the cost of a sample is measured after the first, with preparation in what is spent") {
+TEST_CASE("the cost of a sample is that of the last pass, with preparation in what is spent") {
   session::ChoiceReview review;
   CHECK_FALSE(review.note(0, 3, 0.5));
   CHECK_FALSE(review.note(1, 5, 0.5));
   CHECK_FALSE(review.note(1, 5.5, 0.5));
-  CHECK_FALSE(review.note(3, 7, 0.5));  // too few to measure
-  const auto cost = review.note(5, 13, 0.5);
+  CHECK_FALSE(review.note(4, 7, 0.5));  // too few to measure
+  CHECK_FALSE(review.note(4, 9, 0.5));  // in the middle of a pass
+  const auto cost = review.note(8, 15, 0.5);
   REQUIRE(cost);
-  CHECK(cost->samples == 5);
+  CHECK(cost->samples == 8);
   CHECK(cost->sample == 4);
-  CHECK(cost->spent == 26);
+  CHECK(cost->spent == 30);
   review.restart();
-  CHECK_FALSE(review.note(2, 1, 0.5));
-  CHECK(review.note(5, 4, 0.5)->sample == 2);
+  CHECK_FALSE(review.note(4, 4, 0.5));
+  CHECK(review.note(8, 8, 0.5)->sample == 2);
 }
 
 TEST_CASE("a dark pilot leaves everything to paths") {

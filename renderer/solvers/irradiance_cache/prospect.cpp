@@ -9,12 +9,12 @@ namespace lucerna::irradiance_cache {
 namespace {
 
 // Measured with the default settings in pictures of k_pixels pixels, on the program's scenes and on others
-// (lucerna bench auto). Where interreflection has the variance V: cost of building, k_building
-// V^k_building_power samples; error of the records, k_records V^k_records_power, and samples after which
-// refinement has reduced it; share of V that lookups leave; error of interpolation. Within a factor of 1.5 on
-// 17 of 19 scenes.
+// (lucerna bench auto, with kernels compiled before). Cost of building: k_building rays a pixel, within a
+// factor of 1.5 on nine of ten scenes. Where interreflection has the variance V: error of the records,
+// k_records V^k_records_power, and samples after which refinement has reduced it; share of V that lookups
+// leave; error of interpolation.
 constexpr double k_pixels = 320 * 180;
-constexpr double k_building = 45, k_building_power = 0.22, k_records = 0.04, k_records_power = 0.3;
+constexpr double k_building = 315, k_records = 0.04, k_records_power = 0.3;
 constexpr double k_refined = 128, k_left = 0.02, k_interpolation = 0.02;
 
 }  // namespace
@@ -28,7 +28,7 @@ std::optional<solvers::Prospect> prospect(const solvers::Findings& findings, uin
   // In a large picture, records are as far apart in pixels, up to their largest radius: more of them, but
   // fewer for each pixel, and less is interpolated between them.
   const double size = std::sqrt(k_pixels / std::max(findings.pixels, 1.0));
-  return solvers::Prospect{.preparation = k_building * std::pow(variance, k_building_power) * size,
+  return solvers::Prospect{.preparation = k_building / std::max(findings.rays, 1.0) * size,
                            .variance = k_left * variance,
                            .prepared = k_records * std::pow(variance, k_records_power),
                            .refined = k_refined,

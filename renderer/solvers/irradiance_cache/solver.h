@@ -47,6 +47,7 @@ class CacheSolver final : public solvers::Solver,
   }
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
+  bool usable() const override { return ready() || cache_.status().pass >= 1; }
   void finish_early() override { cache_.finish_early(); }
   uint64_t paths_refined() const override { return cache_.status().rays; }
   bool refines() const override { return cache_.refines(); }
