@@ -242,7 +242,7 @@ class Renderer {
   std::shared_ptr<const scene::Scene> loaded_;  ///< as passed to set_scene()
   plan::SceneFacts facts_;                      ///< of the scene as it was installed, without effects.off
   Pilot pilot_;
-  std::optional<solvers::Findings> findings_;   ///< of this scene's pilot
+  std::optional<solvers::Findings> findings_;  ///< of this scene's pilot
   std::optional<double> seconds_limit_;
   ChoiceReview review_;
   bool reviewed_ = false;

@@ -54,11 +54,10 @@ std::vector<std::string> variants() {
 /// Values that the host defines with them in all variants; they are read only where a variant needs them.
 gpu::Defines values() {
   gpu::Defines defines{{"LUCERNA_CACHE_PARTS", "15u"}};
-  for (const char* use :
-       {"BASE", "METALLIC_ROUGHNESS", "NORMAL", "EMISSION", "SPECULAR", "SPECULAR_COLOR", "TRANSMISSION",
-        "DIFFUSE_T", "DIFFUSE_T_COLOR", "CLEARCOAT", "CLEARCOAT_ROUGHNESS", "CLEARCOAT_NORMAL", "SHEEN_COLOR",
-        "SHEEN_ROUGHNESS", "ANISOTROPY", "IRIDESCENCE", "IRIDESCENCE_THICKNESS", "DIFFUSE_ROUGHNESS",
-        "HEIGHT"})
+  for (const char* use : {"BASE", "METALLIC_ROUGHNESS", "NORMAL", "EMISSION", "SPECULAR", "SPECULAR_COLOR",
+                          "TRANSMISSION", "DIFFUSE_T", "DIFFUSE_T_COLOR", "CLEARCOAT", "CLEARCOAT_ROUGHNESS",
+                          "CLEARCOAT_NORMAL", "SHEEN_COLOR", "SHEEN_ROUGHNESS", "ANISOTROPY", "IRIDESCENCE",
+                          "IRIDESCENCE_THICKNESS", "DIFFUSE_ROUGHNESS", "HEIGHT"})
     defines[std::string("LUCERNA_") + use + "_BUCKETS"] = "63u";
   return defines;
 }
