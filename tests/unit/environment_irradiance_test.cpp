@@ -63,7 +63,8 @@ TEST_CASE("irradiance of an even sky, of one that is brighter above, and of one 
 TEST_CASE("without an environment there is none; one texel is an even sky") {
   for (const vec4& e : upload::environment_irradiance({}, 0, 0)) CHECK(e == vec4(0));
   const std::vector<vec3> one{vec3(2)};
-  compare(upload::environment_irradiance(one, 1, 1), 0.01 * k_pi_d, [](const glm::dvec3&) { return 2 * k_pi_d; });
+  compare(upload::environment_irradiance(one, 1, 1), 0.01 * k_pi_d,
+          [](const glm::dvec3&) { return 2 * k_pi_d; });
 }
 
 }  // namespace environment_irradiance_tests
