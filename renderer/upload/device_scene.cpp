@@ -2,8 +2,6 @@
 
 #include <utility>
 
-#include "upload/environment_irradiance.h"
-
 namespace lucerna::upload {
 namespace {
 
@@ -62,9 +60,6 @@ EnvironmentBuffers::EnvironmentBuffers(gpu::Device& device, const FlatLights& fl
     : texels(upload_environment(device, flat)),
       alias(upload<vec4>(device, "environment table", flat.environment.alias)),
       sun_cells(upload<vec4>(device, "sun table", flat.environment.sun_cells)),
-      irradiance(upload(
-          device, "irradiance of the environment",
-          environment_irradiance(flat.environment_texels, flat.environment_width, flat.environment_height))),
       of_texels_(flat.environment_texels),
       of_(flat.environment) {}
 
@@ -86,6 +81,8 @@ LightBuffers::LightBuffers(gpu::Device& device, const FlatLights& flat, const Li
       portals(upload(device, "portals", flat.portals.portals)),
       portal_sums(upload<uint32_t>(device, "portal tables", flat.portals.sums)),
       environment(environment_of(device, flat, before)),
+      irradiance(
+          table_of(device, "irradiance of the environment", flat.environment_irradiance, before.irradiance)),
       profiles(table_of(device, "distributions of lamps", flat.profiles, before.profiles)),
       pictures(table_of(device, "pictures of spots", flat.pictures, before.pictures)) {}
 
@@ -143,7 +140,7 @@ void DeviceScene::bind(gpu::Resources& r) const {
   r.set("light_profiles", lights_.profiles->texels);
   r.set("light_pictures", lights_.pictures->texels);
   r.set("environment_texels", lights_.environment->texels);
-  r.set("environment_irradiance", lights_.environment->irradiance);
+  r.set("environment_irradiance", lights_.irradiance->texels);
   r.set("environment_alias", lights_.environment->alias);
   r.set("sun_cells", lights_.environment->sun_cells);
   r.set("sun_density", lights_.sun_density);

@@ -12,7 +12,7 @@ namespace lucerna::upload {
 struct EnvironmentBuffers {
   EnvironmentBuffers(gpu::Device& device, const FlatLights& flat);
   bool holds(const FlatLights& flat) const;
-  gpu::Buffer texels, alias, sun_cells, irradiance;
+  gpu::Buffer texels, alias, sun_cells;
 
  private:
   SharedVector<vec3> of_texels_;
@@ -34,7 +34,7 @@ struct LightBuffers {
   explicit operator bool() const { return bool(lights); }
   gpu::Buffer lights, alias, pmf, groups, sun_density, portals, portal_sums;
   std::shared_ptr<const EnvironmentBuffers> environment;
-  std::shared_ptr<const SharedTable> profiles, pictures;
+  std::shared_ptr<const SharedTable> irradiance, profiles, pictures;
 };
 
 /// Materials on the device, with the albedo tables of their glasses and the volumes of their solids.

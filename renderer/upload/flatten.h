@@ -105,6 +105,7 @@ struct Emission {
   Pictures pictures_in_table;                              ///< likewise of light_pictures
   SharedVector<vec4> pictures;                             ///< light_pictures
   SharedVector<vec3> environment_texels;                   ///< radiance, without the factor
+  SharedVector<vec4> environment_irradiance;               ///< of them, if there is a shadow catcher
   std::optional<EnvironmentSource> environment_source;     ///< source of the texels
   uint32_t environment_width = 0, environment_height = 0;  ///< 0: dark
   vec3 environment_radiance{0};                            ///< factor of the texels

@@ -4,8 +4,10 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "scene/lamp.h"
+#include "upload/environment_irradiance.h"
 #include "upload/environment_map.h"
 #include "upload/flatten.h"
 
@@ -168,6 +170,15 @@ void flatten_emission(const scene::Scene& scene, FlatScene& flat) {
       for (size_t i = 0; i < texels.size(); ++i) texels[i] = map.radiance(i);
       e.environment_texels = std::move(texels);
     }
+    const bool catches = std::any_of(scene.materials.begin(), scene.materials.end(),
+                                     [](const scene::Material& m) { return m.shadow_catcher; });
+    const bool known =
+        flat.environment_source == e.environment_source && !flat.environment_irradiance.empty();
+    if (catches && known)
+      e.environment_irradiance = flat.environment_irradiance;
+    else if (catches)
+      e.environment_irradiance =
+          environment_irradiance(std::as_const(e.environment_texels), map.width, map.height);
   }
   static_cast<Emission&>(flat) = std::move(e);
 }

@@ -90,9 +90,10 @@ LightVertex light_vertex(inout PathState path, Ray ray, Hit hit, Sampler random)
 // keeps the flux of surviving paths as constant as their colour allows (J. Arvo and D. Kirk 1990).
 void light_continue(uint slot, LightVertex v, PathState path, Ray ray, float travelled, uint most_events, Sampler random) {
   uint depth = path_depth(path);
-  vec3 direction = ray.direction, origin = offset_origin(v.surface, direction);
+  vec3 origin, direction = ray.direction;
   bool go_on = false;
   if (v.passed) {
+    origin = offset_origin(v.surface, direction);
     go_on = max3(path.throughput) > 0.0;
     path.travelled = travelled;
     ++path.nulls;
