@@ -19,7 +19,7 @@ constexpr double k_targets[] = {0.05, 0.02, 0.01};
 /// The pilot's result for a picture.
 struct Piloted {
   solvers::Findings findings;
-  std::array<plan::Choice, paths::k_component_count> choices;
+  ByComponent<plan::Choice> choices;
   uint32_t width = 0, height = 0;
 };
 

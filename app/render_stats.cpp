@@ -47,7 +47,7 @@ nlohmann::ordered_json make_error(session::Renderer& r) {
          &film::TileError::relative_interpolation);
   }
   if (!r.progress().lookup_bias_estimated()) j["bias"] = nullptr;
-  for (int c = 0; c < paths::k_component_count; ++c) {
+  for (const int c : k_components) {
     auto& component = j["components"][paths::k_component_names[c]];
     component = {{"seen", error.seen(c + 1)},
                  {"share", error.share(c)},
@@ -147,6 +147,8 @@ nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
       if (e.has_error) j["of_mean"][stats::k_layer_names[k]] = e.of_mean.error[k];
       j["component_s"][stats::k_layer_names[k]] = e.component_s[k];
     }
+    for (size_t l = 0; l < e.layers.size(); ++l)
+      j["seen"][ledger.layers()[l]] = e.layers[l], j["of_mean"][ledger.layers()[l]] = e.of_mean.layers[l];
     if (e.has_error)
       j["seen_records"] = e.records, j["seen_bias"] = e.interpolation, j["seen_total"] = e.sum(),
       j["seen_degrees"] = e.degrees, j["of_mean_records"] = e.of_mean.records,
@@ -154,6 +156,8 @@ nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
       j["tile_median"] = e.tile_median, j["tile_worst_decile"] = e.tile_worst_tenth;
     if (e.truth)
       for (int k = 0; k < stats::k_layers; ++k) j["truth"][stats::k_layer_names[k]] = (*e.truth)[k];
+    for (size_t l = 0; l < e.truth_of_layers.size(); ++l)
+      if (e.truth_of_layers[l]) j["truth"][ledger.layers()[l]] = *e.truth_of_layers[l];
     if (e.total_rays) j["forecast_rays"] = {e.total_rays->low, e.total_rays->middle, e.total_rays->high};
     list.push_back(std::move(j));
   }
@@ -248,7 +252,7 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   j.update(r.solvers().statistics());
   for (const auto& s : r.stats().stages)
     j["stages"].push_back({{"name", s.name}, {"ms", s.ms}, {"on", s.host ? "host" : "device"}});
-  for (int c = 0; c < paths::k_component_count; ++c) {
+  for (const int c : k_components) {
     const std::string name = paths::k_component_names[c];
     j["components"][name] = {{"solver", r.choices()[size_t(c)].solver},
                              {"mean_radiance", {means[c].x, means[c].y, means[c].z}},
@@ -260,6 +264,8 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
     j["layers"][layer.name] = {{"expression", layer.expression},
                                {"mean_radiance", {layer.mean.x, layer.mean.y, layer.mean.z}},
                                {"share", layer.share}};
+    if (layer.error) j["layers"][layer.name]["seen"] = *layer.error;
+    if (layer.error_of_mean) j["layers"][layer.name]["of_mean"] = *layer.error_of_mean;
     if (!layer.lacks.empty()) j["layers"][layer.name]["lacks"] = layer.lacks;
   }
   return j;

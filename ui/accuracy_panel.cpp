@@ -27,7 +27,21 @@ constexpr std::array<ImU32, 7> k_noise_ink = {k_sum,
                                               colour::text_dim,
                                               colour::text_dim};
 
-ImU32 layer_ink(size_t layer) { return layer == 0 ? k_sum : colour::component[layer - 1]; }
+/// Lines of noise as seen: the sum, the components, then the layers by path expressions.
+size_t line_count(const Accuracy& a) { return stats::k_layers + a.ledger.layers().size(); }
+ImU32 layer_ink(size_t line) {
+  if (line >= stats::k_layers) return colour::own_layer[(line - stats::k_layers) % colour::own_layer.size()];
+  return line == 0 ? k_sum : colour::component[line - 1];
+}
+std::string layer_name(const Accuracy& a, size_t line) {
+  return line < stats::k_layers ? stats::k_layer_names[line] : a.ledger.layers()[line - stats::k_layers];
+}
+/// That of a line in an entry, as seen or of the mean; 0: unknown.
+template <class Errors>
+double error_of(const Errors& errors, size_t line) {
+  if (line < stats::k_layers) return errors.error[line];
+  return line - stats::k_layers < errors.layers.size() ? errors.layers[line - stats::k_layers] : 0;
+}
 
 struct Plot {
   Area area;
@@ -49,7 +63,7 @@ std::vector<ImVec2> line_points(const Plot& plot, const Accuracy& a, const Value
 std::vector<ImVec2> error_points(const Plot& plot, const Accuracy& a, size_t layer) {
   return line_points(plot, a, [&](size_t i) {
     const stats::Entry& e = a.ledger.entries()[i];
-    return layer == 0 && e.error[0] > 0 ? e.sum() : e.error[layer];
+    return layer == 0 && e.error[0] > 0 ? e.sum() : error_of(e, layer);
   });
 }
 
@@ -203,11 +217,11 @@ void hover(const AccuracyView& view, const Plot& plot, const Accuracy& a) {
     if (d < best.distance) best = {d, name, ink, std::move(points), run, layer};
   };
   const auto& lines = a.ledger.entries();
-  for (size_t k = 0; k < stats::k_layers; ++k)
+  for (size_t k = 0; k < line_count(a); ++k)
     look(error_points(plot, a, k),
          k == 0
              ? std::string(looks_up(lines.back()) ? "error as seen (estimated)" : "noise as seen (estimated)")
-             : fmt::format("{}, noise as seen (estimated)", stats::k_layer_names[k]),
+             : fmt::format("{}, noise as seen (estimated)", layer_name(a, k)),
          layer_ink(k), nullptr, k);
   const char* const what = looks_up(lines.back()) ? "error" : "noise";
   look(tile_points(plot, a, &stats::Entry::tile_median),
@@ -244,7 +258,11 @@ void hover(const AccuracyView& view, const Plot& plot, const Accuracy& a) {
       {fmt::format("{}: {}", name, percent_text(plot.y.value(near->y))), colour::text},
       {run_figures(chosen, line), colour::text_dim}};
   const stats::Entry& then = chosen.ledger.entries()[line];
-  if (best.layer && *best.layer > 0)
+  if (best.layer && *best.layer >= stats::k_layers)
+    rows.emplace_back(fmt::format("A layer, relative to the light of the whole picture; of the mean {}",
+                                  percent_text(error_of(then.of_mean, *best.layer))),
+                      colour::text_dim);
+  else if (best.layer && *best.layer > 0)
     rows.emplace_back(
         fmt::format("{:.0f} % of the noise as seen (squared); of the mean {}",
                     100 * then.share(int(*best.layer) - 1), percent_text(then.of_mean.error[*best.layer])),
@@ -258,7 +276,7 @@ void hover(const AccuracyView& view, const Plot& plot, const Accuracy& a) {
                                      : std::string(),
                     percent_text(then.interpolation)),
         colour::text_dim);
-  else if (best.layer)
+  else if (best.layer && *best.layer < stats::k_layers)
     rows.emplace_back(bias_text(a, *best.layer), colour::text_dim);
   if (best.run) {
     const std::vector<std::string> other = differences(*best.run, view.runs.current());
@@ -329,8 +347,10 @@ void line_names(const AccuracyView& view, const Accuracy& a, const ImVec2& lo, f
         a.reference_applies ? colour::text : colour::warning, 8);
   // The components come last: without room for them, their colours are known from the panel on the left.
   const auto error = a.error();
-  for (size_t c = 0; c < session::k_components; ++c)
+  for (const size_t c : k_components)
     if (error[c + 1] > 0) put(session::k_component_names[c], colour::component[c], 8);
+  for (size_t k = stats::k_layers; k < line_count(a); ++k)
+    if (error_of(a.ledger.entries().back(), k) > 0) put(layer_name(a, k), layer_ink(k), 8);
   if (!view.runs.earlier().empty())
     put(fmt::format("{} earlier", view.runs.earlier().size()), colour::text_faint, 8);
 }
@@ -354,7 +374,7 @@ void body(Actions& actions, AccuracyView& view, const Area& area, const Accuracy
   for (const Run& run : view.runs.earlier())
     stroke(list, error_points(plot, *run.accuracy, 0), colour::grey(92), 1);
   draw_forecast(list, plot, a, target, band);
-  for (size_t k = stats::k_layers; k-- > 1;) stroke(list, error_points(plot, a, k), layer_ink(k), px(1.25f));
+  for (size_t k = line_count(a); k-- > 1;) stroke(list, error_points(plot, a, k), layer_ink(k), px(1.25f));
   const auto& lines = a.ledger.entries();
   stroke(list, tile_points(plot, a, &stats::Entry::tile_median), k_noise_ink[1], px(1));
   stroke(list, tile_points(plot, a, &stats::Entry::tile_worst_tenth), k_noise_ink[2], px(1));

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "chart.h"
 #include "list_rows.h"
 #include "session/layer_status.h"
 #include "theme.h"
@@ -25,31 +26,37 @@ constexpr Example k_examples[] = {
     {"through-glass", "E.*SS.*L", "Light that has passed two mirroring or refracting surfaces in a row."},
     {"indirect", "E.*D.*D.*L", "Light after at least two diffuse events."}};
 
-/// Share of the picture, once it is known.
-std::string share_text(const session::Snapshot* picture, const std::string& name, std::string& lacks) {
+/// What is known of a layer; null: nothing yet.
+const session::LayerStatus* status_of(const session::Snapshot* picture, const std::string& name) {
   if (picture)
     for (const session::LayerStatus& status : picture->layers)
-      if (status.name == name) {
-        lacks = status.lacks;
-        return fmt::format("{:.1f} %{}", 100 * status.share, status.lacks.empty() ? "" : " +");
-      }
-  return "";
+      if (status.name == name) return &status;
+  return nullptr;
+}
+
+std::string about_layer(const paths::Layer& layer, const session::LayerStatus* status) {
+  std::string text =
+      layer.expression + "\nA click shows it; another one the picture. Share: of the picture's light.";
+  if (status && status->error)
+    text += fmt::format(
+        "\nIts noise as seen is {} of the light of the whole picture; the plot in Accuracy has its line.",
+        percent_text(*status->error));
+  if (status && !status->lacks.empty())
+    text += "\nPart of its " + status->lacks +
+            " light is not known, because its solver stores light of several words together.";
+  return text;
 }
 
 void layer_row(Controls& controls, const paths::Layer& layer) {
   const bool shown = controls.open.setting("film.layer") == layer.name;
   ImGui::PushID(layer.name.c_str());
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  std::string lacks;
-  const std::string share = share_text(controls.open.snapshot.get(), layer.name, lacks);
+  const session::LayerStatus* status = status_of(controls.open.snapshot.get(), layer.name);
+  const std::string share =
+      status ? fmt::format("{:.1f} %{}", 100 * status->share, status->lacks.empty() ? "" : " +") : "";
   if (list_row("##row", shown, layer.name, share, 0, px(24)))
     controls.act("set", "film.layer", shown ? std::string("beauty") : layer.name);
-  tooltip(fmt::format("{}{}\nA click shows it; another one the picture. Share: of the picture's light.",
-                      layer.expression,
-                      lacks.empty() ? ""
-                                    : "\nPart of its " + lacks +
-                                          " light is not known, because its solver stores light of several "
-                                          "words together."));
+  tooltip(about_layer(layer, status));
   if (row_sign(at, "##remove", Sign::close, false, "Removes the layer. The picture starts again."))
     controls.act("layer.remove", layer.name);
   ImGui::PopID();

@@ -142,7 +142,7 @@ void components(Controls& controls, float width) {
   const std::string &primary = controls.open.setting("components.primary"),
                     &secondary = controls.open.setting("components.secondary"),
                     &tertiary = controls.open.setting("components.tertiary");
-  for (int c = 0; c < session::k_components; ++c) {
+  for (const int c : k_components) {
     component_row(controls, c, width);
     if (c == 0 && plan::primary_by_paths(primary, secondary, tertiary)) {
       paragraph(
@@ -163,7 +163,7 @@ void components(Controls& controls, float width) {
   ImGui::SetCursorScreenPos({at.x + px(18), at.y + px(24)});
   std::vector<Part> parts;
   if (total > 0)
-    for (size_t c = 0; c < session::k_components; ++c)
+    for (const size_t c : k_components)
       parts.push_back({static_cast<float>(controls.open.snapshot->components[c].ms_per_sample / total),
                        colour::component[c]});
   stacked_bar(parts, 6, width - px(18));

@@ -142,7 +142,7 @@ void event_values(const Recording& all, std::span<const Event> events, uint32_t 
               "Of the direction to this event; of a light sample together with the selection of the light.");
   if (e.throughput != vec3(0))
     value_row("Throughput", triple(e.throughput), "On arrival, divided by all probabilities.");
-  if (recording::component_of(e) < paths::k_component_count)
+  if (shared::is_component(recording::component_of(e)))
     value_row(recording::contributes_light(e) ? "Light" : "Blocked light", triple(e.contribution),
               recording::contributes_light(e) ? "What it adds to the sample of the pixel."
                                               : "What it would have added.");
@@ -166,7 +166,7 @@ void follow_block(Controls& controls, const commands::PathInquiry& traced) {
   gap(4);
   for (int i = 0; i < std::min(count, int(k_most_rows)); ++i) {
     const Event& e = events[size_t(i)];
-    const bool lit = recording::component_of(e) < paths::k_component_count;
+    const bool lit = shared::is_component(recording::component_of(e));
     if (row(i, {.left = recording::event_text(all, e),
                 .right = lit ? fmt::format("{:.3g}", luminance(e.contribution)) : "",
                 .help = "Click to mark it in the picture.",
@@ -185,7 +185,7 @@ void share_rows(const char* title, const std::vector<recording::NoiseShare>& sha
   for (size_t i = 0; i < std::min(shares.size(), k_most_shares); ++i) {
     const recording::NoiseShare& s = shares[i];
     ImU32 mark = 0;
-    for (size_t c = 0; c < paths::k_component_count; ++c)
+    for (const size_t c : k_components)
       if (s.name == paths::k_component_names[c]) mark = colour::component[c];
     row(int(i),
         {.left = s.name.empty() ? "directly visible" : s.name,

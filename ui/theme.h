@@ -29,6 +29,10 @@ inline constexpr ImU32 warning = IM_COL32(222, 178, 88, 255);
 /// primary amber, secondary teal, tertiary violet, caustic coral
 inline constexpr std::array<ImU32, 4> component = {IM_COL32(235, 168, 66, 255), IM_COL32(64, 184, 172, 255),
                                                    IM_COL32(156, 128, 224, 255), IM_COL32(242, 116, 94, 255)};
+/// Layers by path expressions, in turn: apart from the components, and from each other.
+inline constexpr std::array<ImU32, 4> own_layer = {IM_COL32(126, 192, 92, 255), IM_COL32(226, 130, 180, 255),
+                                                   IM_COL32(110, 190, 226, 255),
+                                                   IM_COL32(200, 190, 110, 255)};
 ImU32 with_alpha(ImU32 c, float alpha);
 /// Halfway steps between two colours, 0..1, in display values.
 ImU32 mix(ImU32 a, ImU32 b, float t);

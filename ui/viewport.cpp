@@ -60,7 +60,7 @@ bool Viewport::give_up_click() {
 namespace {
 
 ImU32 layer_mark(const std::string& layer) {
-  for (size_t c = 0; c < session::k_components; ++c)
+  for (const size_t c : k_components)
     if (layer == session::k_component_names[c]) return colour::component[c];
   return 0;
 }
@@ -102,7 +102,7 @@ void layer_buttons(Actions& actions, const commands::OpenScene& open, float room
   bool letters = false;
   if (all > room) {
     // Components stay together: beauty and the four, by name or by first letters, or the list only.
-    constexpr size_t k_together = 1 + session::k_components;
+    constexpr size_t k_together = 1 + k_components.size();
     const auto need = [&](bool short_names) {
       float sum = width_of(layers[0]) + between + (short_names ? px(76) : list_width);
       for (size_t i = 1; i < k_together; ++i) sum += between + (short_names ? px(26) : width_of(layers[i]));

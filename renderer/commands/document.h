@@ -37,7 +37,7 @@ struct Document {
   std::string environment_file;        ///< image that replaces the scene's own environment; "": none
   std::optional<scene::SkyModel> sky;  ///< replaces the scene's own environment
   int solo = -1;                       ///< component shown alone, or -1
-  std::array<bool, session::k_components> shown_before{};  ///< restored after solo
+  ByComponent<bool> shown_before{};    ///< restored after solo
   bool operator==(const Document&) const = default;
 };
 

@@ -142,10 +142,10 @@ void add_shown_commands(Registry& registry, OpenScene& open) {
                           a.text("component") == "none" ? -1 : static_cast<int>(found - components.begin());
                       if (chosen == d.solo) return;
                       if (d.solo < 0)
-                        for (size_t c = 0; c < session::k_components; ++c)
+                        for (const size_t c : k_components)
                           d.shown_before[c] = d.settings[show_key(c)] == "true";
                       d.solo = chosen;
-                      for (size_t c = 0; c < session::k_components; ++c)
+                      for (const size_t c : k_components)
                         d.settings[show_key(c)] =
                             (chosen < 0 ? d.shown_before[c] : static_cast<int>(c) == chosen) ? "true"
                                                                                              : "false";

@@ -215,7 +215,7 @@ class OpenScene {
   std::shared_ptr<const scene::Scene> facts_of_;  ///< scene of facts_
   plan::SceneFacts facts_;
   int solo_ = -1;
-  std::array<bool, session::k_components> shown_before_{};
+  ByComponent<bool> shown_before_{};
   std::optional<Document> working_;
   std::vector<std::string> named_;  ///< settings that the running command has set by name
 };

@@ -69,11 +69,26 @@ const Part<Document::Material> k_material_parts[] = {
     {"on", [](const Document::Material& m) { return word(m.emits); }},
 };
 
+/// Of an error that is known after two samples.
+std::string known_error(const std::optional<double>& error) {
+  if (!error) throw Error("", "the error is not known yet; it needs two samples per pixel");
+  return word(*error);
+}
+
 const Part<session::ComponentStatus> k_component_parts[] = {
     {"solver", [](const session::ComponentStatus& c) { return c.solver; }},
     {"reason", [](const session::ComponentStatus& c) { return c.reason; }},
     {"luminance", [](const session::ComponentStatus& c) { return word(c.mean_luminance); }},
     {"share", [](const session::ComponentStatus& c) { return word(c.share); }},
+    {"error", [](const session::ComponentStatus& c) { return known_error(c.error); }},
+};
+
+const Part<session::LayerStatus> k_layer_parts[] = {
+    {"expression", [](const session::LayerStatus& l) { return l.expression; }},
+    {"luminance", [](const session::LayerStatus& l) { return word(luminance(l.mean)); }},
+    {"share", [](const session::LayerStatus& l) { return word(l.share); }},
+    {"error", [](const session::LayerStatus& l) { return known_error(l.error); }},
+    {"lacks", [](const session::LayerStatus& l) { return l.lacks; }},
 };
 
 Words light_parts() {
@@ -121,9 +136,9 @@ void add_picture_values(Workspace& work) {
   add("picture.dropped", "contributions refused because they were not finite",
       [](S s) { return word(s.dropped); });
   add("picture.error", "estimated error as seen; in a script after a wait for two samples", [](S s) {
-    if (!s.accuracy || s.accuracy->ledger.entries().empty() || !s.accuracy->ledger.entries().back().has_error)
-      throw Error("", "the error is not known yet; it needs two samples per pixel");
-    return word(s.accuracy->ledger.entries().back().sum());
+    const auto* ledger = s.accuracy ? &s.accuracy->ledger.entries() : nullptr;
+    const bool known = ledger && !ledger->empty() && ledger->back().has_error;
+    return known_error(known ? std::optional(ledger->back().sum()) : std::nullopt);
   });
   add("picture.luminance", "mean luminance of the picture before exposure", [](S s) {
     double sum = 0;
@@ -213,6 +228,30 @@ void add_object_values(Workspace& work) {
              return part_of(picture_of(work).components[static_cast<size_t>(found - names.begin())], w[1],
                             k_component_parts);
            }});
+  work.values.add({.name = "layer",
+                   .help = fmt::format("of a layer by path expression: {}; its error is noise as seen",
+                                       fmt::join(names_in(k_layer_parts), ", ")),
+                   .words = {"LAYER", "PART"},
+                   .names =
+                       [&work](const Words& before) {
+                         if (!before.empty()) return names_in(k_layer_parts);
+                         Words names;
+                         for (const paths::Layer& layer :
+                              session::layers_in(work.open.setting("film.layers")))
+                           names.push_back(layer.name);
+                         return names;
+                       },
+                   .read =
+                       [&work](const Words& w) {
+                         Words known;
+                         for (const session::LayerStatus& layer : picture_of(work).layers) {
+                           if (layer.name == w[0]) return part_of(layer, w[1], k_layer_parts);
+                           known.push_back(layer.name);
+                         }
+                         throw Error("", fmt::format("the picture has no layer '{}'; it has {}", w[0],
+                                                     known.empty() ? "none (layer.add)"
+                                                                   : fmt::to_string(fmt::join(known, ", "))));
+                       }});
   work.values.add({.name = "solver",
                    .help = "a figure of a solver's report, such as 'solver cache records', or its state",
                    .words = {"SOLVER", "FIGURE"},

@@ -265,6 +265,14 @@ ImageError image_error(std::span<const shared::BlockError> blocks) {
   return image;
 }
 
+std::array<LayerError, shared::k_error_layers> layer_errors(std::span<const shared::BlockError> blocks) {
+  const ImageError all = image_error(blocks);
+  std::array<LayerError, shared::k_error_layers> layers;
+  for (size_t l = 0; l < layers.size(); ++l)
+    layers[l] = {all.luminance[1 + l], all.rms[1 + l], all.seen_rms[1 + l]};
+  return layers;
+}
+
 double ImageError::share(int component) const {
   const double all = std::inner_product(seen_rms.begin() + 1, seen_rms.end(), seen_rms.begin() + 1, 0.0);
   const double own = seen_rms[size_t(component) + 1];

@@ -132,6 +132,13 @@ struct TileSpread {
 TileSpread tile_spread(std::span<const TileError> tiles,
                        const std::function<double(const TileError&)>& of = &TileError::relative_sum);
 
+/// Noise of a layer by path expression. Its lookups' errors are not known.
+struct LayerError {
+  double luminance = 0;  ///< mean
+  double rms = 0;        ///< as in ImageError
+  double seen_rms = 0;   ///< likewise: relative to the light of the whole picture, as seen
+};
+
 /// Error of a whole picture; [0]: sum of the components, [1..4]: components.
 struct ImageError {
   double pixels = 0;
@@ -148,8 +155,9 @@ struct ImageError {
   std::array<double, 5> seen_rms{};
   double seen_degrees = 0;  ///< degrees of freedom of seen_rms[0]^2
   double seen_lookup_noise = 0,
-         seen_interpolation = 0;  ///< like lookup_noise_rms and interpolation_rms, as seen
-  double white = 0, dark = 0;     ///< shares of pixels not below white, and below the floor
+         seen_interpolation = 0;   ///< like lookup_noise_rms and interpolation_rms, as seen
+  double white = 0, dark = 0;      ///< shares of pixels not below white, and below the floor
+  std::vector<LayerError> layers;  ///< by path expressions; image_error() leaves it empty
 
   /// The error as seen of a component or the sum; in the sum, pixels of unknown error count with all of their
   /// light.
@@ -169,6 +177,7 @@ struct ImageError {
     const double known = luminance[0] > 0 ? rms[size_t(layer)] / luminance[0] : 0;
     return layer == 0 ? std::sqrt(known * known + unknown) : known;
   }
+  double relative(const LayerError& layer) const { return luminance[0] > 0 ? layer.rms / luminance[0] : 0; }
   double relative_lookup_noise() const { return luminance[0] > 0 ? lookup_noise_rms / luminance[0] : 0; }
   double relative_interpolation() const { return luminance[0] > 0 ? interpolation_rms / luminance[0] : 0; }
   /// Combined relative error of all three parts.
@@ -177,6 +186,9 @@ struct ImageError {
   }
 };
 ImageError image_error(std::span<const shared::BlockError> blocks);
+
+/// Of the k_error_layers layers of such blocks (Film::layer_errors).
+std::array<LayerError, shared::k_error_layers> layer_errors(std::span<const shared::BlockError> blocks);
 
 /// The value t with P(|T| < t) = 0.9 for Student's T with that many degrees of freedom, which need not be
 /// whole; within 1 % for 1 or more.

@@ -17,6 +17,7 @@ gpu::Defines defines(bool lookup_errors, bool stopping_only) {
 
 ErrorEstimator::ErrorEstimator(gpu::Device& device, gpu::ShaderCompiler& compiler, bool lookup_errors)
     : device_(device),
+      compiler_(compiler),
       error_(device, compiler, "film/error.comp", defines(lookup_errors, false)),
       stopping_(device, compiler, "film/error.comp", defines(lookup_errors, true)) {}
 
@@ -43,6 +44,12 @@ void ErrorEstimator::estimate(gpu::Stream& stream, const Film& film, const SeenR
   std::vector<WorkBlock> all;
   for (uint32_t b = 0; b < film.blocks(); ++b) all.push_back({b, 0});
   record(stream, error_, all, film, seen, "ledger");
+  if (film.layers() > 0 && !layers_)
+    layers_.emplace(device_, compiler_, "film/error.comp", gpu::Defines{{"LUCERNA_ERROR_LAYERS", "1"}});
+  for (uint32_t first = 0; first < film.layers(); first += k_error_layers) {
+    film.bind_layer_errors(resources_, first);
+    record(stream, *layers_, all, film, seen, "ledger");
+  }
 }
 
 void ErrorEstimator::estimate_stopping(gpu::Stream& stream, std::span<const WorkBlock> blocks,

@@ -1,5 +1,7 @@
 #include "film/film.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -20,7 +22,7 @@ constexpr uint64_t k_coarse_pixels = shared::k_coarse_step * shared::k_coarse_st
 }  // namespace
 
 uint64_t sum_bytes(uint32_t groups, GroupStorage kept, uint32_t layers) {
-  constexpr uint64_t k_all = k_components * k_sum_bytes;
+  constexpr uint64_t k_all = shared::k_component_count * k_sum_bytes;
   // As in the help of relight.enabled and in README.md.
   static_assert(k_all == 192 && k_all + sizeof(shared::GroupLight) == 200 && sizeof(shared::GroupSums) == 16);
   const uint64_t own = k_all + layers * k_sum_bytes;
@@ -52,10 +54,10 @@ void check_size(const gpu::DeviceInfo& device, uint32_t width, uint32_t height, 
 }
 
 Film::Sums Film::make_sums() const {
-  constexpr const char* names[k_components] = {"film primary", "film secondary", "film tertiary",
-                                               "film caustic"};
+  constexpr ByComponent<const char*> names = {"film primary", "film secondary", "film tertiary",
+                                              "film caustic"};
   Sums sums;
-  for (size_t c = 0; c < k_components; ++c)
+  for (const size_t c : k_components)
     sums[c] = gpu::Buffer(
         device_, {.name = names[c], .bytes = uint64_t{width_} * height_ * k_sum_bytes, .texel = true});
   return sums;
@@ -89,9 +91,11 @@ Film::Film(gpu::Device& device, uint32_t width, uint32_t height, uint32_t groups
   count_ = gpu::Buffer(device, {.name = "film counts", .bytes = pixels * 4});
   vertices_ = gpu::Buffer(device, {.name = "film vertices", .bytes = pixels * 4});
   picture_ = gpu::Buffer(device, {.name = "picture", .bytes = pixels * 4, .memory = gpu::Memory::host});
-  errors_ = gpu::Buffer(
-      device,
-      {.name = "block errors", .bytes = blocks() * sizeof(shared::BlockError), .memory = gpu::Memory::host});
+  const gpu::BufferDesc block_errors{
+      .name = "block errors", .bytes = blocks() * sizeof(shared::BlockError), .memory = gpu::Memory::host};
+  errors_ = gpu::Buffer(device, block_errors);
+  for (uint32_t l = 0; l < layers; l += shared::k_error_layers)
+    layer_errors_.emplace_back(device, block_errors);
   tile_marks_ = gpu::Buffer(
       device,
       {.name = "tile marks", .bytes = blocks() * sizeof(shared::TileMark), .memory = gpu::Memory::host});
@@ -140,6 +144,12 @@ std::span<const shared::BlockError> Film::errors() const {
   return {static_cast<const shared::BlockError*>(errors_.mapped()), blocks()};
 }
 
+std::span<const shared::BlockError> Film::layer_errors(uint32_t first) const {
+  if (first >= layers()) return {};
+  return {static_cast<const shared::BlockError*>(layer_errors_.at(first / shared::k_error_layers).mapped()),
+          blocks()};
+}
+
 void Film::clear(gpu::Stream& stream) {
   for (gpu::Buffer& b : sums_) stream.fill(b, 0);
   for (gpu::Buffer& b : layers_) stream.fill(b, 0);
@@ -151,6 +161,7 @@ void Film::clear(gpu::Stream& stream) {
   stream.fill(count_, 0);
   stream.fill(vertices_, 0);
   stream.fill(errors_, 0);
+  for (gpu::Buffer& b : layer_errors_) stream.fill(b, 0);
   stream.run();
   lookup_errors_complete_ = lookup_bias_known_ = false;
 }
@@ -186,11 +197,11 @@ void Film::bind(gpu::Resources& r) const {
 }
 
 void Film::bind_group(gpu::Resources& r, uint32_t group) const {
-  constexpr const char* names[k_components][2] = {{"group_primary", "GroupPrimary"},
-                                                  {"group_secondary", "GroupSecondary"},
-                                                  {"group_tertiary", "GroupTertiary"},
-                                                  {"group_caustic", "GroupCaustic"}};
-  for (size_t c = 0; c < k_components; ++c) {
+  constexpr const char* names[shared::k_component_count][2] = {{"group_primary", "GroupPrimary"},
+                                                               {"group_secondary", "GroupSecondary"},
+                                                               {"group_tertiary", "GroupTertiary"},
+                                                               {"group_caustic", "GroupCaustic"}};
+  for (const size_t c : k_components) {
     const gpu::Buffer& sums = group_sums_.at(group)[c];
     r.set(names[c][0], sums);
     r.set(names[c][0] + std::string("_out"), sums);
@@ -200,6 +211,12 @@ void Film::bind_group(gpu::Resources& r, uint32_t group) const {
 
 void Film::bind_layer(gpu::Resources& r, uint32_t layer) const {
   for (const char* name : {"film_layer", "film_layer_out", "FilmLayer"}) r.set(name, layers_.at(layer));
+}
+
+void Film::bind_layer_errors(gpu::Resources& r, uint32_t first) const {
+  for (uint32_t i = 0; i < shared::k_error_layers; ++i)
+    r.set(fmt::format("film_layer_{}", i), layers_.at(std::min(first + i, layers() - 1)));
+  r.set("LayerBlockErrors", layer_errors_.at(first / shared::k_error_layers));
 }
 
 void Film::set_mix(std::span<const vec3> weights) {
@@ -249,13 +266,13 @@ void take_means(const std::vector<shared::FilmHalf>& halves, const std::vector<v
 
 }  // namespace
 
-std::array<std::vector<vec3>, k_components> Film::read_group(uint32_t group) const {
+ByComponent<std::vector<vec3>> Film::read_group(uint32_t group) const {
   const size_t n = size_t{width_} * height_;
   std::vector<uint32_t> samples(n);
   count_.read(samples.data(), n * 4);
-  std::array<std::vector<vec3>, k_components> means;
+  ByComponent<std::vector<vec3>> means;
   std::vector<shared::FilmHalf> halves(2 * n);
-  for (size_t c = 0; c < k_components; ++c) {
+  for (const size_t c : k_components) {
     group_sums_.at(group)[c].read(halves.data(), halves.size() * sizeof(shared::FilmHalf));
     take_means(halves, {}, samples, means[c], nullptr);
   }
@@ -311,7 +328,7 @@ Image Film::read() const {
   count_.read(image.samples.data(), n * 4);
   std::vector<shared::FilmHalf> halves(2 * n);
   const std::vector<vec3> ratios = mix_ratios();
-  for (int c = 0; c < k_components; ++c) {
+  for (const int c : k_components) {
     sums_[c].read(halves.data(), halves.size() * sizeof(shared::FilmHalf));
     take_means(halves, ratios, image.samples, image.components[c], &image.odd_half[c]);
   }
@@ -350,9 +367,9 @@ vec3 mean_of(const std::vector<vec3>& layer, const std::vector<uint32_t>& sample
 }
 }  // namespace
 
-std::array<vec3, k_components> Film::means(const Image& image) {
-  std::array<vec3, k_components> means{};
-  for (int c = 0; c < k_components; ++c) means[c] = mean_of(image.components[c], image.samples);
+ByComponent<vec3> Film::means(const Image& image) {
+  ByComponent<vec3> means{};
+  for (const int c : k_components) means[c] = mean_of(image.components[c], image.samples);
   return means;
 }
 

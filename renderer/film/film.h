@@ -14,15 +14,13 @@
 
 namespace lucerna::film {
 
-inline constexpr int k_components = 4;
-
 /// Contents of the film: means over the samples. Row 0 is at the top.
 struct Image {
   uint32_t width = 0, height = 0;
-  std::array<std::vector<vec3>, k_components> components;  ///< radiance
-  std::array<std::vector<vec3>, k_components> odd_half;    ///< mean of the odd samples alone
-  std::vector<vec3> albedo, normal;                        ///< normal: unit or 0
-  std::vector<float> depth;  ///< metres along the view axis, mean of hits; 0: none
+  ByComponent<std::vector<vec3>> components;  ///< radiance
+  ByComponent<std::vector<vec3>> odd_half;    ///< mean of the odd samples alone
+  std::vector<vec3> albedo, normal;           ///< normal: unit or 0
+  std::vector<float> depth;                   ///< metres along the view axis, mean of hits; 0: none
   std::vector<uint32_t> samples;
   std::vector<std::vector<vec3>> layers;      ///< radiance of the layers by path expressions
   std::vector<std::vector<vec3>> odd_layers;  ///< of the odd samples alone
@@ -108,6 +106,9 @@ class Film {
   void bind_group(gpu::Resources& resources, uint32_t group) const;
   /// Sums of a layer, as film_layer.
   void bind_layer(gpu::Resources& resources, uint32_t layer) const;
+  /// Sums of k_error_layers layers from `first` on, as film_layer_0 and so on, and their errors. Places
+  /// without a layer repeat the last one.
+  void bind_layer_errors(gpu::Resources& resources, uint32_t first) const;
   /// Sums of a component: two halves a pixel (shared::FilmHalf), before the mix.
   const gpu::Buffer& sums(uint32_t component) const { return sums_.at(component); }
   /// Takes surfaces and counts of samples of another film of the same size. Records; the stream is not run.
@@ -116,6 +117,9 @@ class Film {
   void bind_coarse(gpu::Resources& resources) const;
   /// The latest estimate of each block, in raster order; all 0 without one.
   std::span<const shared::BlockError> errors() const;
+  /// Likewise of the k_error_layers layers by path expressions from `first` on, a multiple of that; empty
+  /// if there are none.
+  std::span<const shared::BlockError> layer_errors(uint32_t first) const;
   /// Allocates the errors of lookups (BlockLookups, one per block in raster order), written by kernels as
   /// FilmLookups and BlockLookupSums; and marks them as complete. Unknown until then, and after a clear().
   void make_room_for_lookup_errors();
@@ -133,11 +137,11 @@ class Film {
   std::array<std::vector<float>, 2> read_lookup_bias() const;
   Image read() const;
   /// Mean radiance of a light group by component, unmixed; requires groups by component.
-  std::array<std::vector<vec3>, k_components> read_group(uint32_t group) const;
+  ByComponent<std::vector<vec3>> read_group(uint32_t group) const;
   /// Mean radiance of all components together; requires compact groups.
   std::vector<vec3> read_group_sum(uint32_t group) const;
   /// Mean radiance of each component over the picture's sampled pixels.
-  static std::array<vec3, k_components> means(const Image& image);
+  static ByComponent<vec3> means(const Image& image);
   /// Likewise of the layers by path expressions.
   static std::vector<vec3> layer_means(const Image& image);
   /// Sets the marks of the tile overlay: one per tile, in raster order; at most one per block.
@@ -153,7 +157,7 @@ class Film {
   uint32_t width_, height_, groups_;
   GroupStorage kept_;
   bool fits_storage_buffers_ = true;
-  using Sums = std::array<gpu::Buffer, k_components>;
+  using Sums = ByComponent<gpu::Buffer>;
   Sums make_sums() const;
   Sums sums_;
   std::vector<gpu::Buffer> layers_;
@@ -163,6 +167,7 @@ class Film {
   shared::GroupMix mix_{};  // contents of light_mix_
   bool quick_ = false;
   gpu::Buffer albedo_, normal_, count_, vertices_, picture_, errors_, tile_marks_;
+  std::vector<gpu::Buffer> layer_errors_;  // one for each k_error_layers layers
   gpu::Device& device_;
   gpu::Buffer lookups_, block_lookups_;  // small where there are none
   bool lookup_errors_complete_ = false;

@@ -14,7 +14,7 @@ std::vector<vec3> Preview::shown_light(uint32_t components) const {
   now_.light.read(packed.data(), packed.size() * sizeof(uint32_t));
   std::vector<vec3> light(pixels(), vec3(0));
   for (size_t i = 0; i < light.size(); ++i)
-    for (uint32_t c = 0; c < shared::k_component_count; ++c) {
+    for (const uint32_t c : k_components) {
       if (!(components >> c & 1u)) continue;
       const uint32_t* words = &packed[k_words * (i * shared::k_component_count + c)];
       const vec2 xy = glm::unpackHalf2x16(words[0]), zw = glm::unpackHalf2x16(words[1]);

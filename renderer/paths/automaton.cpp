@@ -10,9 +10,8 @@
 
 namespace lucerna::paths {
 
-const std::array<const char*, k_component_count> k_component_names{"primary", "secondary", "tertiary",
-                                                                   "caustic"};
-const std::array<const char*, k_component_count> k_component_expressions{
+const ByComponent<const char*> k_component_names{"primary", "secondary", "tertiary", "caustic"};
+const ByComponent<const char*> k_component_expressions{
     "E[SG]*L|E[SG]*DL",
     "E[SG]*D[SG]*DL",
     "E[SG]*D[SG]*D[DSG]+L",
@@ -259,8 +258,8 @@ Automaton compile_components() {
   expressions.insert(expressions.end(), k_caustic_halves.begin(), k_caustic_halves.end());
   Automaton automaton = compile(expressions);
   for (Automaton::State& s : automaton.states) {
-    if (s.accept == k_component_count) s.accept = k_component_count - 1;
-    constexpr uint8_t k_last = 1u << k_component_count;
+    if (s.accept == shared::k_component_count) s.accept = k_caustic;
+    constexpr uint8_t k_last = 1u << shared::k_component_count;
     if (s.reachable & k_last) s.reachable = uint8_t((s.reachable & ~k_last) | k_last >> 1);
   }
   // Complete when every state accepts: every state is entered by some word E[DGS]*.
@@ -403,7 +402,7 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const L
   }
   for (size_t i = 0; i < automaton.states.size(); ++i) {
     const auto& s = automaton.states[i];
-    const uint32_t component = here[i] != 0 ? s.accept : k_component_count;
+    const uint32_t component = here[i] != 0 ? s.accept : shared::k_component_none;
     uint32_t further_on = (met ? further[i] : 0) | looked_up[i];
     for (const uint8_t next : s.next) further_on |= further[next];
     packed.push_back(s.next[0] | s.next[1] << 8 | s.next[2] << 16 | component << 24 |

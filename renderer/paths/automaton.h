@@ -13,12 +13,12 @@
 #include <vector>
 
 #include "base/error.h"
+#include "shaders/shared/lanes.h"
 
 namespace lucerna::paths {
 
 enum class Event : uint8_t { diffuse, glossy, specular, light };
 inline constexpr int k_scatter_events = 3;
-inline constexpr int k_component_count = 4;
 inline constexpr uint8_t k_no_component = 0xff;
 
 /// Components, as indices of k_component_names.
@@ -26,8 +26,8 @@ inline constexpr uint8_t k_primary = 0, k_secondary = 1, k_tertiary = 2, k_caust
 /// Bits of sets of components.
 inline constexpr uint32_t k_primary_bit = 1u << k_primary, k_secondary_bit = 1u << k_secondary,
                           k_tertiary_bit = 1u << k_tertiary, k_caustic_bit = 1u << k_caustic;
-extern const std::array<const char*, k_component_count> k_component_names;
-extern const std::array<const char*, k_component_count> k_component_expressions;
+extern const ByComponent<const char*> k_component_names;
+extern const ByComponent<const char*> k_component_expressions;
 
 /// A deterministic automaton over scattering events. State 0 is the eye's (after E).
 struct Automaton {
@@ -75,8 +75,8 @@ struct LookupRoutes {
 };
 
 /// The uploaded automaton: packed[state] bits 0-7 next on D, 8-15 next on G, 16-23 next on S, 24-26 component
-/// (k_component_count: none, or off), bit 27: further light is possible, of an enabled component or by a
-/// lookup, bit 28: no D so far (E[SG]*), bits 29-30: component to which rays are accounted, the lowest of
+/// (shared::k_component_none: none, or off), bit 27: further light is possible, of an enabled component or by
+/// a lookup, bit 28: no D so far (E[SG]*), bits 29-30: component to which rays are accounted, the lowest of
 /// those. `enabled` bit i: component i is on. `met`: some lights can be hit by rays; if all are points or
 /// directions, a path that could only hit a light contributes nothing.
 std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const LookupRoutes& routes = {},

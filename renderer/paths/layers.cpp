@@ -164,7 +164,7 @@ LayerSet::Routed LayerSet::routed(const LookupRoutes& routes, const LookupRoutes
     }
   }
   // Light paths bring to the camera what eye paths do not meet any more.
-  for (uint8_t c = 0; c < k_component_count; ++c) {
+  for (const uint8_t c : k_components) {
     Words words;
     for (const State& s : states_)
       if (s.component == c && s.component_state < routes.replaced.size() &&
@@ -177,7 +177,7 @@ LayerSet::Routed LayerSet::routed(const LookupRoutes& routes, const LookupRoutes
 
 std::string unknown_text(uint32_t unknown) {
   std::string text;
-  for (size_t c = 0; c < k_component_count; ++c)
+  for (const size_t c : k_components)
     if ((unknown >> c & 1u) != 0) text += (text.empty() ? "" : " and ") + std::string(k_component_names[c]);
   return text;
 }

@@ -50,7 +50,7 @@ std::vector<uint32_t> pack(const LightAutomaton& automaton, uint32_t parts, uint
   std::vector<uint32_t> packed;
   for (size_t i = 0; i < live.size(); ++i) {
     const LightAutomaton::State& s = automaton.states[i];
-    const uint32_t part = stored(s) ? s.part : k_component_count;
+    const uint32_t part = stored(s) ? s.part : shared::k_component_none;
     packed.push_back(s.next[0] | s.next[1] << 8 | s.next[2] << 16 | part << 24 | (live[i] ? 1u << 27 : 0u) |
                      account << 29);
   }

@@ -27,8 +27,9 @@ struct LightAutomaton {
 LightAutomaton reverse(const Automaton& automaton);
 
 /// The uploaded automaton, in the form of pack(): bits 0-7 next on D, 8-15 on G, 16-23 on S, 24-26 the part,
-/// if its light is stored, else k_component_count; bit 27: something can still be stored, here or further on;
-/// bits 29-30: `account`, the component that rays are accounted to. `parts` bit p: light of part p is stored.
+/// if its light is stored, else shared::k_component_none; bit 27: something can still be stored, here or
+/// further on; bits 29-30: `account`, the component that rays are accounted to. `parts` bit p: light of part
+/// p is stored.
 std::vector<uint32_t> pack(const LightAutomaton& automaton, uint32_t parts, uint32_t account);
 
 /// Lookups of the `own` components among photons, by part. Caustics, primary and secondary light at the first

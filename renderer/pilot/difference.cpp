@@ -18,7 +18,7 @@ struct Pixel {
 };
 Pixel pixel_of(const film::Image& image, size_t i) {
   Pixel p;
-  for (size_t c = 0; c < film::k_components; ++c)
+  for (const size_t c : k_components)
     p.mean += double(luminance(image.components[c][i])), p.odd += double(luminance(image.odd_half[c][i]));
   return p;
 }

@@ -11,7 +11,7 @@ solvers::Findings evaluate(const film::Image& image, uint32_t samples) {
   const LocalLight local(image);
   const size_t count = size_t{image.width} * image.height;
   solvers::Findings findings;
-  std::array<double, film::k_components> energy{};
+  ByComponent<double> energy{};
   double all = 0;
   for (size_t c = 0; c < energy.size(); ++c) {
     double sum = 0;

@@ -16,7 +16,7 @@ namespace {
 
 using solvers::Findings, solvers::Prospect, solvers::SolverInfo;
 
-constexpr size_t k_count = paths::k_component_count;
+constexpr size_t k_count = shared::k_component_count;
 constexpr double k_least_sample = 0.1;  // of the cost of a path-traced sample
 constexpr double k_most_samples = 1e7;
 constexpr double k_never = std::numeric_limits<double>::max();

@@ -17,13 +17,13 @@ namespace lucerna::plan {
 
 struct Plan {
   /// By component: the solver's name as in components.X, and why it was chosen if the setting is auto.
-  std::array<Choice, paths::k_component_count> choices{};
+  ByComponent<Choice> choices{};
   /// A choice waits for the findings of the first samples; paths compute those components meanwhile.
   bool undecided = false;
-  std::array<const solvers::SolverInfo*, paths::k_component_count> solver{};  ///< null: off
+  ByComponent<const solvers::SolverInfo*> solver{};  ///< null: off
   /// If `solver` computes only directly visible light (SolverInfo::directly_visible_only): the solver that
   /// looks up the rest; null: eye paths compute it.
-  std::array<const solvers::SolverInfo*, paths::k_component_count> rest{};
+  ByComponent<const solvers::SolverInfo*> rest{};
   /// Components that are computed (bit i).
   uint32_t enabled() const;
   /// Components that this one computes (bits), or the rest of.

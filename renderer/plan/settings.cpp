@@ -11,7 +11,7 @@ namespace lucerna::plan {
 namespace {
 
 /// Description of each component, for help.
-constexpr std::array<const char*, paths::k_component_count> k_component_help{
+constexpr ByComponent<const char*> k_component_help{
     "emitters and direct light, also seen in mirrors and through glass", "one diffuse interreflection",
     "deeper interreflection, and caustics seen in it",
     "light focused on diffuse surfaces by mirrors and glass"};
@@ -226,7 +226,7 @@ void add_effect_options(std::vector<OptionInfo>& list) {
 
 std::vector<OptionInfo> make_options() {
   std::vector<OptionInfo> list;
-  for (int c = 0; c < paths::k_component_count; ++c) list.push_back(component_option(c));
+  for (const int c : k_components) list.push_back(component_option(c));
   add_sampling_options(list);
   for (const solvers::SolverInfo* solver : solvers::registered())
     for (const OptionInfo& option : solver->options) list.push_back(of_same_light(option));

@@ -77,7 +77,7 @@ NoiseReport analyse_noise(const Recording& recording, const std::vector<double>&
   while (first < recording.paths.size()) {
     size_t end = first;
     std::vector<double> sums;
-    std::vector<std::array<double, paths::k_component_count>> by_component;
+    std::vector<ByComponent<double>> by_component;
     for (; end < recording.paths.size() && recording.paths[end].pixel == recording.paths[first].pixel;
          ++end) {
       const std::span<const Event> events = recording.events_of(recording.paths[end]);

@@ -27,8 +27,8 @@ struct NoiseCure {
 struct NoiseReport {
   uint32_t pixels = 0, paths = 0;
   double of_sample = 0;  ///< error as seen of one sample a pixel: root mean square, 1 = the light itself
-  std::array<double, paths::k_component_count> light{};     ///< shares, 0..1
-  std::array<double, paths::k_component_count> variance{};  ///< of one sample, over the squared light around
+  ByComponent<double> light{};     ///< shares, 0..1
+  ByComponent<double> variance{};  ///< of one sample, over the squared light around
   /// Largest share of noise first.
   std::vector<NoiseShare> components, words, lights, materials;
   std::string sentence;

@@ -64,7 +64,7 @@ PlaceIndex make_place_index(const Recording& recording) {
     const std::span<const Event> events = recording.events_of(path);
     index.hash.push_back(path_checksum(path, events));
     for (uint32_t e = 0; e < events.size(); ++e) {
-      if (component_of(events[e]) >= paths::k_component_count) continue;
+      if (!shared::is_component(component_of(events[e]))) continue;
       if (contributes_light(events[e])) index.light += double(luminance(events[e].contribution));
       rows.push_back({p, e});
       places.push_back(lit_place(events, e));

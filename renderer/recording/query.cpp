@@ -309,7 +309,7 @@ std::optional<Box> Query::places() const {
 void visit_rows(const Recording& recording, const std::function<void(const Row&)>& f) {
   for (const Path& path : recording.paths)
     for (uint32_t i = 0; i < path.count; ++i)
-      if (component_of(recording.events[path.first + i]) < paths::k_component_count) f({recording, path, i});
+      if (shared::is_component(component_of(recording.events[path.first + i]))) f({recording, path, i});
 }
 
 }  // namespace lucerna::recording

@@ -44,7 +44,7 @@ uint64_t Recording::lost() const {
 }
 
 bool contributes_light(const Event& e) {
-  return component_of(e) < paths::k_component_count && kind_of(e) != k_path_blocked;
+  return shared::is_component(component_of(e)) && kind_of(e) != k_path_blocked;
 }
 
 std::string word_of(std::span<const Event> path, uint32_t event) {
@@ -65,18 +65,18 @@ std::string word_of(std::span<const Event> path, uint32_t event) {
     const std::string rest = rest_of_way(component_of(path[event]), diffuse);
     return fmt::format("{} ({}: {})", word, from, rest.empty() ? ".*L" : rest);
   }
-  return component_of(path[event]) < paths::k_component_count ? word + "L" : word;
+  return shared::is_component(component_of(path[event])) ? word + "L" : word;
 }
 
 bool is_open(const std::string& word) { return word.find('(') != std::string::npos; }
 
 std::string rest_of_way(uint32_t component, uint32_t diffuse_events) {
   // Derivatives of paths::k_component_expressions by a word with so many D.
-  using Rests = std::array<const char*, paths::k_component_count>;
+  using Rests = ByComponent<const char*>;
   constexpr std::array<Rests, 3> k_rests{
       Rests{"[SG]*D?L", "[SG]*D[SG]*DL", "[SG]*D[SG]*D.+L", "[SG]*D[SG]+L"},
       Rests{"L", "[SG]*DL", "[SG]*D.+L", "[SG]+L"}, Rests{"", "L", ".+L", ""}};
-  if (component >= paths::k_component_count) return "";
+  if (!shared::is_component(component)) return "";
   if (diffuse_events < k_rests.size()) return k_rests[diffuse_events][component];
   return component == paths::k_tertiary ? ".*L" : "";
 }
@@ -118,7 +118,7 @@ double luminance_of(std::span<const Event> path) {
 }
 
 uint8_t main_component(std::span<const Event> path) {
-  std::array<double, paths::k_component_count> light{};
+  ByComponent<double> light{};
   for (const Event& e : path)
     if (contributes_light(e)) light[component_of(e)] += double(luminance(e.contribution));
   const auto most = std::max_element(light.begin(), light.end());
@@ -216,7 +216,7 @@ std::vector<std::string> event_lines(const Recording& recording, uint32_t path) 
     line += fmt::format(", at {}", triple(e.position));
     if (e.pdf > 0) line += fmt::format(", pdf {:.3g}", e.pdf);
     if (e.throughput != vec3(0)) line += fmt::format(", throughput {}", triple(e.throughput));
-    if (component_of(e) < paths::k_component_count)
+    if (shared::is_component(component_of(e)))
       line += fmt::format(", {} {} {}", contributes_light(e) ? "contributes" : "would contribute",
                           paths::k_component_names[component_of(e)], triple(e.contribution));
     lines.push_back(line);

@@ -83,7 +83,7 @@ uint32_t rays_of(std::span<const Event> path);
 double time_of(std::span<const Event> path, const RayTimes& times);
 
 /// Radiance that the path adds to its sample, by component, in double precision.
-using Light = std::array<std::array<double, 3>, paths::k_component_count>;
+using Light = ByComponent<std::array<double, 3>>;
 Light light_of(std::span<const Event> path);
 double luminance_of(std::span<const Event> path);
 /// Component that most of its light belongs to; k_no_component: it has none.

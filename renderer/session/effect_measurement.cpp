@@ -57,7 +57,7 @@ EffectMeasurement::EffectMeasurement(Renderer& picture, const RendererOptions& o
   result_.width = width, result_.height = height;
   for (const plan::Effect& effect : with_->facts().effects) {
     const size_t component = component_of(std::string(effect.key));
-    const bool computed = component < paths::k_component_count &&
+    const bool computed = shared::is_component(component) &&
                           settings_.text(std::string("components.") + std::string(effect.key)) != "off";
     if (effect.called_for() && (effect.can_be_off || computed))
       result_.effects.push_back({.key = std::string(effect.key), .label = std::string(effect.label)});
@@ -68,7 +68,7 @@ EffectMeasurement::~EffectMeasurement() = default;
 
 void EffectMeasurement::leave_out(Renderer& renderer, const std::string& key) const {
   renderer.settings() = settings_;
-  if (component_of(key) < paths::k_component_count) {
+  if (shared::is_component(component_of(key))) {
     renderer.settings().set("components." + key, "off", "effects");
   } else if (!key.empty()) {
     const std::string& off = settings_.text("effects.off");

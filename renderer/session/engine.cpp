@@ -36,8 +36,7 @@ uint32_t looked_up_components(const paths::LookupRoutes& routes) {
 
 /// Registers the solver of these components (bits). Throws Error, located at the component, if another solver
 /// has it.
-void claim(std::array<const solvers::SolverInfo*, paths::k_component_count>& by,
-           const solvers::SolverInfo& info, uint32_t bits) {
+void claim(ByComponent<const solvers::SolverInfo*>& by, const solvers::SolverInfo& info, uint32_t bits) {
   for (size_t c = 0; c < by.size(); ++c) {
     if ((bits >> c & 1u) == 0) continue;
     if (by[c])
@@ -381,7 +380,7 @@ solvers::Routing Engine::routing(const plan::Plan& plan, const plan::Settings& s
   // Without lookups everything is traced.
   solvers::Routing all{
       .lookups = {.component = {}, .parts = 0, .traced = plan.enabled()}, .fallback = 0, .gather = {}};
-  std::array<const solvers::SolverInfo*, paths::k_component_count> by{};
+  ByComponent<const solvers::SolverInfo*> by{};
   uint32_t always = 0;  // components of solvers without a fallback
   for (const solvers::SolverInfo* info : plan.at_work()) {
     const auto routing_of = solvers::type_of(*info).routing;

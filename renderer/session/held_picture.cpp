@@ -14,10 +14,10 @@
 namespace lucerna::session {
 
 std::string methods_text(const ComponentMethods& methods) {
-  constexpr std::array<const char*, paths::k_component_count> k_light = {"primary light", "secondary light",
-                                                                         "tertiary light", "caustics"};
-  constexpr std::array<size_t, paths::k_component_count> k_by_weight = {paths::k_secondary, paths::k_tertiary,
-                                                                        paths::k_caustic, paths::k_primary};
+  constexpr ByComponent<const char*> k_light = {"primary light", "secondary light", "tertiary light",
+                                                "caustics"};
+  constexpr ByComponent<size_t> k_by_weight = {paths::k_secondary, paths::k_tertiary, paths::k_caustic,
+                                               paths::k_primary};
   const auto known = [&](size_t c) { return !methods[c].empty(); };
   if (std::none_of(k_by_weight.begin(), k_by_weight.end(), known)) return "";
   const auto main = std::find_if(k_by_weight.begin(), k_by_weight.end(),

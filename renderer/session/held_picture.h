@@ -13,7 +13,7 @@
 
 namespace lucerna::session {
 
-using ComponentMethods = std::array<std::string, paths::k_component_count>;
+using ComponentMethods = ByComponent<std::string>;
 
 struct HeldPicture {
   uint32_t width = 0, height = 0;

@@ -36,9 +36,18 @@ film::ImageError ImageProgress::estimate_error() const {
   transport::Wavefront& wavefront = setup_.engine->wavefront();
   setup_.engine->estimator().estimate(wavefront.stream(), *setup_.film, setup_.seen_range());
   wavefront.account_stages();
-  if (sampling_.whole()) return film::image_error(setup_.film->errors());
-  return film::image_error(
-      inside(setup_.film->errors(), sampling_.region(), setup_.film->blocks_across(), 1));
+  const film::Film& film = *setup_.film;
+  const auto sampled = [&](std::span<const shared::BlockError> all) {
+    return sampling_.whole() ? std::vector(all.begin(), all.end())
+                             : inside(all, sampling_.region(), film.blocks_across(), 1);
+  };
+  film::ImageError error = film::image_error(sampled(film.errors()));
+  for (uint32_t first = 0; first < film.layers(); first += shared::k_error_layers) {
+    const auto some = film::layer_errors(sampled(film.layer_errors(first)));
+    error.layers.insert(error.layers.end(), some.begin(), some.end());
+  }
+  error.layers.resize(film.layers());
+  return error;
 }
 
 std::vector<film::TileError> ImageProgress::tile_errors() const {
@@ -94,8 +103,8 @@ bool ImageProgress::reference_applies() const {
          (reference_->view.empty() || reference_->view == setup_.view_text());
 }
 
-std::array<double, shared::k_component_count> ImageProgress::component_ms_a_sample() const {
-  std::array<double, shared::k_component_count> each{};
+ByComponent<double> ImageProgress::component_ms_a_sample() const {
+  ByComponent<double> each{};
   const double samples = double(stats().paths) / (double(setup_.film->width()) * setup_.film->height());
   for (size_t c = 0; samples > 0 && c < each.size(); ++c)
     each[c] = (stats().component_ms[c] - prepared_.component_ms[c]) / samples;
@@ -105,6 +114,9 @@ std::array<double, shared::k_component_count> ImageProgress::component_ms_a_samp
 void ImageProgress::note(bool at_once) {
   const transport::TransportStats& s = stats();
   if (s.paths == 0 || !(at_once || ledger_.due(s.paths, uint64_t{setup_.width} * setup_.height))) return;
+  std::vector<std::string> names;
+  for (const paths::Layer& layer : setup_.engine->layers().layers()) names.push_back(layer.name);
+  ledger_.name_layers(std::move(names));
   stats::Entry entry;
   entry.wall_s = clock_.seconds();
   entry.render_s = render_s_;
@@ -116,12 +128,14 @@ void ImageProgress::note(bool at_once) {
   entry.samples = sampling_.whole() ? double(s.paths) / (double(setup_.film->width()) * setup_.film->height())
                                     : sampling_.samples();
   entry.component_s[0] = entry.device_s;
-  for (int c = 0; c < paths::k_component_count; ++c) entry.component_s[c + 1] = 1e-3 * s.component_ms[c];
+  for (const int c : k_components) entry.component_s[c + 1] = 1e-3 * s.component_ms[c];
   entry.has_error = sampling_.samples() >= 2;
   if (entry.has_error) {
     const film::ImageError error = estimate_error();
     for (int k = 0; k < stats::k_layers; ++k)
       entry.error[k] = error.seen(k), entry.of_mean.error[k] = error.relative(k);
+    for (const film::LayerError& layer : error.layers)
+      entry.layers.push_back(layer.seen_rms), entry.of_mean.layers.push_back(error.relative(layer));
     entry.records = error.seen_lookup_noise, entry.interpolation = error.seen_interpolation;
     entry.degrees = error.seen_degrees;
     entry.of_mean.records = error.relative_lookup_noise();
@@ -137,6 +151,9 @@ void ImageProgress::note(bool at_once) {
   if (reference_applies()) {
     const film::Image image = setup_.film->read();
     entry.truth = film::true_errors(*reference_, image.components, image.samples);
+    for (size_t l = 0; l < image.layers.size(); ++l)
+      entry.truth_of_layers.push_back(
+          film::true_error(*reference_, ledger_.layers()[l], image.layers[l], image.samples));
   }
   entry.total_rays = total_rays();
   ledger_.add(entry);

@@ -57,7 +57,7 @@ class ImageProgress {
   /// Cost and error of the image over time.
   const stats::Ledger& ledger() const { return ledger_; }
   /// Device time per sample a pixel, by component, without preparation; 0 before the first sample.
-  std::array<double, shared::k_component_count> component_ms_a_sample() const;
+  ByComponent<double> component_ms_a_sample() const;
 
   /// Compares further samples with this reference picture: ledger entries then contain the true error. Throws
   /// Error like film::read_reference, or without a scene; the former reference then stays. Entries have no

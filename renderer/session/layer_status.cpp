@@ -46,7 +46,8 @@ void check_shown_layer(const paths::LayerSet& layers, const plan::Settings& sett
     throw_error("film.layer", "there is no layer '{}'; there are {}", name, fmt::join(names, ", "));
 }
 
-std::vector<LayerStatus> layer_status(const Engine& engine, const film::Image& image) {
+std::vector<LayerStatus> layer_status(const Engine& engine, const film::Image& image,
+                                      const stats::Ledger& ledger) {
   const auto components = film::Film::means(image);
   const vec3 all = std::accumulate(components.begin(), components.end(), vec3(0));
   const std::vector<vec3> means = film::Film::layer_means(image);
@@ -57,7 +58,13 @@ std::vector<LayerStatus> layer_status(const Engine& engine, const film::Image& i
                     .expression = layer.expression,
                     .lacks = paths::unknown_text(engine.layers_unknown()[l]),
                     .mean = means[l],
-                    .share = luminance(all) > 0 ? double(luminance(means[l]) / luminance(all)) : 0});
+                    .share = luminance(all) > 0 ? double(luminance(means[l]) / luminance(all)) : 0,
+                    .error = {},
+                    .error_of_mean = {}});
+    if (ledger.entries().empty()) continue;
+    const stats::Entry& last = ledger.entries().back();
+    if (l < last.layers.size()) list.back().error = last.layers[l];
+    if (l < last.of_mean.layers.size()) list.back().error_of_mean = last.of_mean.layers[l];
   }
   return list;
 }

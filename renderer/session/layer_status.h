@@ -1,12 +1,14 @@
 #pragma once
 // Layers by path expressions: the settings film.layers and film.layer, and a picture's layers for display and
 // statistics.
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/math.h"
 #include "paths/layers.h"
 #include "plan/settings.h"
+#include "stats/ledger.h"
 
 namespace lucerna::film {
 struct Image;
@@ -30,10 +32,14 @@ struct LayerStatus {
   std::string lacks;  ///< components of whose light it has an unknown part, for display; "": it is complete
   vec3 mean{0};       ///< mean radiance
   double share = 0;   ///< of the mean luminance of the picture; layers may overlap
+  /// Its noise, relative to the light of the whole picture, as seen and of the mean (stats::Entry::layers);
+  /// known after two samples a pixel.
+  std::optional<double> error, error_of_mean;
   bool operator==(const LayerStatus&) const = default;
 };
 
-/// In the setting's order. `image`: of the engine's picture.
-std::vector<LayerStatus> layer_status(const Engine& engine, const film::Image& image);
+/// In the setting's order. `image`: of the engine's picture; `ledger`: of the same.
+std::vector<LayerStatus> layer_status(const Engine& engine, const film::Image& image,
+                                      const stats::Ledger& ledger);
 
 }  // namespace lucerna::session

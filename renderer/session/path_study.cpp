@@ -119,7 +119,7 @@ recording::NoiseCure PathStudy::cure_of(const recording::NoiseReport& report) co
       std::find(paths::k_component_names.begin(), paths::k_component_names.end(), report.components[0].name) -
       paths::k_component_names.begin());
   // What `auto` would choose, had the picture the light and the noise of this part of it.
-  const std::array<plan::Choice, paths::k_component_count>& now = setup_.engine->plan().choices;
+  const ByComponent<plan::Choice>& now = setup_.engine->plan().choices;
   plan::Settings open = settings;
   solvers::Findings findings;
   findings.pixels = double(setup_.width) * setup_.height;

@@ -20,7 +20,7 @@ solvers::Legend legend_of(const recording::Recording& recording, overlay::PathCo
       legend.note = "Lines: rays, coloured by the lobe that scattered them; to lights, by what they met.";
       break;
     case overlay::PathColor::component:
-      for (uint32_t c = 0; c < paths::k_component_count; ++c)
+      for (const uint32_t c : k_components)
         legend.marks.push_back({overlay::component_ink(c), paths::k_component_names[c]});
       legend.marks.push_back({overlay::k_blocked_ink, "blocked"});
       legend.note = "Colour: component of the brightest light that a ray leads to.";

@@ -60,7 +60,7 @@ film::FilmImage picture_layers(const Setup& setup, const film::Image& image) {
   for (const auto& component : image.components)
     for (size_t i = 0; i < n; ++i) sum[i] += component[i];
   film::add_plane(out, "", "RGB", sum);
-  for (int c = 0; c < film::k_components; ++c)
+  for (const int c : k_components)
     film::add_plane(out, std::string(paths::k_component_names[c]) + ".", "RGB", image.components[c]);
   for (size_t l = 0; l < image.layers.size(); ++l)
     film::add_plane(out, setup.engine->layers().layers().at(l).name + ".", "RGB", image.layers[l]);
@@ -91,7 +91,7 @@ void add_noise_layers(film::FilmImage& out, const Setup& setup, const film::Imag
   for (const auto& component : image.odd_half)
     for (size_t i = 0; i < sum.size(); ++i) sum[i] += component[i];
   film::add_plane(out, "odd.", "RGB", sum);
-  for (int c = 0; c < film::k_components; ++c)
+  for (const int c : k_components)
     film::add_plane(out, std::string("odd.") + paths::k_component_names[c] + ".", "RGB", image.odd_half[c]);
   for (size_t l = 0; l < image.odd_layers.size(); ++l)
     film::add_plane(out, "odd." + setup.engine->layers().layers().at(l).name + ".", "RGB",

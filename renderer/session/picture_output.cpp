@@ -27,7 +27,7 @@ film::View PictureOutput::view() const {
   if (v.layer == shared::k_layer_first_own && setup_.engine)
     v.layer += setup_.engine->layers().index_of(setup_.settings.text("film.layer"));
   v.show = 0;
-  for (int c = 0; c < paths::k_component_count; ++c)
+  for (const int c : k_components)
     if (setup_.settings.boolean(std::string("show.") + paths::k_component_names[c])) v.show |= 1u << c;
   v.curve = uint32_t(setup_.settings.choice("film.tone_curve"));
   v.exposure = float(std::exp2(setup_.settings.real("film.ev")));
@@ -90,7 +90,7 @@ std::vector<uint8_t> PictureOutput::shown_picture(bool with_coarse, const std::f
   constexpr double k_little_filtered = 0.1;
   const film::View v = view();
   const bool quick = mix_.pending() && sampling_.samples() > 0 && setup_.film->quick() &&
-                     v.layer == shared::k_layer_beauty && v.show == (1u << paths::k_component_count) - 1 &&
+                     v.layer == shared::k_layer_beauty && v.show == shared::k_all_components &&
                      v.tiles == 0 && !v.display_lut;
   // A drag is shown at display rate, with unfiltered samples. A sudden mix of other groups takes a little
   // longer if it would show noise in place of a filtered picture.
@@ -202,7 +202,7 @@ HeldPicture PictureOutput::held_picture() {
                          : sum_of((filtered ? *filtered->film : *setup_.film).read(), shown);
   held.filtered = filtered || preview;
   for (size_t c = 0; c < held.methods.size(); ++c)
-    if (shown != (1u << paths::k_component_count) - 1 && (shown >> c & 1u))
+    if (shown != shared::k_all_components && (shown >> c & 1u))
       held.shows += (held.shows.empty() ? "" : " + ") + std::string(paths::k_component_names[c]);
   if (held.filtered) {
     const film::PreviewShares shares = preview_shares();
@@ -247,7 +247,11 @@ film::FilmImage PictureOutput::layers_of(const film::Image& image) const {
     out.window = {part->left, part->top, part->right, part->bottom};
   out.metadata["device"] = context_.device.info().name;
   out.metadata["tracer"] = setup_.tracer_name();
-  out.metadata["noise"] = film::noise_text(progress_.estimate_error().rms);
+  const film::ImageError error = progress_.estimate_error();
+  std::vector<std::pair<std::string, double>> of_layers;
+  for (size_t l = 0; l < error.layers.size(); ++l)
+    of_layers.emplace_back(setup_.engine->layers().layers().at(l).name, error.layers[l].rms);
+  out.metadata["noise"] = film::noise_text(error.rms, of_layers);
   describe(described(), out.metadata);
   if (const Filtered* f = filtered()) add_filtered_layers(out, *f);
   return out;

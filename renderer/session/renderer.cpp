@@ -109,8 +109,8 @@ void Renderer::install(Transaction::Target target, const Progress& progress, con
   restart(changes);
 }
 
-const std::array<plan::Choice, paths::k_component_count>& Renderer::choices() const {
-  static const std::array<plan::Choice, paths::k_component_count> none{};
+const ByComponent<plan::Choice>& Renderer::choices() const {
+  static const ByComponent<plan::Choice> none{};
   return setup_.engine ? setup_.engine->plan().choices : none;
 }
 

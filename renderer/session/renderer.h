@@ -145,7 +145,7 @@ class Renderer {
   /// What the scene calls for, without the effects that are off.
   const plan::SceneFacts& facts() const { return facts_; }
   /// Solver of each component, and why it was chosen if the setting is auto; empty before the first scene.
-  const std::array<plan::Choice, paths::k_component_count>& choices() const;
+  const ByComponent<plan::Choice>& choices() const;
   /// The findings of the picture's first samples, once solvers have been chosen by them.
   const std::optional<solvers::Findings>& findings() const { return findings_; }
   /// Rendering will end after this many seconds: solvers with the setting auto are chosen for that. Call
@@ -158,7 +158,7 @@ class Renderer {
   bool step(const std::function<bool()>& cancel = {});
   film::Image image() const { return setup_.film->read(); }  ///< without a pending mix
   std::vector<LayerStatus> layer_status(const film::Image& image) const {
-    return session::layer_status(*setup_.engine, image);
+    return session::layer_status(*setup_.engine, image, progress_.ledger());
   }
 
   /// The active solver of that name; null if it computes nothing.

@@ -32,7 +32,6 @@
 
 namespace lucerna::session {
 
-inline constexpr int k_components = paths::k_component_count;
 using paths::k_component_names;
 
 /// Relative errors of tiles below which a picture is good enough to work with.
@@ -47,6 +46,7 @@ struct ComponentStatus {
   std::string solver = "path";  ///< its solver, or two joined by '+'; or "off"
   std::string reason;           ///< why, if the setting is auto
   double mean_luminance = 0;    ///< of its layer
+  std::optional<double> error;  ///< noise as seen; known after two samples a pixel
   double share = 0;             ///< of the mean luminance of the sum, 0..1
   double ms_per_sample = 0;     ///< device time of its rays per sample a pixel, without preparation
 };
@@ -112,7 +112,7 @@ struct Snapshot {
       0;  ///< part of `seconds` until the solvers' data for the first sample was complete
   double mrays_per_second = 0;  ///< while rays are traced
   uint64_t rays = 0;
-  std::array<ComponentStatus, k_components> components;
+  ByComponent<ComponentStatus> components;
   std::vector<LayerStatus> layers;  ///< in the setting's order
   std::vector<StageStatus> stages;
   std::shared_ptr<const Accuracy> accuracy;  ///< null before the first picture

@@ -290,10 +290,14 @@ struct SessionThread {
     accuracy.follow(r, scene_id);
     next.accuracy = accuracy.publish(r, numbers || dirty);
     const auto ms = r.progress().component_ms_a_sample();
-    for (int c = 0; c < k_components; ++c) {
+    for (const int c : k_components) {
       next.components[c].solver = r.choices()[size_t(c)].solver;
       next.components[c].reason = r.choices()[size_t(c)].reason;
       next.components[c].ms_per_sample = ms[size_t(c)];
+      const auto& ledger = r.progress().ledger().entries();
+      next.components[c].error = ledger.empty() || !ledger.back().has_error
+                                     ? std::nullopt
+                                     : std::optional(ledger.back().error[size_t(c) + 1]);
     }
     if (numbers) {
       const Timer taken;
@@ -302,7 +306,7 @@ struct SessionThread {
       const auto means = film::Film::means(image);
       double total = 0;
       for (const vec3& m : means) total += luminance(m);
-      for (int c = 0; c < k_components; ++c) {
+      for (const int c : k_components) {
         next.components[c].mean_luminance = luminance(means[c]);
         next.components[c].share = total > 0 ? luminance(means[c]) / total : 0;
       }

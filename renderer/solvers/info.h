@@ -12,11 +12,10 @@
 
 #include "base/options.h"
 #include "scene/change.h"
+#include "shaders/shared/lanes.h"
 #include "solvers/prospect.h"
 
 namespace lucerna::solvers {
-
-inline constexpr int k_components = 4;  ///< primary, secondary, tertiary, caustic
 
 /// Which part of a solver's prepared data a change invalidates.
 struct Invalidation {
@@ -80,11 +79,11 @@ struct BenchInfo {
 };
 
 struct SolverInfo {
-  std::string name;                         ///< value of components.secondary = NAME; prefix of its options
-  std::string label;                        ///< panel title: "Cache"
-  std::string title;                        ///< used in sentences: "the photon map"
-  std::string help;                         ///< one sentence
-  std::array<bool, k_components> serves{};  ///< components it can compute
+  std::string name;            ///< value of components.secondary = NAME; prefix of its options
+  std::string label;           ///< panel title: "Cache"
+  std::string title;           ///< used in sentences: "the photon map"
+  std::string help;            ///< one sentence
+  ByComponent<bool> serves{};  ///< components it can compute
   /// What it computes of primary light, if not all of it; paths compute the rest.
   std::string primary_part;
   /// True if it reads that part in its lookups of secondary light only (plan::primary_by_paths()).

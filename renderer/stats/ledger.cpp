@@ -28,7 +28,10 @@ std::string Ledger::csv() const {
     for (const char* layer : k_layer_names) text += fmt::format(",{}_{}", what, layer);
   text +=
       ",seen_records,seen_bias,seen_total,of_mean_records,of_mean_bias,of_mean_total,seen_median_tile,seen_"
-      "worst_tenth_of_tiles,forecast_rays_low,forecast_rays,forecast_rays_high\n";
+      "worst_tenth_of_tiles,forecast_rays_low,forecast_rays,forecast_rays_high";
+  for (const char* what : {"seen", "of_mean", "truth"})
+    for (const std::string& layer : layers_) text += fmt::format(",{}_{}", what, layer);
+  text += '\n';
   for (const Entry& e : entries_) {
     text += fmt::format("{},{},{},{},{},{},{},{}", e.wall_s, e.render_s, e.device_s, e.prepared_s, e.paths,
                         e.rays, e.prepared_rays, e.samples);
@@ -41,8 +44,15 @@ std::string Ledger::csv() const {
                                       e.tile_median, e.tile_worst_tenth)
                         : ",,,,,,,,";
     text += e.total_rays
-                ? fmt::format(",{},{},{}\n", e.total_rays->low, e.total_rays->middle, e.total_rays->high)
-                : ",,,\n";
+                ? fmt::format(",{},{},{}", e.total_rays->low, e.total_rays->middle, e.total_rays->high)
+                : ",,,";
+    for (const auto* errors : {&e.layers, &e.of_mean.layers})
+      for (size_t l = 0; l < layers_.size(); ++l)
+        text += e.has_error && l < errors->size() ? fmt::format(",{}", (*errors)[l]) : ",";
+    for (size_t l = 0; l < layers_.size(); ++l)
+      text += l < e.truth_of_layers.size() && e.truth_of_layers[l] ? fmt::format(",{}", *e.truth_of_layers[l])
+                                                                   : ",";
+    text += '\n';
   }
   return text;
 }

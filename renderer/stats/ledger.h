@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "base/error_sum.h"
@@ -34,7 +35,8 @@ struct Entry {
   bool has_error = false;
   /// Estimated noise of the paths, as seen (film::ImageError::seen).
   std::array<double, k_layers> error{};
-  double degrees = 0;  ///< degrees of freedom of error[0]^2 (film::ImageError::seen_degrees)
+  std::vector<double> layers;  ///< likewise, of the layers by path expressions
+  double degrees = 0;          ///< degrees of freedom of error[0]^2 (film::ImageError::seen_degrees)
   /// The other parts of the sum's error, as seen: the noise of records, and the mean error of lookups
   /// (film/error.h). More samples do not reduce them, except the blur of photons, slowly, as their discs
   /// shrink.
@@ -48,6 +50,7 @@ struct Entry {
   /// Likewise, of the mean: rms of the pixels' errors in luminance over the sum's mean luminance.
   struct OfMean {
     std::array<double, k_layers> error{};
+    std::vector<double> layers;
     double records = 0, interpolation = 0;
     double sum() const { return error_sum(error[0], records, interpolation); }
   } of_mean;
@@ -56,7 +59,9 @@ struct Entry {
   double tile_median = 0, tile_worst_tenth = 0;
   std::array<double, k_layers> component_s{};  ///< device time by component; [0] all
   std::optional<std::array<double, k_layers>>
-      truth;                       ///< of_mean against a reference, without the reference's noise
+      truth;  ///< of_mean against a reference, without the reference's noise
+  /// Likewise of the layers by path expressions that the reference has.
+  std::vector<std::optional<double>> truth_of_layers;
   std::optional<Band> total_rays;  ///< forecast for the whole render, in adaptive sampling
 };
 
@@ -73,6 +78,9 @@ class Ledger {
   void add(const Entry& entry);
   void clear() { entries_.clear(), ++changes_; }
   const std::vector<Entry>& entries() const { return entries_; }
+  /// Names of the layers by path expressions, in the order of Entry::layers.
+  void name_layers(std::vector<std::string> names) { layers_ = std::move(names); }
+  const std::vector<std::string>& layers() const { return layers_; }
   /// Number of times entries were added or removed.
   uint64_t changes() const { return changes_; }
 
@@ -81,6 +89,7 @@ class Ledger {
 
  private:
   std::vector<Entry> entries_;
+  std::vector<std::string> layers_;
   uint64_t changes_ = 0;
 };
 

@@ -84,11 +84,11 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
     put(shared::k_phase_fallback, options.fallback, nothing);
     put(shared::k_phase_known, options.fallback, nothing);
     // Everything behind ED has been looked up: such a path may only meet the light that was sampled.
-    constexpr uint32_t k_next = 0xffffff, k_live = 1u << 27, k_none = paths::k_component_count << 24;
+    constexpr uint32_t k_next = 0xffffff, k_live = 1u << 27, k_none = shared::k_component_none << 24;
     constexpr uint32_t k_dead = shared::k_dead_state | shared::k_dead_state << 8 | shared::k_dead_state << 16;
     for (uint32_t i = 0; i < table.size(); ++i) {
       uint32_t& known = f.automaton[shared::in_phase(i, shared::k_phase_known)];
-      const bool meets = met && (known >> 24 & 7u) < paths::k_component_count;
+      const bool meets = met && shared::is_component(known >> 24 & 7u);
       known = (known & ~(k_next | k_live)) | k_dead | (meets ? k_live : 0);
     }
     f.automaton[shared::k_dead_state] = k_dead | k_none;

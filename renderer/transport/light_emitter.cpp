@@ -16,7 +16,7 @@ LightEmitter::LightEmitter(gpu::Device& device, gpu::ShaderCompiler& compiler,
 Frame LightEmitter::frame_of(const LightRound& round, const Frame& picture) const {
   Frame frame = picture;
   const std::vector<uint32_t> states = paths::pack(automaton_, round.parts, round.account);
-  std::fill(std::begin(frame.automaton), std::end(frame.automaton), uint32_t{paths::k_component_count} << 24);
+  std::fill(std::begin(frame.automaton), std::end(frame.automaton), shared::k_component_none << 24);
   std::copy(states.begin(), states.end(), frame.automaton);
   return frame;
 }

@@ -163,13 +163,13 @@ struct Wavefront::Impl {
   void account(const std::string& name, double ms, const uint32_t* rays_by_component, bool host) {
     stage(name, host).ms += ms;
     double total = 0;
-    for (uint32_t c = 0; rays_by_component && c < k_component_count; ++c) total += rays_by_component[c];
+    if (rays_by_component)
+      for (const uint32_t c : k_components) total += rays_by_component[c];
     if (total <= 0) {
       stats.component_ms[first_account] += ms;
       return;
     }
-    for (uint32_t c = 0; c < k_component_count; ++c)
-      stats.component_ms[c] += ms * rays_by_component[c] / total;
+    for (const uint32_t c : k_components) stats.component_ms[c] += ms * rays_by_component[c] / total;
   }
 
   /// Runs the recorded commands and distributes their times: shadow stages by `shadow`, the others by
@@ -408,7 +408,7 @@ bool Wavefront::learn(const schedule::WorkItem& item, const Frame& pilot, const 
       for (size_t b = first; b < std::min(item.blocks.size(), first + at_once); ++b)
         part.blocks.push_back({item.blocks[b].index, item.blocks[b].first_sample + sample});
       learning.begin_recording();
-      set_frame(pilot, (1u << k_component_count) - 1);
+      set_frame(pilot, k_all_components);
       went = probe(part, cancel);
       learning.end_recording(went ? part.slots() : 0);
     }
@@ -447,7 +447,7 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
   Impl& w = *this;
   TransportPush push{count, 0, 0, 0};
   uint64_t shaded = 0;
-  uint32_t closest[k_component_count] = {}, shadows[k_component_count] = {};
+  ByComponent<uint32_t> closest{}, shadows{};
   closest[w.first_account] = count;
   std::array<gpu::Resources, 2> own;  // of the caller's kernel
   for (size_t k = 0; ends.vertex && k < own.size(); ++k) {
@@ -471,21 +471,21 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
   // events.
   for (; active > 0 || shadow_count > 0; parity ^= 1) {
     if (cancel && cancel()) {
-      w.run_and_account(closest, shadows);
+      w.run_and_account(closest.data(), shadows.data());
       return false;
     }
     // Shadow rays of the former vertices, then the next vertices. The host tracer traces both before the
     // device continues: one submission per bounce, each of which costs as much as tracing a thousand rays.
     const auto trace_vertices = [&] {
       w.trace(bvh::Query::closest, w.trace_closest, w.main[parity], w.rays, w.hits,
-              first ? nullptr : &w.queues[parity], active, "closest trace", closest, shadows);
+              first ? nullptr : &w.queues[parity], active, "closest trace", closest.data(), shadows.data());
       w.stats.rays += active;
     };
     bool vertices_traced = branching || active == 0;
     if (shadow_count > 0) {
       const gpu::Resources& table = arriving[0];
       w.trace(bvh::Query::any_opaque, w.trace_any, table, w.shadow_rays, w.shadow_hits, &w.shadow_queues[0],
-              shadow_count, "shadow trace", closest, shadows);
+              shadow_count, "shadow trace", closest.data(), shadows.data());
       w.stats.shadow_rays += shadow_count;
       w.stats.rays += shadow_count;
       uint32_t side = 0, going = shadow_count;
@@ -495,22 +495,23 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
         // Rays that no opaque surface blocks; then again those that passed a transparent one.
         side = 1;
         if (w.host_trace) {
-          going = w.pass_unblocked(shadow_count, shadows);
+          going = w.pass_unblocked(shadow_count, shadows.data());
         } else {
           push.count = shadow_count;
           w.stream.dispatch(shadow, table, push, Impl::workgroups(shadow_count), "shadow light");
-          going = w.take_going(closest, shadows);
+          going = w.take_going(closest.data(), shadows.data());
         }
         push.round = 1;
         for (; going > 0; side ^= 1) {
           w.trace(bvh::Query::closest_non_opaque, w.trace_non_opaque, arriving[side], w.shadow_rays,
-                  w.shadow_hits, &w.shadow_queues[side], going, "shadow trace", closest, shadows);
+                  w.shadow_hits, &w.shadow_queues[side], going, "shadow trace", closest.data(),
+                  shadows.data());
           w.stats.shadow_rays += going;
           w.stats.rays += going;
           if (w.host_trace && !w.meets_any(side, going)) break;  // all arrive
           push.count = going;
           w.stream.dispatch(shadow, arriving[side], push, Impl::workgroups(going), "shadow light");
-          going = w.take_going(closest, shadows);
+          going = w.take_going(closest.data(), shadows.data());
         }
       }
       if (w.host_trace && !vertices_traced) trace_vertices(), vertices_traced = true;
@@ -521,7 +522,7 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
       if (!vertices_traced) trace_vertices();
       if (first && ends.first_hits) ends.first_hits();
       if (ends.hits_only) {
-        w.run_and_account(closest, shadows);
+        w.run_and_account(closest.data(), shadows.data());
         return true;
       }
       w.stream.fill(w.counters, 0, 0, 12);
@@ -533,7 +534,7 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
         w.stream.dispatch(*ends.vertex, own[parity], push, Impl::workgroups(active), ends.vertex_stage);
       } else if (!branching && w.by_class->shades(active)) {
         w.by_class->sort(w.stream, parity, active, !first, w.counters);
-        w.run_and_account(closest, shadows);
+        w.run_and_account(closest.data(), shadows.data());
         w.by_class->shade(w.stream, parity, w.shade, counters);
       } else {
         if (!branching) w.by_class->count(w.stream, parity, active, !first);
@@ -543,10 +544,10 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
     } else {
       w.stream.fill(w.counters, 0, 0, 12);
     }
-    w.run_and_account(closest, shadows);
+    w.run_and_account(closest.data(), shadows.data());
     active = counters[k_counter_next];
     shadow_count = counters[k_counter_shadow];
-    for (uint32_t c = 0; c < k_component_count; ++c) {
+    for (const uint32_t c : k_components) {
       closest[c] = counters[k_counter_rays + c];
       shadows[c] = counters[k_counter_shadow_rays + c];
     }
@@ -555,7 +556,7 @@ bool Wavefront::Impl::trace_paths(uint32_t count, const PathEnds& ends, const st
       ++branch;
       branching = true;
       active = again;
-      std::copy_n(counters + k_counter_branching_rays, k_component_count, closest);
+      std::copy_n(counters + k_counter_branching_rays, k_component_count, closest.begin());
       w.stream.copy(w.branching_queue, w.queues[1 - parity], uint64_t{again} * 4);
       w.stream.fill(w.counters, 0, 4 * k_counter_branching, 4);
       w.stream.fill(w.counters, 0, 4 * k_counter_branching_rays, 4 * k_component_count);

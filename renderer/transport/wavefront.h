@@ -41,7 +41,7 @@ struct TransportStats {
   uint64_t dropped = 0;              ///< contributions refused because they were not finite
   uint64_t roulette = 0, depth = 0;  ///< paths ended by roulette, by the maximum depth
   std::vector<StageSum> stages;
-  std::array<double, shared::k_component_count> component_ms{};  ///< sums to the stages' total
+  ByComponent<double> component_ms{};  ///< sums to the stages' total
 };
 
 /// Source and destination of paths, recorded on the wavefront's stream with resources from bind_paths(). Path

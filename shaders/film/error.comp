@@ -1,13 +1,26 @@
 // Estimates the noise in the blocks of a work item from the two halves of the film: one invocation a row of a block, eight
 // blocks a workgroup. The order of all sums is fixed. With LUCERNA_STOPPING_ONLY it computes only `relative` and
-// `quadrant_pixels`, which decide whether a tile continues; the rest is not needed after every pass.
+// `quadrant_pixels`, which decide whether a tile continues; the rest is not needed after every pass. With
+// LUCERNA_ERROR_LAYERS four layers by path expressions stand in place of the components, and the errors of lookups, which
+// are known of the sum alone, are left out.
 #include "lib/variants.glsl"
 #include "lib/film.glsl"
 #include "lib/blocks.glsl"
 #include "lib/invocation.glsl"
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { ErrorPush push; };
+#if LUCERNA_ERROR_LAYERS
+layout(scalar) writeonly buffer LayerBlockErrors { BlockError block_errors[]; };
+uniform samplerBuffer film_layer_0, film_layer_1, film_layer_2, film_layer_3;
+FilmPixel layer_load(uint layer, uint pixel) {
+  if (layer == 0u) return LUCERNA_FILM_LOAD(film_layer_0, pixel);
+  if (layer == 1u) return LUCERNA_FILM_LOAD(film_layer_1, pixel);
+  if (layer == 2u) return LUCERNA_FILM_LOAD(film_layer_2, pixel);
+  return LUCERNA_FILM_LOAD(film_layer_3, pixel);
+}
+#else
 layout(scalar) writeonly buffer BlockErrors { BlockError block_errors[]; };
+#endif
 #if LUCERNA_LOOKUP_ERRORS
 layout(scalar) readonly buffer FilmLookups { vec2 film_lookups[]; };  // squares: noise of stored light, of interpolation
 // Blur error of lookups, signed: sums over the even and over the odd samples.
@@ -68,6 +81,13 @@ void read_halves(uint pixel, uint count, out float a[5], out float b[5], out flo
   unmixed = halves.x + halves.y;
   a[0] = a[1] + a[2] + a[3] + a[4];
   b[0] = b[1] + b[2] + b[3] + b[4];
+#if LUCERNA_ERROR_LAYERS
+  for (uint l = 0u; l < 4u; ++l) {
+    FilmPixel p = layer_load(l, pixel);
+    a[1u + l] = half_luminance(film_mixed(p.even, ratio.even), even);
+    b[1u + l] = half_luminance(film_mixed(p.odd, ratio.odd), odd);
+  }
+#endif
 }
 
 // The row that begins at the pixel `first`; empty unless `working`.

@@ -39,7 +39,7 @@ void propagate(inout ErrorSums sum, vec4 note, vec4 facing, float share) {
     uint record = octree_sphere(i);
     float light = 0.0;
     for (uint p = 0u; p < k_part_count; ++p)
-      light += (routes >> (4u * p) & 15u) < k_component_count ? luminance(throughput * record_light(record, p)) : 0.0;
+      light += is_component(routes >> (4u * p) & 15u) ? luminance(throughput * record_light(record, p)) : 0.0;
     weights += weight;
     light *= weight;
     float error = light * record_error(record) / max(record_luminance(record), 1e-30);

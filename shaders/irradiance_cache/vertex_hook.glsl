@@ -85,7 +85,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
 #if LUCERNA_PATH_EVENTS
     for (uint p = 0u; p < k_part_count; ++p) {
       uint c = (routes >> (4u * p)) & 15u;
-      if (found.weight > 0.0 && c < k_component_count) o.served[c] = found.records, o.reader[c] = k_path_records, o.record = found.record;
+      if (found.weight > 0.0 && is_component(c)) o.served[c] = found.records, o.reader[c] = k_path_records, o.record = found.record;
     }
 #endif
     for (uint p = 0u; p < k_part_count; ++p)
@@ -95,7 +95,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
     // The parts read here have the same group shares as all parts together.
     vec3 all = vec3(0.0), read = vec3(0.0), sky = vec3(0.0);
     for (uint p = 0u; p < k_part_count; ++p) {
-      vec3 part = found.weight > 0.0 && ((routes >> (4u * p)) & 15u) < k_component_count ? albedo * found.part[p] : vec3(0.0);
+      vec3 part = found.weight > 0.0 && is_component((routes >> (4u * p)) & 15u) ? albedo * found.part[p] : vec3(0.0);
       if (p == k_part_direct) {
         sky = part;
       } else {
@@ -111,7 +111,7 @@ cache_Vertex cache_read(VertexIn v, inout VertexOut o) {
 #if LUCERNA_GROUP_SUMS
   [[unroll]] for (uint g = 0u; g < k_group_count; ++g) o.by_group[g] += x.alone ? vec3(0.0) : by_group[g];
 #endif
-  o.sky_known = o.sky_known || (x.looks && !x.alone && (routes & 15u) < k_component_count);  // part 0: k_part_direct
+  o.sky_known = o.sky_known || (x.looks && !x.alone && is_component(routes & 15u));  // part 0: k_part_direct
   o.samples_lights = o.samples_lights && cache_probing() == k_probe_none;
   if (x.alone && x.gathers && phase_of(v.state) == k_phase_start) o.branches = max(o.branches, cache.branches);
   return x;

@@ -43,7 +43,7 @@ PathEvent new_event(uint kind, uint parent, uint by, vec3 position) {
 void write_event(uint slot, uint at, PathEvent e) {
   if (at != k_path_no_event) path_events[slot * path_event_frame.most + at] = e;
 }
-// Light of a component (below k_component_count) and a group.
+// Light of a component (is_component) and a group.
 void add_light(inout PathEvent e, vec3 light, uint component, uint group) {
   e.contribution = light;
   e.bits = e.bits & ((1u << k_path_component_shift) - 1u) | component << k_path_component_shift |
@@ -51,7 +51,7 @@ void add_light(inout PathEvent e, vec3 light, uint component, uint group) {
 }
 // True if that light reaches the film.
 bool event_counts(vec3 light, uint component) {
-  return component < k_component_count && any(notEqual(light, vec3(0.0))) && !any(isnan(light)) && !any(isinf(light));
+  return is_component(component) && any(notEqual(light, vec3(0.0))) && !any(isnan(light)) && !any(isinf(light));
 }
 #endif
 #endif

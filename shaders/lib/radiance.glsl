@@ -10,6 +10,6 @@ uniform samplerBuffer radiance_texels;  // Radiance, k_lane_count (rgb; a: of th
 // written.
 uint groups_lit(uint slot) { return floatBitsToUint(texelFetch(radiance_texels, int(radiance_texel(slot, 0u))).a); }
 vec3 group_light(uint slot, uint group) {
-  return texelFetch(radiance_texels, int(radiance_texel(slot, k_component_count + group))).rgb;
+  return texelFetch(radiance_texels, int(group_texel(slot, group))).rgb;
 }
 #endif

@@ -232,6 +232,9 @@
 #ifndef LUCERNA_FILM_LAYER
 #define LUCERNA_FILM_LAYER 0
 #endif
+#ifndef LUCERNA_ERROR_LAYERS
+#define LUCERNA_ERROR_LAYERS 0
+#endif
 #ifndef LUCERNA_FILM_UNMIXED  // compact groups: ignores their mix
 #define LUCERNA_FILM_UNMIXED 0
 #endif

@@ -147,7 +147,7 @@ bool radiance_wanted(uint lane, vec3 value) {
 void add_to_group(uint slot, uint group, vec3 value) {
   if (any(notEqual(value, vec3(0.0)))) {
     uint lit = groups_lit(slot), bit = 1u << group;
-    radiance[radiance_texel(slot, k_component_count + group)].rgb =
+    radiance[group_texel(slot, group)].rgb =
         value + ((lit & bit) != 0u ? group_light(slot, group) : vec3(0.0));
     radiance[radiance_texel(slot, 0u)].a = uintBitsToFloat(lit | bit);
   }
@@ -157,10 +157,10 @@ void add_to_groups(uint slot, uint group_a, vec3 a, uint group_b, vec3 b) {
   uint lit = groups_lit(slot);
   uint bit_a = any(notEqual(a, vec3(0.0))) ? 1u << group_a : 0u, bit_b = any(notEqual(b, vec3(0.0))) ? 1u << group_b : 0u;
   if (bit_a != 0u)
-    radiance[radiance_texel(slot, k_component_count + group_a)].rgb =
+    radiance[group_texel(slot, group_a)].rgb =
         a + ((lit & bit_a) != 0u ? group_light(slot, group_a) : vec3(0.0));
   if (bit_b != 0u)
-    radiance[radiance_texel(slot, k_component_count + group_b)].rgb =
+    radiance[group_texel(slot, group_b)].rgb =
         b + ((lit & bit_b) != 0u ? group_light(slot, group_b) : vec3(0.0));
   if ((bit_a | bit_b) != 0u) radiance[radiance_texel(slot, 0u)].a = uintBitsToFloat(lit | bit_a | bit_b);
 }
@@ -172,17 +172,17 @@ void add_radiance_of_group(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b) 
   b = same ? vec3(0.0) : b;
   bool wanted_a = radiance_wanted(lane_a, a), wanted_b = radiance_wanted(lane_b, b);
   vec3 of_group = (wanted_a ? a : vec3(0.0)) + (wanted_b ? b : vec3(0.0));
-  add_to_radiance(slot, lane_a % k_component_count, wanted_a, a);
-  add_to_radiance(slot, lane_b % k_component_count, wanted_b, b);
-  add_to_group(slot, (wanted_a ? lane_a : lane_b) / k_component_count, of_group);
+  add_to_radiance(slot, component_of_lane(lane_a), wanted_a, a);
+  add_to_radiance(slot, component_of_lane(lane_b), wanted_b, b);
+  add_to_group(slot, group_of_lane(wanted_a ? lane_a : lane_b), of_group);
 }
 // ... of two groups and one component.
 void add_radiance_of_component(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b) {
   bool wanted_a = radiance_wanted(lane_a, a), wanted_b = radiance_wanted(lane_b, b);
   a = wanted_a ? a : vec3(0.0);
   b = wanted_b ? b : vec3(0.0);
-  add_to_radiance(slot, (wanted_a ? lane_a : lane_b) % k_component_count, wanted_a || wanted_b, a + b);
-  add_to_groups(slot, lane_a / k_component_count, a, lane_b / k_component_count, b);
+  add_to_radiance(slot, component_of_lane(wanted_a ? lane_a : lane_b), wanted_a || wanted_b, a + b);
+  add_to_groups(slot, group_of_lane(lane_a), a, group_of_lane(lane_b), b);
 }
 // ... of two lanes, and looked-up light by component and by group.
 void add_radiance_found(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b, vec3 found[k_component_count],
@@ -191,12 +191,12 @@ void add_radiance_found(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b, vec
   a = wanted_a ? a : vec3(0.0);
   b = wanted_b ? b : vec3(0.0);
   for (uint c = 0u; c < k_component_count; ++c) {
-    vec3 value = found[c] + (lane_a % k_component_count == c ? a : vec3(0.0)) + (lane_b % k_component_count == c ? b : vec3(0.0));
+    vec3 value = found[c] + (component_of_lane(lane_a) == c ? a : vec3(0.0)) + (component_of_lane(lane_b) == c ? b : vec3(0.0));
     bool finite = is_finite(value);
     if (!finite) atomicAdd(counters[k_counter_dropped], 1u);
     add_to_radiance(slot, c, finite, value);
   }
-  uint group_a = lane_a / k_component_count, group_b = lane_b / k_component_count;
+  uint group_a = group_of_lane(lane_a), group_b = group_of_lane(lane_b);
   vec3 all = vec3(0.0);
   [[unroll]] for (uint g = 0u; g < k_group_count; ++g) all += abs(found_by_group[g]);
   bool any_found = any(notEqual(all, vec3(0.0)));
@@ -206,7 +206,7 @@ void add_radiance_found(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b, vec
     [[unroll]] for (uint g = 0u; g < k_group_count; ++g) {
       vec3 value = found_by_group[g] + (group_a == g ? a : vec3(0.0)) + (group_b == g ? b : vec3(0.0));
       if (is_finite(value) && any(notEqual(value, vec3(0.0)))) {
-        radiance[radiance_texel(slot, k_component_count + g)].rgb = value + ((lit >> g & 1u) != 0u ? group_light(slot, g) : vec3(0.0));
+        radiance[group_texel(slot, g)].rgb = value + ((lit >> g & 1u) != 0u ? group_light(slot, g) : vec3(0.0));
         bits |= 1u << g;
       }
     }
@@ -219,8 +219,8 @@ void add_radiance_found(uint slot, uint lane_a, vec3 a, uint lane_b, vec3 b, vec
 }
 void add_radiance(uint slot, uint lane, vec3 value) {
   bool wanted = radiance_wanted(lane, value);
-  add_to_radiance(slot, lane % k_component_count, wanted, value);
-  add_to_group(slot, lane / k_component_count, wanted ? value : vec3(0.0));
+  add_to_radiance(slot, component_of_lane(lane), wanted, value);
+  add_to_group(slot, group_of_lane(lane), wanted ? value : vec3(0.0));
 }
 #else
 // At most once per lane, slot and dispatch.

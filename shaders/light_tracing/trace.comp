@@ -120,7 +120,7 @@ void main() {
   LightVertex v = light_vertex(path, ray, hit, random);
   bool diffuse = max3(v.bsdf.diffuse_albedo + v.bsdf.transmitted_albedo) > 0.0;
   // The number of events of the whole path, including this surface's, is within the limit of eye paths.
-  bool wanted = v.lit && diffuse && automaton_component(state) < k_component_count && depth <= frame.max_depth;
+  bool wanted = v.lit && diffuse && is_component(automaton_component(state)) && depth <= frame.max_depth;
   vec3 eye = vec3(0.0);
 #if LUCERNA_THIN_LENS
   eye = lens_point(sample_vertex(random, depth, k_pad_light_uv));  // free behind the emission

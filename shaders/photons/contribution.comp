@@ -29,7 +29,7 @@ void main() {
   light = e.light;
   own = stratum == 0u ? e.unaimed : 1.0;
 #endif
-  bool contributes = part > 0u || (photons.component[0] & 15u) < k_component_count;
+  bool contributes = part > 0u || is_component(photons.component[0] & 15u);
   float contribution = contributes ? own * luminance(b.rgb) * importance : 0.0;
   bool stored = photons.stores_radiance != 0u && part == k_photon_caustic_part;
   vec3 front = facet_unpack(floatBitsToUint(b.w) & k_photon_facet);

@@ -29,7 +29,7 @@ void main() {
   uint part = automaton_component(state);
   bool unreachable = path.pdf == 0.0 && depth > 1u;
   // Events of the whole path as seen from the eye, including this surface's.
-  bool wanted = depth <= frame.max_depth && v.lit && part < k_component_count && max3(v.bsdf.diffuse_albedo + v.bsdf.transmitted_albedo) > 0.0;
+  bool wanted = depth <= frame.max_depth && v.lit && is_component(part) && max3(v.bsdf.diffuse_albedo + v.bsdf.transmitted_albedo) > 0.0;
   if (wanted && !is_finite(v.arriving)) {
     atomicAdd(counters[k_counter_dropped], 1u);
     wanted = false;

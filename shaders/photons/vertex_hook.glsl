@@ -78,7 +78,7 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
     if (carried > 0.0)
       atomicAdd(photon_importance[photon_entry_of(ivec3(floor(x * photon_inverse_cell(level))), level, photons_pilot_mask())],
                 uint(clamp(k_photon_importance_scale * carried, 1.0, float(k_photon_most_importance))));
-    if (v.path.pixel < photons.lookups && (components >> 4u * k_photon_caustic_part & 15u) < k_component_count)
+    if (v.path.pixel < photons.lookups && is_component(components >> 4u * k_photon_caustic_part & 15u))
       photon_lookups[v.path.pixel] =
           PhotonLookup(x, luminance(v.path.throughput * v.bsdf.diffuse_albedo), facet_pack(v.side));
   }
@@ -131,9 +131,9 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
         vec3 light = flux * photon_kernel(d2, r);
 #if LUCERNA_PATH_EVENTS
         uint to = components >> 4u * part & 15u;
-        if (to < k_component_count) ++o.served[to], o.reader[to] = k_path_photons;
+        if (is_component(to)) ++o.served[to], o.reader[to] = k_path_photons;
 #endif
-        bool contributes = (LUCERNA_PHOTON_DIRECT != 0 || part > 0u) && (components >> 4u * part & 15u) < k_component_count;
+        bool contributes = (LUCERNA_PHOTON_DIRECT != 0 || part > 0u) && is_component(components >> 4u * part & 15u);
         found_flat += contributes ? flux * photon_flat_kernel(r) : vec3(0.0);
 #if LUCERNA_PHOTON_DIRECT
         found_0 += part == 0u ? light : vec3(0.0);
@@ -152,8 +152,8 @@ photons_Vertex photons_read(VertexIn v, inout VertexOut o) {
   vec3 weight = v.path.throughput * float(step);
   vec2 areas = vec2(1.0);
   // If deep light is looked up and no photon is found, its relative error is unknown.
-  bool deep = ((components >> 4 & 15u) < k_component_count && (only >> 1 & 1u) == 0u) ||
-              ((components >> 8 & 15u) < k_component_count && (only >> 2 & 1u) == 0u);
+  bool deep = (is_component(components >> 4 & 15u) && (only >> 1 & 1u) == 0u) ||
+              (is_component(components >> 8 & 15u) && (only >> 2 & 1u) == 0u);
   if (deep && photons_pilot_mask() == 0u && max3(v.bsdf.diffuse + v.bsdf.transmitted) > 0.0 && max3(found_1 + found_2 + found_3) <= 0.0)
     o.bias += k_found_nothing;
   // Only if there is an error to correct.

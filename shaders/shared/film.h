@@ -33,7 +33,9 @@ struct FilmPush {
 /// Noise statistics of one block, from the two halves of the film. The means A and B of a pixel's halves are independent, so
 /// v = ((A - B) / 2)^2 is an unbiased estimate, with one degree of freedom, of the variance of the pixel's mean (A + B) / 2.
 /// All in luminance Y (Rec.709); [0] is the sum of the components, [1..4] the components. Sums run over the pixels with
-/// samples in both halves.
+/// samples in both halves. For layers by path expressions there are further ones, a set for each k_error_layers of them,
+/// whose [1..4] are these layers; in them only these and `pixels` count.
+LUCERNA_CONST uint k_error_layers = 4u;
 struct BlockError {
   float pixels;
   float luminance[5];     ///< sum of Y

@@ -15,6 +15,9 @@
 LUCERNA_SHARED_BEGIN
 
 LUCERNA_CONST uint k_component_count = 4u;
+LUCERNA_CONST uint k_component_none = k_component_count;  ///< in packed tables: no component
+LUCERNA_CONST uint k_all_components = (1u << k_component_count) - 1u;  ///< a bit each
+LUCERNA_INLINE bool is_component(uint c) { return c < k_component_count; }
 LUCERNA_CONST uint k_most_groups = 16u;
 
 #ifndef __cplusplus
@@ -28,14 +31,28 @@ const uint k_lane_count = k_no_lane;
 
 // k_no_lane if there is no such component.
 uint lane_of(uint group, uint component) {
-  return component < k_component_count ? group * k_component_count + component : k_no_lane;
+  return is_component(component) ? group * k_component_count + component : k_no_lane;
 }
 
-// Texel of a path slot's radiance in radiance_texels: of a lane, or with compact groups of a component or of
-// k_component_count + group (lib/radiance.glsl). One buffer for all: a separate buffer for groups made shading a tenth
-// slower on a CPU, which waits for memory there.
+uint component_of_lane(uint lane) { return lane % k_component_count; }
+uint group_of_lane(uint lane) { return lane / k_component_count; }
+
+// Texel of a path slot's radiance in radiance_texels: of a lane; with compact groups of a component, and of
+// a group behind these (lib/radiance.glsl). One buffer for all: a separate buffer for groups made shading a tenth slower on a
+// CPU, which waits for memory there.
 uint radiance_texel(uint slot, uint lane) { return slot * k_lane_count + lane; }
+uint group_texel(uint slot, uint group) { return radiance_texel(slot, k_component_count + group); }
 #endif
 
 LUCERNA_SHARED_END
+#ifdef __cplusplus
+#include <array>
+namespace lucerna {
+/// A value for each component, in the order of paths::k_component_names.
+template <class T>
+using ByComponent = std::array<T, shared::k_component_count>;
+/// Their numbers, for loops.
+inline constexpr ByComponent<uint32_t> k_components = {0, 1, 2, 3};
+}  // namespace lucerna
+#endif
 #endif

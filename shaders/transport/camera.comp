@@ -118,7 +118,7 @@ void main() {
     for (int c = 0; c < 3; ++c) {
       if (splat[c] > 0.0) {
         vec3 of_group = mix(vec3(0.0), splat.rgb, equal(groups, uvec3(groups[c])));
-        radiance[radiance_texel(slot, k_component_count + groups[c])].rgb = of_group;
+        radiance[group_texel(slot, groups[c])].rgb = of_group;
         lit |= 1u << groups[c];
       }
     }

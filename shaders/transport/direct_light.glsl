@@ -240,8 +240,8 @@ void sample_direct_light(uint slot, PathState path, Surface surface, Bsdf bsdf, 
   arrives *= media_transmittance(reflected ? path.media : media_behind(surface, path.media), min(l.distance, 1e30));
 #endif
   ShadowState shadow;
-  shadow.diffuse = component_d < k_component_count ? arrives * f.diffuse : vec3(0.0);
-  shadow.glossy = component_g < k_component_count ? arrives * f.glossy : vec3(0.0);
+  shadow.diffuse = is_component(component_d) ? arrives * f.diffuse : vec3(0.0);
+  shadow.glossy = is_component(component_g) ? arrives * f.glossy : vec3(0.0);
   shadow.lanes = lane_of(l.group, component_d) | lane_of(l.group, component_g) << 8;
 #if LUCERNA_WORD_LAYERS
   shadow.lanes |= layer_state_after(path_layer_state(path), k_event_diffuse) << 16 | layer_state_after(path_layer_state(path), k_event_glossy) << 24;

@@ -171,7 +171,7 @@ void record_found(uint slot, PathEvent vertex, Hit hit, VertexOut found, uint st
 #endif
 #if LUCERNA_VERTEX_HOOKS
   for (uint lane = 0u; lane < found.radiance.length(); ++lane) {
-    uint component = lane % k_component_count;
+    uint component = component_of_lane(lane);
     PathEvent read = vertex;
     read.parent = event_state.last;
     read.pdf = 0.0;
@@ -181,7 +181,7 @@ void record_found(uint slot, PathEvent vertex, Hit hit, VertexOut found, uint st
 #if LUCERNA_GROUP_SUMS
     record_light(slot, read, found.radiance[lane], component, 255u);
 #else
-    record_light(slot, read, found.radiance[lane], component, lane / k_component_count);
+    record_light(slot, read, found.radiance[lane], component, group_of_lane(lane));
 #endif
   }
 #endif
@@ -398,16 +398,16 @@ void main() {
 #if LUCERNA_WORD_LAYERS
   // Light that the path has met belongs to its own state, stored light to the words that it stands for.
   vec3 of_layers[LUCERNA_WORD_LAYERS];
-  vec3 met_here = automaton_component(state) < k_component_count ? gain + sun : vec3(0.0);
+  vec3 met_here = is_component(automaton_component(state)) ? gain + sun : vec3(0.0);
 #if LUCERNA_SHAPES
-  if (automaton_component(state) < k_component_count)
+  if (is_component(automaton_component(state)))
     [[unroll]] for (uint g = 0u; g < k_group_count; ++g) met_here += of_shapes[g];
 #endif
   [[unroll]] for (uint l = 0u; l < LUCERNA_WORD_LAYERS; ++l) {
     of_layers[l] = in_layer(l, layer_table.states[layer_state].accept, met_here);
 #if LUCERNA_VERTEX_HOOKS
     for (uint lane = 0u; lane < found.radiance.length(); ++lane)
-      of_layers[l] += in_layer(l, layers_looked_up(layer_state, lane % k_component_count), found.radiance[lane]);
+      of_layers[l] += in_layer(l, layers_looked_up(layer_state, component_of_lane(lane)), found.radiance[lane]);
 #endif
   }
   add_to_layers(slot, of_layers);
@@ -416,7 +416,7 @@ void main() {
 #if LUCERNA_LIGHT_GROUPS > 1
   uint component = automaton_component(state);
   for (uint g = 0u; g < k_group_count; ++g) {
-    if (component >= k_component_count) continue;
+    if (!is_component(component)) continue;
 #if LUCERNA_GROUP_SUMS
     found.radiance[component] += of_shapes[g];
     found.by_group[g] += of_shapes[g];

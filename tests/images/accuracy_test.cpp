@@ -85,7 +85,7 @@ TEST_CASE("the time per sample excludes preparation before the first sample") {
   while (!test::cache(bed.r)->ready()) bed.r.step();
   const double building = total_ms(bed.r.stats());
   REQUIRE(building > 0);
-  CHECK(bed.r.progress().component_ms_a_sample() == std::array<double, shared::k_component_count>{});
+  CHECK(bed.r.progress().component_ms_a_sample() == ByComponent<double>{});
   session::AccuracyKeeper keeper;
   keeper.follow(bed.r, 1);
   while (bed.r.step()) keeper.follow(bed.r, 1);

@@ -37,7 +37,7 @@ Bias measure(const std::string& scene, uint32_t width, uint32_t height, double t
     }
     const film::Image image = r.image();
     std::array<double, 5> mean{};
-    for (int c = 0; c < film::k_components; ++c)
+    for (const int c : k_components)
       for (const vec3& v : image.components[c])
         mean[c + 1] += luminance(v) / double(image.samples.size()),
             mean[0] += luminance(v) / double(image.samples.size());

@@ -19,7 +19,7 @@ film::Image picture(session::Renderer& r) {
 }
 
 bool same(const film::Image& a, const film::Image& b) {
-  for (size_t c = 0; c < film::k_components; ++c)
+  for (const size_t c : k_components)
     if (!test::identical(a.components[c], b.components[c])) return false;
   return true;
 }

@@ -92,7 +92,7 @@ TEST_CASE("a cache that is switched off is reused when it is switched on") {
   CHECK(identical(bed.records(), records));
   const film::Image second = bed.finish();
   CHECK(bed.status().rays == rays);
-  for (int c = 0; c < film::k_components; ++c) CHECK(second.components[c] == first.components[c]);
+  for (const int c : k_components) CHECK(second.components[c] == first.components[c]);
 }
 
 TEST_CASE("changes made while a cache is off invalidate the same parts as always") {

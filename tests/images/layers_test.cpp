@@ -20,9 +20,9 @@ using test::identical;
 namespace {
 
 /// The components' expressions as layers, and all light.
-const std::string k_components = [] {
+const std::string k_layers = [] {
   std::string text = "all = E.*L";
-  for (int c = 0; c < film::k_components; ++c)
+  for (const size_t c : k_components)
     text += fmt::format(", own-{} = {}", paths::k_component_names[c], paths::k_component_expressions[c]);
   return text;
 }();
@@ -63,7 +63,7 @@ TEST_CASE("a layer with a component's expression is that component, and changes 
                        .settings = c.settings,
                        .validated = &c == cases};
     test::Render layered = plain;
-    layered.settings["film.layers"] = k_components;
+    layered.settings["film.layers"] = k_layers;
     const test::Result a = test::render(plain), b = test::render(layered);
     CHECK(b.validation_messages == 0);
     CHECK(identical(a.image, b.image));
@@ -121,12 +121,47 @@ TEST_CASE("a layer is the light of the recorded paths with its words") {
   }
 }
 
+TEST_CASE("errors of layers with the components' expressions are the components' errors") {
+  for (const bool mixed : {false, true}) {
+    session::Renderer renderer(test::renderer_options(!mixed));
+    renderer.settings().set("path.batch", test::k_batch);
+    renderer.set_size(44, 36);  // with blocks that are cut
+    const char* scene = mixed ? "gallery" : "glass";
+    renderer.load(fmt::format("{}/scenes/{}/{}.gltf", LUCERNA_SOURCE_DIR, scene, scene));
+    test::set(renderer, {{"film.layers", k_layers}, {"samples", "6"}});
+    if (mixed) {
+      test::set(renderer, {{"relight.enabled", "compact"}});
+      test::set(renderer,
+                {{"relight.mix", fmt::format("{}: ev=2", renderer.relight().groups->groups[0].name)}});
+    }
+    test::finish(renderer);
+    const film::ImageError error = renderer.image_error();
+    REQUIRE(error.layers.size() == 5);
+    for (size_t k = 0; k < 5; ++k) {
+      INFO(scene << " " << k);
+      CHECK(error.layers[k].luminance == Approx(error.luminance[k]).epsilon(1e-4));
+      CHECK(error.layers[k].rms == Approx(error.rms[k]).epsilon(1e-4).margin(1e-9));
+      CHECK(error.layers[k].seen_rms == Approx(error.seen_rms[k]).epsilon(1e-4).margin(1e-9));
+    }
+    CHECK(error.layers[1].seen_rms > 0);
+    renderer.finish_ledger();
+    const stats::Ledger& ledger = renderer.progress().ledger();
+    CHECK(ledger.layers() ==
+          std::vector<std::string>{"all", "own-primary", "own-secondary", "own-tertiary", "own-caustic"});
+    REQUIRE(ledger.entries().back().layers.size() == 5);
+    CHECK(ledger.entries().back().layers[2] == error.layers[2].seen_rms);
+    const auto status = renderer.layer_status(renderer.image());
+    CHECK(status.at(3).error == error.layers[3].seen_rms);
+    CHECK(status.at(3).error_of_mean == error.relative(error.layers[3]));
+  }
+}
+
 TEST_CASE("layers follow a mix of light groups as the components do") {
   session::Renderer renderer(test::renderer_options(false));
   renderer.settings().set("path.batch", test::k_batch);
   renderer.set_size(32, 32);
   renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/gallery/gallery.gltf");
-  test::set(renderer, {{"film.layers", k_components}, {"samples", "4"}, {"relight.enabled", "compact"}});
+  test::set(renderer, {{"film.layers", k_layers}, {"samples", "4"}, {"relight.enabled", "compact"}});
   const film::Image before = test::finish(renderer);
   REQUIRE(renderer.film().is_compact());
   const std::string group = renderer.relight().groups->groups[0].name;

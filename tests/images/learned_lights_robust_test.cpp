@@ -16,7 +16,7 @@ double mean_z(const film::Image& a, const film::Image& b) {
   const auto whole = [](const film::Image& image) {
     test::Mean m;
     for (size_t i = 0; i < image.samples.size(); ++i)
-      for (int c = 0; c < film::k_components; ++c) {
+      for (const int c : k_components) {
         const double y = luminance(image.components[c][i]), odd = luminance(image.odd_half[c][i]);
         m.value += y, m.noise += (y - odd) * (y - odd);
       }

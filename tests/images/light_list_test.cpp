@@ -101,7 +101,7 @@ TEST_CASE("a lamp is added and removed at every stage of the building of a cache
     const film::Image image = test::finish(bed.r);
     // Records may lie elsewhere than in a cache from scratch, and paths part elsewhere: the light is the
     // same.
-    for (int c = 0; c < film::k_components; ++c)
+    for (const int c : k_components)
       CHECK(test::mean(image.components[c]) ==
             Approx(test::mean(expected.components[c])).epsilon(0.1).margin(1e-4));
     bed.r.set_light_list({});

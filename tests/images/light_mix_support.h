@@ -98,7 +98,7 @@ inline std::vector<vec3> all_components(const film::Image& image, bool odd = fal
 /// All components summed into the first.
 inline film::Image as_one_component(film::Image image) {
   image.components[0] = all_components(image), image.odd_half[0] = all_components(image, true);
-  for (size_t c = 1; c < film::k_components; ++c) {
+  for (size_t c = 1; c < shared::k_component_count; ++c) {
     image.components[c].assign(image.samples.size(), vec3(0));
     image.odd_half[c] = image.components[c];
   }
@@ -108,7 +108,7 @@ inline film::Image as_one_component(film::Image image) {
 /// The largest difference over the largest value.
 inline double difference(const film::Image& a, const film::Image& b) {
   double most = 0, scale = 0;
-  for (int c = 0; c < film::k_components; ++c)
+  for (const int c : k_components)
     for (size_t i = 0; i < a.samples.size(); ++i)
       for (int k = 0; k < 3; ++k) {
         most = std::max(most, double(std::abs(a.components[c][i][k] - b.components[c][i][k])));
@@ -122,7 +122,7 @@ inline double difference(const film::Image& a, const film::Image& b) {
 /// by chance in one of 10^4 comparisons; these scenes have no rare bright samples.
 inline double worst_z(const film::Image& a, const film::Image& b) {
   double worst = 0;
-  for (int c = 0; c < film::k_components; ++c)
+  for (const int c : k_components)
     for (uint32_t y = 0; y < a.height / 8; ++y)
       for (uint32_t x = 0; x < a.width / 8; ++x) {
         const Mean p = block_mean(a, c, x, y), q = block_mean(b, c, x, y);

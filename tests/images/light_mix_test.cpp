@@ -100,7 +100,7 @@ TEST_CASE("light of one group is mixed without a ray, for every solver") {
     b.mix(text);
     const film::Image after = b.r.image();
     size_t off = 0;
-    for (int c = 0; c < film::k_components; ++c)
+    for (const int c : k_components)
       for (size_t i = 0; i < before.samples.size(); ++i)
         off += after.components[c][i] != vec3(2, 1, 0.5f) * before.components[c][i] ||
                after.odd_half[c][i] != vec3(2, 1, 0.5f) * before.odd_half[c][i];
@@ -168,13 +168,13 @@ TEST_CASE("a mix traces no ray, restarts nothing, and does not depend on earlier
 TEST_CASE("muting removes the group's light and nothing else") {
   Bench b(room());
   const film::Image all = b.image();
-  std::vector<std::array<std::vector<vec3>, film::k_components>> groups;
+  std::vector<ByComponent<std::vector<vec3>>> groups;
   for (uint32_t g = 0; g < b.r.film().groups(); ++g) groups.push_back(b.r.film().read_group(g));
   for (size_t muted = 0; muted < groups.size(); ++muted) {
     b.mix(b.r.relight().groups->groups[muted].name + ": mute");
     const film::Image rest = b.r.image();
     double off = 0, of_group = 0;
-    for (size_t c = 0; c < film::k_components; ++c)
+    for (const size_t c : k_components)
       for (size_t i = 0; i < all.samples.size(); ++i) {
         const vec3 expected = all.components[c][i] - groups[muted][c][i];
         const vec3 d = rest.components[c][i] - expected;
@@ -210,7 +210,7 @@ TEST_CASE("a mix equals a new render: switches, strengths from 10^-4 to 10^4, co
                    64);
     const film::Image mixed = b.r.image(), other = rendered.image();
     CHECK(worst_z(mixed, other) < 5.5);
-    for (int c = 0; c < film::k_components; ++c)
+    for (const int c : k_components)
       CHECK((mean(mixed.components[c]) > 0) == (mean(other.components[c]) > 0));
   }
 }
@@ -227,7 +227,7 @@ TEST_CASE("noise is reported for the mixed picture, and adaptive sampling contin
     double variance = 0, sum = 0;
     for (size_t i = 0; i < image.samples.size(); ++i) {
       double all = 0, odd = 0;
-      for (int c = 0; c < film::k_components; ++c)
+      for (const int c : k_components)
         all += luminance(image.components[c][i]), odd += luminance(image.odd_half[c][i]);
       variance += (all - odd) * (all - odd), sum += all;
     }

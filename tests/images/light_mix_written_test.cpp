@@ -48,7 +48,7 @@ struct Bed : test::CacheRenderer {
 
 bool same(const film::Image& a, const film::Image& b) {
   bool same = a.samples == b.samples;
-  for (int c = 0; c < film::k_components; ++c) same = same && a.components[c] == b.components[c];
+  for (const int c : k_components) same = same && a.components[c] == b.components[c];
   return same;
 }
 

@@ -83,7 +83,7 @@ TEST_CASE("the components' sum agrees with a path tracer without components") {
         INFO(scene << ": block " << block << " channel " << channel << " difference " << difference / 64);
         CHECK(std::abs(difference) < 5 * std::sqrt(variance) + 1e-4);
       }
-    for (int c = 1; c < film::k_components; ++c)
+    for (uint32_t c = 1; c < shared::k_component_count; ++c)
       for (const vec3& v : whole.image.components[c]) CHECK(v == vec3(0));
   }
 }

@@ -129,7 +129,7 @@ TEST_CASE("another sampling mode keeps existing samples, and each sample stays t
   CHECK(switched.samples == unswitched.samples);
   // The same samples, added in other portions: equal up to rounding.
   double most = 0, light = 0;
-  for (int c = 0; c < film::k_components; ++c)
+  for (const int c : k_components)
     for (size_t i = 0; i < unswitched.samples.size(); ++i) {
       const vec3 d = switched.components[c][i] - unswitched.components[c][i];
       most = std::max({most, std::abs(double(d.x)), std::abs(double(d.y)), std::abs(double(d.z))});
@@ -163,7 +163,7 @@ TEST_CASE("another sampling mode keeps existing samples, and each sample stays t
   }
   const film::Image whole = r.image();
   most = 0;
-  for (int c = 0; c < film::k_components; ++c)
+  for (const int c : k_components)
     for (size_t i = 0; i < whole.samples.size(); ++i)
       most = std::max(most, double(luminance(glm::abs(longest.components[c][i] - whole.components[c][i]))));
   CHECK(most < 1e-4 * light);

@@ -125,7 +125,7 @@ inline bool identical(const std::vector<vec3>& a, const std::vector<vec3>& b) {
   return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(vec3)) == 0;
 }
 inline bool identical(const film::Image& a, const film::Image& b) {
-  for (int c = 0; c < film::k_components; ++c)
+  for (const int c : k_components)
     if (!identical(a.components[c], b.components[c]) || !identical(a.odd_half[c], b.odd_half[c]))
       return false;
   return a.samples == b.samples && identical(a.albedo, b.albedo) && identical(a.normal, b.normal);

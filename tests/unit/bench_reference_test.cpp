@@ -14,7 +14,7 @@ namespace {
 /// Two pixels of one component: the even samples of the first are 3, 1, its odd one is 8.
 film::Image image() {
   film::Image i{.width = 2, .height = 1};
-  for (int c = 0; c < film::k_components; ++c) {
+  for (const int c : k_components) {
     i.components[size_t(c)].assign(2, vec3(0));
     i.odd_half[size_t(c)].assign(2, vec3(0));
   }

@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "film/io/planes.h"
 #include "film/io/reference.h"
 
 namespace film_io_reference_tests {
@@ -90,6 +91,28 @@ TEST_CASE("the noise stated in a file is read back; invalid noise counts as none
   CHECK(reported.mean_luminance == Approx(1));
   for (const char* text : {"", "0.5", "{}", "{\"sum\":0.5}", "not json"}) CHECK_FALSE(read_with(text).noise);
   CHECK_FALSE(read_with(film::noise_text({0.5, -1, 0, 0, 0})).noise);
+}
+
+TEST_CASE("a reference's own layers are compared by name, their noise taken off") {
+  film::FilmImage image = grey(2);
+  const size_t pixels = size_t{k_width} * k_height;
+  film::add_plane(image, "mirrored.", "RGB", std::vector<vec3>(pixels, vec3(0.5f)));
+  film::add_plane(image, "odd.mirrored.", "RGB", std::vector<vec3>(pixels, vec3(0.5f)));
+  film::add_plane(image, "albedo.", "RGB", std::vector<vec3>(pixels, vec3(0.5f)));
+  const std::pair<std::string, double> own[] = {{"mirrored", 0.3}};
+  image.metadata["noise"] = film::noise_text({0, 0, 0, 0, 0}, own);
+  const File file;
+  film::write_exr(file.path, image);
+  const film::Reference reference = film::read_reference(file.path, k_width, k_height);
+  REQUIRE(reference.own_layers.size() == 1);
+  CHECK(reference.own_layers.at("mirrored").noise == 0.3);
+  std::vector<uint32_t> samples(pixels, 4);
+  samples[7] = 0;
+  std::vector<vec3> there(pixels, vec3(1));
+  there[7] = vec3(100);  // not sampled
+  // Off by 0.5, of which the reference's noise is 0.3: 0.4, over the mean of 2.
+  CHECK(film::true_error(reference, "mirrored", there, samples).value() == Approx(0.2));
+  CHECK_FALSE(film::true_error(reference, "near", there, samples));
 }
 
 TEST_CASE("the true error is the picture's noise without the reference's own") {

@@ -81,7 +81,7 @@ TEST_CASE("packing switches components off without moving states") {
     CHECK((all[i] & 0xffffff) == (no_tertiary[i] & 0xffffff));
     CHECK((all[i] >> 24 & 7) == automaton.states[i].accept);
     CHECK((all[i] >> 27 & 1) == 1);
-    CHECK((none[i] >> 24 & 7) == k_component_count);
+    CHECK((none[i] >> 24 & 7) == shared::k_component_none);
     CHECK((none[i] >> 27 & 1) == 0);
     CHECK((all[i] >> 28 & 1) == (i == 0 || i == automaton.after(0, Event::specular)));
   }
@@ -261,14 +261,14 @@ TEST_CASE("photons are stored where camera paths read them, and light paths end 
   const auto live = [](uint32_t packed) { return (packed >> 27 & 1u) != 0; };
   // Caustics alone: light after mirrors and glass, without diffuse events.
   const auto caustics = paths::pack(light, 0b1000, 3);
-  CHECK(part(caustics[after("")]) == paths::k_component_count);
+  CHECK(part(caustics[after("")]) == shared::k_component_none);
   CHECK(live(caustics[after("")]));
   CHECK(part(caustics[after("SG")]) == 3);
   CHECK_FALSE(live(caustics[after("SD")]));
   CHECK_FALSE(live(caustics[after("D")]));
   CHECK((caustics[0] >> 29 & 3u) == 3);
   const auto all = paths::pack(light, 0b1110, 1);
-  CHECK(part(all[after("")]) == paths::k_component_count);  // excludes direct light
+  CHECK(part(all[after("")]) == shared::k_component_none);  // excludes direct light
   CHECK(part(all[after("DS")]) == 1);
   CHECK(part(all[after("SD")]) == 2);
   for (const uint32_t packed : all) CHECK(live(packed));

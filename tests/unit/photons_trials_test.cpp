@@ -19,7 +19,7 @@ Trial trial(double cost, float mean, float secondary, float tertiary, uint32_t j
   Trial t;
   t.judged = judged, t.cost = cost;
   t.image.width = t.image.height = k_side;
-  for (size_t c = 0; c < film::k_components; ++c) {
+  for (const size_t c : k_components) {
     const float spread = c == k_secondary ? secondary : c == k_tertiary ? tertiary : 100.0f;
     t.image.components[c].assign(k_side * k_side, vec3(mean));
     t.image.odd_half[c].assign(k_side * k_side, vec3(mean + spread));

@@ -21,7 +21,7 @@ film::Image picture(const Light& light, float deviation, uint32_t seed) {
   std::normal_distribution<float> normal(0, deviation / std::sqrt(float(k_samples) / 2));
   film::Image image;
   image.width = image.height = k_side;
-  for (size_t c = 0; c < film::k_components; ++c) {
+  for (const size_t c : k_components) {
     image.components[c].assign(k_side * k_side, vec3(0));
     image.odd_half[c] = image.components[c];
   }

@@ -16,7 +16,7 @@ constexpr uint32_t k_side = 64;
 film::Image picture() {
   film::Image image;
   image.width = image.height = k_side;
-  for (size_t c = 0; c < film::k_components; ++c) {
+  for (const size_t c : k_components) {
     image.components[c].assign(k_side * k_side, vec3(0));
     image.odd_half[c] = image.components[c];
   }

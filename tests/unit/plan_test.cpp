@@ -50,7 +50,7 @@ TEST_CASE("every component has one solver of the registry, or none") {
   biased.solver[2] = &reuses;
   CHECK_FALSE(biased.bias(2).has_value());
   // The settings offer the solvers that the registry has for the component.
-  for (int c = 0; c < paths::k_component_count; ++c) {
+  for (const int c : k_components) {
     const auto* option = plan::find_option(std::string("components.") + paths::k_component_names[c]);
     REQUIRE(option != nullptr);
     size_t served = 0;

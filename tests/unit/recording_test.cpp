@@ -150,7 +150,7 @@ TEST_CASE("what is known of stored light is all that belongs to its component th
       for (const char letter : {'D', 'G', 'S'}) ways.push_back(ways[begin] + letter);
   for (const std::string way : {"E", "ES", "ED", "EGSD", "EDD", "EDSGD", "EDDD", "EDDSD"}) {
     const auto diffuse = uint32_t(std::count(way.begin(), way.end(), 'D'));
-    for (uint32_t c = 0; c < paths::k_component_count; ++c) {
+    for (const uint32_t c : k_components) {
       const std::string rest = rest_of_way(c, diffuse);
       for (const std::string& behind : ways) {
         const bool belongs = automaton.classify(way + behind + "L") == c;

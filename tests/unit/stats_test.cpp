@@ -71,6 +71,10 @@ TEST_CASE("CSV: the same number of fields in every line, unknown ones empty") {
   Entry full{.paths = 20};
   full.truth.emplace();
   full.total_rays = Band{1, 2, 3};
+  full.has_error = true;
+  full.layers = {0.25, 0.5}, full.of_mean.layers = {0.125, 1};
+  full.truth_of_layers = {std::nullopt, 2};
+  ledger.name_layers({"mirrored", "near"});
   ledger.add(full);
   const std::string csv = ledger.csv();
   std::vector<size_t> commas(1, 0);
@@ -83,7 +87,9 @@ TEST_CASE("CSV: the same number of fields in every line, unknown ones empty") {
   CHECK(commas[0] == commas[1]);
   CHECK(commas[0] == commas[2]);
   CHECK(csv.find("\n0.5,0,0,0,10,") != std::string::npos);
-  CHECK(csv.find(",1,2,3\n") != std::string::npos);
+  CHECK(csv.find(",1,2,3,0.25,0.5,0.125,1,,2\n") != std::string::npos);
+  CHECK(csv.find(",seen_mirrored,seen_near,of_mean_mirrored,of_mean_near,truth_mirrored,truth_near\n") !=
+        std::string::npos);
 }
 
 TEST_CASE("time to a smaller error: the law is found, and the band contains the truth") {

@@ -294,7 +294,7 @@ inline HeldPicture held(const Fake& now) {
                    .ledger = accuracy(now)->ledger,
                    .scene = now.state.scene->name,
                    .view = scene::view_text(now.camera)};
-  for (size_t c = 0; c < k_components; ++c)
+  for (const size_t c : k_components)
     held.methods[c] = now.state.settings.text(std::string("components.") + k_component_names[c]);
   held.light.assign(size_t{held.width} * held.height, vec3(now.cached() ? 0.25f : 0.5f));
   return held;
@@ -332,7 +332,7 @@ inline Snapshot snapshot(const Fake& now) {
   s.mrays_per_second = 3.42, s.rays = 1234567ull * s.samples;
   s.device_mb = 212, s.host_mb = 1480;
   const double shares[] = {0.618, 0.241, 0.126, 0.015}, ms[] = {412, 380, 1210, 96};
-  for (size_t c = 0; c < k_components; ++c)
+  for (const size_t c : k_components)
     s.components[c] = {.solver = now.state.settings.text(std::string("components.") + k_component_names[c]),
                        .reason = "",
                        .mean_luminance = 0.4 * shares[c],

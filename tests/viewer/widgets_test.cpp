@@ -582,11 +582,11 @@ TEST_CASE("solo of the first light group mutes the others") {
   const std::vector<Control> solos = walk.named("##solo");
   const size_t groups = walk.ui().open.light_groups().groups.size();
   REQUIRE(groups > 0);
-  REQUIRE(solos.size() == session::k_components + groups);
+  REQUIRE(solos.size() == k_components.size() + groups);
   // The mix is below the components.
-  const Control& first = solos[session::k_components];
+  const Control& first = solos[k_components.size()];
   int nth = 0;
-  for (size_t i = 0; i < session::k_components; ++i) nth += solos[i].id == first.id;
+  for (const size_t i : k_components) nth += solos[i].id == first.id;
   g_answered = first.id;
   walk.click(first.id, nth);
   g_answered.reset();
@@ -601,7 +601,7 @@ TEST_CASE("components, solvers and list entries have tooltips, at any frame rate
   Walk walk;
   open_hall(walk);
   std::vector<Control> names = walk.named("##name");
-  names.resize(session::k_components);
+  names.resize(k_components.size());
   // The field of a component's solver is the first list below its name.
   for (const float between : {1.0f / 30, 0.8f}) {
     INFO(between << " s between frames");

@@ -32,7 +32,7 @@ constexpr uint32_t k_strides[] = {1, 2, 4, 1};
 constexpr uint32_t k_piece = 1u << 16;
 
 /// Factor that scales the picture's mean luminance to about 1: a power of two, so that nothing is rounded.
-float scale_of(const std::array<vec3, k_components>& means) {
+float scale_of(const ByComponent<vec3>& means) {
   const float y = luminance(means[0] + means[1] + means[2] + means[3]);
   return y > 0 && std::isfinite(y) ? std::exp2(-std::round(std::log2(y))) : 1.0f;
 }
@@ -74,7 +74,7 @@ void Filter::begin(const Film& film, Film& filtered, const gpu::Buffer* seen, ui
            .seen = seen != nullptr,
            .scale = scale_of(means)};
   work_.push_back([&film, &filtered](gpu::Stream& stream) { filtered.copy_surfaces(stream, film); });
-  for (uint32_t c = 0; c < k_components; ++c)
+  for (const uint32_t c : k_components)
     if (means[c] == vec3(0))
       work_.push_back([&filtered, c](gpu::Stream& stream) { stream.fill(filtered.sums(c), 0); });
     else

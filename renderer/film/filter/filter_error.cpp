@@ -61,7 +61,7 @@ Halves halves_of(const Image& image) {
   const size_t n = image.samples.size();
   Halves h{std::vector<double>(n), std::vector<double>(n), std::vector<double>(n)};
   for (size_t i = 0; i < n; ++i) {
-    for (size_t c = 0; c < size_t{k_components}; ++c) {
+    for (const size_t c : k_components) {
       h.mean[i] += double(luminance(image.components[c][i]));
       h.odd[i] += double(luminance(image.odd_half[c][i]));
     }

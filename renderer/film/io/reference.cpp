@@ -1,5 +1,6 @@
 #include "film/io/reference.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -21,11 +22,35 @@ std::optional<LayerFigures> parse_noise(const std::string& text) {
   return rms;
 }
 
+/// Its own layers: those of R, G and B that are neither features nor parts of other layers ("odd.primary").
+std::map<std::string, ReferenceLayer> own_layers_of(const FilmImage& image) {
+  const auto at = image.metadata.find("noise");
+  const nlohmann::json noise =
+      nlohmann::json::parse(at == image.metadata.end() ? std::string() : at->second, nullptr, false);
+  std::map<std::string, ReferenceLayer> own;
+  for (const std::string& name : image.layers()) {
+    const auto* r = image.find(name + ".R");
+    const auto* g = image.find(name + ".G");
+    const auto* b = image.find(name + ".B");
+    const bool known = std::find(std::begin(k_names), std::end(k_names), name) != std::end(k_names);
+    if (!r || !g || !b || known || name.find('.') != std::string::npos || name == "albedo" || name == "odd" ||
+        name == "filtered")
+      continue;
+    ReferenceLayer& layer = own[name];
+    for (size_t i = 0; i < r->size(); ++i)
+      layer.luminance.push_back(luminance(vec3((*r)[i], (*g)[i], (*b)[i])));
+    if (noise.is_object() && noise.contains(name) && noise[name].is_number() && noise[name] >= 0)
+      layer.noise = noise[name].get<double>();
+  }
+  return own;
+}
+
 }  // namespace
 
-std::string noise_text(const LayerFigures& rms) {
+std::string noise_text(const LayerFigures& rms, std::span<const std::pair<std::string, double>> own) {
   nlohmann::ordered_json json;
   for (int k = 0; k < k_reference_layers; ++k) json[k_names[k]] = rms[size_t(k)];
+  for (const auto& [name, error] : own) json[name] = error;
   return json_text(json);
 }
 
@@ -70,6 +95,7 @@ Reference read_reference(const std::filesystem::path& file, uint32_t width, uint
     return at == image.metadata.end() ? std::string() : at->second;
   };
   reference.noise = parse_noise(attribute("noise"));
+  reference.own_layers = own_layers_of(image);
   reference.scene = attribute("scene");
   reference.view = attribute("view");
   reference.seed = attribute("seed");
@@ -98,6 +124,22 @@ LayerFigures true_errors(const Reference& reference, std::span<const std::vector
     errors[k] = std::sqrt(std::max(0.0, squares[k] / pixels - own * own)) / reference.mean_luminance;
   }
   return errors;
+}
+
+std::optional<double> true_error(const Reference& reference, const std::string& layer,
+                                 std::span<const vec3> radiance, std::span<const uint32_t> samples) {
+  const auto found = reference.own_layers.find(layer);
+  if (found == reference.own_layers.end()) return std::nullopt;
+  double squares = 0, pixels = 0;
+  for (size_t i = 0; i < samples.size(); ++i) {
+    if (samples[i] == 0) continue;
+    const double d = luminance(radiance[i]) - double{found->second.luminance[i]};
+    ++pixels, squares += d * d;
+  }
+  const double own = found->second.noise.value_or(0);
+  const double error =
+      pixels > 0 ? std::sqrt(std::max(0.0, squares / pixels - own * own)) / reference.mean_luminance : 0;
+  return std::isfinite(error) ? std::optional(error) : std::nullopt;
 }
 
 }  // namespace lucerna::film

@@ -28,7 +28,7 @@ RouteTable packed(const paths::LookupRoutes& routes, const paths::LookupRoutes& 
     for (uint32_t s = 0; s < of->component.size(); ++s) {
       uint32_t& word = table[in_phase(s, phase)] = 0;
       for (uint32_t p = 0; p < k_part_count; ++p)
-        word |= std::min<uint32_t>(of->component[s][p], k_component_count) << (4 * p);
+        word |= std::min<uint32_t>(of->component[s][p], k_component_none) << (4 * p);
     }
   return table;
 }

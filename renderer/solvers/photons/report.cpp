@@ -72,7 +72,7 @@ Histogram radius_columns(const PhotonReport& r) {
 /// Names of components (bits): "secondary and tertiary".
 std::string names_of(uint32_t components, bool begins = false) {
   std::string all;
-  for (size_t c = 0; c < paths::k_component_count; ++c)
+  for (const size_t c : k_components)
     if ((components >> c & 1u) != 0)
       all += (all.empty() ? "" : " and ") + std::string(paths::k_component_names[c]);
   if (begins && !all.empty()) all[0] = char(std::toupper(all[0]));

@@ -104,7 +104,7 @@ paths::LookupRoutes unreachable_routes(const Task& task, uint32_t components) {
 
 nlohmann::ordered_json component_names(uint32_t components) {
   nlohmann::ordered_json names = nlohmann::ordered_json::array();
-  for (size_t c = 0; c < paths::k_component_count; ++c)
+  for (const size_t c : k_components)
     if ((components >> c & 1u) != 0) names.push_back(paths::k_component_names[c]);
   return names;
 }

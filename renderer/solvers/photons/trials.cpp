@@ -24,7 +24,7 @@ struct Noise {
   struct Light {
     double mean = 0, error = 0, missed = 0;
   };
-  std::array<std::vector<Light>, film::k_components> light;
+  ByComponent<std::vector<Light>> light;
 };
 
 struct Blocks {
@@ -48,7 +48,7 @@ Noise noise_of(const Trial& trial, const Blocks& blocks) {
   Noise n;
   n.variance.assign(size_t{image.width} * image.height, 0);
   n.around.assign(blocks.count + 1, 0);
-  for (size_t c = 0; c < film::k_components; ++c) {
+  for (const size_t c : k_components) {
     if ((trial.judged >> c & 1u) == 0) continue;
     n.light[c].resize(blocks.count + 1);
     std::vector<double> odds(blocks.count + 1, 0), variances(blocks.count + 1, 0);
@@ -75,7 +75,7 @@ Noise noise_of(const Trial& trial, const Blocks& blocks) {
 
 /// Sets Noise::Light::missed of all trials.
 void miss(std::span<const Trial> trials, std::vector<Noise>& noises, const Blocks& blocks) {
-  for (size_t c = 0; c < film::k_components; ++c)
+  for (const size_t c : k_components)
     for (size_t b = 0; !noises[0].light[c].empty() && b <= blocks.count; ++b) {
       double certain = 0;
       for (const Noise& n : noises)

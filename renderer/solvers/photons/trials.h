@@ -21,7 +21,7 @@ struct Trial {
   film::Image image;       ///< two samples a pixel: one in each half
   double cost = 0;         ///< of a pixel's sample, in vertices of an eye path
   /// Per component: variance here over that in the final picture.
-  std::array<double, film::k_components> variance_factor = {1, 1, 1, 1};
+  ByComponent<double> variance_factor = {1, 1, 1, 1};
   /// Neighbouring pixels that read the same photons and thus share their noise; at least 1.
   double pixels_in_common = 1;
 

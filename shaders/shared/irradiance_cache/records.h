@@ -80,7 +80,7 @@ struct RelightPreviewPush {
   uint sky_group; ///< light group of the sky
 };
 
-LUCERNA_CONST uint k_no_routes = 0x4444u;  ///< k_component_count for every part
+LUCERNA_CONST uint k_no_routes = 0x4444u;  ///< k_component_none for every part
 
 LUCERNA_CONST uint k_probe_none = 0u;
 /// Notes vertices without a record as candidates. Paths end at lookups and sample no lights.
@@ -123,7 +123,7 @@ struct PropagatePush {
 /// Parameters of lookups.
 struct CacheFrame {
   /// By state of the automaton at the vertex, for its diffuse lobe: from bit 4 p, the component of part p;
-  /// k_component_count: none. k_no_routes: no lookup there.
+  /// k_component_none: none. k_no_routes: no lookup there.
   uint routes[32];
   uint record_count;
   /// Maximum difference of the normals of a point and of a record, as 1 - cos.

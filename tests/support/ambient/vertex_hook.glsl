@@ -10,7 +10,7 @@ struct ambient_Vertex { uint component; };
 
 ambient_Vertex ambient_read(VertexIn v, inout VertexOut o) {
   ambient_Vertex x = ambient_Vertex(ambient_light.component[v.state]);
-  if (x.component < k_component_count)
+  if (is_component(x.component))
     o.radiance[lane_of(0u, x.component)] += v.path.throughput * (v.bsdf.diffuse_albedo + v.bsdf.transmitted_albedo) * ambient_light.radiance;
   return x;
 }
