@@ -133,6 +133,7 @@ std::string about_text(double s) {
 std::string percent_text(double fraction) {
   const double p = 100 * fraction;
   if (!(p >= 0)) return "\xE2\x80\x93";
+  if (p >= 999.5) return "> 999 %";
   const int decimals = p < 0.0995 ? 3 : p < 9.95 ? 2 : p < 99.5 ? 1 : 0;
   return fmt::format("{:.{}f} %", p, decimals);
 }

@@ -35,7 +35,7 @@ double nice_above(double value);
 
 /// A duration to about two figures: "4.2 s", "2 min 10 s", "3 h 20 min", "12 days".
 std::string about_text(double seconds);
-/// A fraction in percent, at least two figures: "1.8 %".
+/// A fraction in percent, at least two figures: "1.8 %"; from ten on "> 999 %".
 std::string percent_text(double fraction);
 
 /// Rounds a dragged target to two figures, within the setting's range.

@@ -176,9 +176,9 @@ void shape_rows(Actions& actions, size_t i, const scene::Light& light) {
   }
   if (light.kind == LightKind::rectangle) roll_row(actions, i, light, "the width");
   const float half = 0.5f * (ImGui::CalcItemWidth() - px(4));
-  if (button("##visible", "Seen by the camera", light.visible, half))
+  if (button("##visible", "Visible", light.visible, half))
     actions.act("light.set", i + 1, named("visible", !light.visible));
-  tooltip("Whether the camera sees the lamp itself. Mirrors show it in any case.");
+  tooltip("The camera sees the lamp itself. Mirrors show it in any case.");
   if (light.kind == LightKind::rectangle || light.kind == LightKind::disk) {
     ImGui::SameLine(0, px(4));
     if (button("##two_sided", "Two-sided", light.two_sided, half))

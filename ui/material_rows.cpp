@@ -53,6 +53,10 @@ class MaterialRows {
     if (slider((std::string("##") + key).c_str(), label, value, how)) set(named(key, value));
     tooltip(help);
   }
+  void toggle(const char* key, const char* label, bool on, const char* help) {
+    if (button((std::string("##") + key).c_str(), label, on, ImGui::CalcItemWidth())) set(named(key, !on));
+    tooltip(help);
+  }
   void color(const char* key, const char* label, vec3 value, const scene::TextureUse& use, const char* help) {
     if (colour_field((std::string("##") + key).c_str(), label, value, use ? k_times_texture : ""))
       set(named(key, value));
@@ -83,13 +87,9 @@ class MaterialRows {
   }
 
   void catcher() {
-    bool catches = m_.shadow_catcher;
-    if (button("##shadow_catcher", "Shadow catcher", catches, ImGui::CalcItemWidth()))
-      set(named("shadow_catcher", !catches));
-    tooltip(
-        "The surface looks like the sky's picture behind it, with the shadows and reflections of objects on "
-        "it: the "
-        "ground of a photograph. It blocks no light.");
+    toggle("shadow_catcher", "Shadow catcher", m_.shadow_catcher,
+           "The surface looks like the sky's picture behind it, with the shadows and reflections of objects "
+           "on it: the ground of a photograph. It blocks no light.");
   }
 
   // By the height texture.
@@ -103,13 +103,10 @@ class MaterialRows {
             .unit = "m",
             .typed_lo = -scene::k_max_height,
             .typed_hi = scene::k_max_height});
-    bool deep = m_.deep_relief;
-    if (button("##deep_relief", "Hides and shadows itself", deep, ImGui::CalcItemWidth()))
-      set(named("deep_relief", !deep));
-    tooltip(
+    toggle(
+        "deep_relief", "Hides and shadows itself", m_.deep_relief,
         "Deep relief: rays are followed into it, white lying on the surface. If not, the relief only turns "
-        "the "
-        "shading normal, which costs less.");
+        "the shading normal, which costs less.");
   }
 
   void emission() {
@@ -120,10 +117,7 @@ class MaterialRows {
       emission_unit(controls_, index_);
       colour_rows(controls_.actions, "material.set", index_ + 1, "emission_color", tint_of(light),
                   m_.emission_texture ? k_times_texture : "");
-      bool both = m_.double_sided;
-      if (button("##two_sided", "Emits on both sides", both, ImGui::CalcItemWidth()))
-        set(named("two_sided", !both));
-      tooltip("The back side emits like the front side.");
+      toggle("two_sided", "Emits on both sides", m_.double_sided, "The back side emits like the front side.");
       if (button("##dark", "Remove emission", false, ImGui::CalcItemWidth())) set(named("strength", 0));
       tooltip("Makes the surface non-emissive. Can be undone.");
     } else {

@@ -18,13 +18,13 @@ Developer::Developer(gpu::Device& device, gpu::ShaderCompiler& compiler)
 
 void Developer::develop(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse) {
   film.bind(resources_);
-  if (view.layer >= k_layer_samples && view.layer < k_layer_first_own) {
+  if (view.layer >= k_layer_samples && !is_own_layer(view.layer)) {
     const HeatScale& h = view.heat;
     const HeatPush push{film.width(), film.height(), view.layer, h.ramp, h.logarithmic, h.lo, h.hi, h.unit};
     stream.dispatch(heat_, resources_, push, groups(film));
     return;
   }
-  if (view.layer >= k_layer_first_own) film.bind_layer(resources_, view.layer - k_layer_first_own);
+  if (is_own_layer(view.layer)) film.bind_layer(resources_, view.layer - k_layer_first_own);
   resources_.set("Coarse", coarse ? coarse->picture() : no_coarse_);
   const TonePush push{film.width(),
                       film.height(),
@@ -40,7 +40,7 @@ void Developer::develop(gpu::Stream& stream, const Film& film, const View& view,
 }
 
 gpu::Kernel& Developer::tonemap_kernel(const View& view) {
-  const bool own = view.layer >= k_layer_first_own, by_lut = view.display_lut != nullptr;
+  const bool own = is_own_layer(view.layer), by_lut = view.display_lut != nullptr;
   if (by_lut) resources_.set("DisplayLut", *view.display_lut);
   if (!own && !by_lut) return tonemap_;
   gpu::Kernel& kernel = tonemaps_[{own, by_lut}];
@@ -53,7 +53,7 @@ gpu::Kernel& Developer::tonemap_kernel(const View& view) {
 
 void Developer::tone_map(gpu::Stream& stream, const Film& film, const View& view, const Film* coarse) {
   // The coarse film has no layers by path expressions.
-  if (view.layer >= k_layer_first_own) coarse = nullptr;
+  if (is_own_layer(view.layer)) coarse = nullptr;
   if (coarse) develop(stream, *coarse, view, nullptr);
   develop(stream, film, view, coarse);
   draw_tiles(stream, film, view, film.picture(), 1);

@@ -50,7 +50,7 @@ class Preview {
   void keep(const vec3& scale = vec3(1), bool repainted = false, bool same_light = false, float doubt = 0);
   /// Starts a new picture with better light. The history stays unchanged.
   void better();
-  /// Makes the film's picture, for layers that show light (View::layer up to shared::k_layer_primary + 3).
+  /// Makes the film's picture, for layers with shared::is_component_layer().
   /// `draft`: a preview sample, a film of the same view whose pixels cover whole pixels, or null. `filtered`:
   /// filters pixels with samples too. `seen`: visible surfaces of the film's pixels, or null
   /// (shaders/film/preview_look.comp). Films must fit(). Throws Error if memory is short. Runs the stream.

@@ -47,7 +47,7 @@ void Display::plain(const Engine& engine, const PictureView& view, const film::V
   shares_ = {};
   plain_.reset();
   // A layer of its own scale, or of some paths, is no picture to go on from; the last developed one is.
-  if (shown.layer >= shared::k_layer_albedo) return;
+  if (!shared::is_component_layer(shown.layer)) return;
   plain_ = {preview_camera(engine.frame(view, view.width, view.height)), shown};
 }
 
@@ -123,7 +123,7 @@ bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view
 }
 
 bool Display::shows(const film::View& view, const film::Film& film) const {
-  return view.layer < shared::k_layer_albedo &&
+  return shared::is_component_layer(view.layer) &&
          film::Preview::fits(device_.info().limits, film.width(), film.height());
 }
 

@@ -126,7 +126,8 @@ std::vector<uint8_t> PictureOutput::shown_picture(bool with_coarse, const std::f
 std::vector<uint8_t> PictureOutput::picture(bool with_coarse, const std::function<bool()>& cancel) {
   mix_.settle();
   const film::View v = view();
-  if (const Filtered* f = filtered(); f && v.layer < shared::k_layer_albedo) return picture_of(*f, v, cancel);
+  if (const Filtered* f = filtered(); f && shared::is_component_layer(v.layer))
+    return picture_of(*f, v, cancel);
   mark_tiles(v);
   setup_.engine->developer().tone_map(setup_.engine->wavefront().stream(), *setup_.film, without_tiles(v),
                                       with_coarse ? setup_.coarse.get() : nullptr);
@@ -147,7 +148,7 @@ namespace {
 
 /// Components (bits) of the light that a view shows: without hidden ones; a layer is one component.
 uint32_t shown_components(const film::View& v) {
-  const bool one = v.layer >= shared::k_layer_primary && v.layer < shared::k_layer_albedo;
+  const bool one = v.layer >= shared::k_layer_primary && shared::is_component_layer(v.layer);
   return one ? 1u << (v.layer - shared::k_layer_primary) : v.show;
 }
 
@@ -180,7 +181,7 @@ film::Brightness PictureOutput::measure(std::optional<vec2> at) const {
 HeldPicture PictureOutput::held_picture() {
   if (!setup_.engine || sampling_.samples() == 0) throw Error("", "the picture has no sample yet");
   const film::View v = view();
-  if (v.layer >= shared::k_layer_albedo && v.layer < shared::k_layer_first_own)
+  if (!shared::is_light_layer(v.layer))
     throw_error("", "the layer '{}' shows no light; choose beauty or a component",
                 setup_.settings.text("film.layer"));
   mix_.settle();
@@ -195,7 +196,7 @@ HeldPicture PictureOutput::held_picture() {
   }
   HeldPicture held = described();
   held.width = width, held.height = height;
-  if (v.layer >= shared::k_layer_first_own)
+  if (shared::is_own_layer(v.layer))
     held.light = setup_.film->read().layers.at(v.layer - shared::k_layer_first_own);
   else
     held.light = preview ? display_->shown_light(shown)

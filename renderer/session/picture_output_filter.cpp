@@ -47,7 +47,7 @@ FilterJob PictureOutput::filter_job() const {
 }
 
 bool PictureOutput::filters(const film::View& v) const {
-  return window_filter_ && v.layer < shared::k_layer_albedo &&
+  return window_filter_ && shared::is_component_layer(v.layer) &&
          setup_.settings.text("preview.filter") == "auto";
 }
 

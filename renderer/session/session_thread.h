@@ -257,9 +257,8 @@ struct SessionThread {
     next.stale = shares.stale, next.filtered = shares.filtered, next.shown_error = shares.error;
     const film::View view = r.output().view();
     next.legend = {};
-    const bool own = view.layer >= shared::k_layer_first_own;
-    if (view.layer >= shared::k_layer_albedo && !own) next.legend = {.layer = view.layer, .hi = view.scale};
-    if (view.layer >= shared::k_layer_samples && !own)
+    if (!shared::is_light_layer(view.layer)) next.legend = {.layer = view.layer, .hi = view.scale};
+    if (view.layer >= shared::k_layer_samples && !shared::is_own_layer(view.layer))
       next.legend = {view.layer, view.heat.ramp, view.heat.logarithmic, view.heat.lo, view.heat.hi};
     next.tiles = view.tiles > 0;
     next.samples = r.samples();

@@ -37,7 +37,7 @@ void main() {
   if (push.layer == k_layer_normal) flat_color = 0.5 * normalize(normal.xyz + vec3(0.0, 0.0, 1e-20)) + 0.5;
   if (push.layer == k_layer_depth) flat_color = vec3(albedo.w > 0.0 ? normal.w / hits / push.scale : 1.0);
   vec3 srgb;
-  if (push.layer >= k_layer_albedo && push.layer < k_layer_first_own) {
+  if (!is_light_layer(push.layer)) {
     vec3 linear_color = clamp(flat_color, vec3(0.0), vec3(1.0));
     srgb = push.layer == k_layer_normal ? linear_color : srgb_encode(linear_color);
   } else {

@@ -131,6 +131,12 @@ LUCERNA_CONST uint k_layer_samples = 8u;
 LUCERNA_CONST uint k_layer_error = 9u;
 LUCERNA_CONST uint k_layer_cost = 10u;
 LUCERNA_CONST uint k_layer_first_own = 11u;  ///< and above: layers by path expressions (shared/layers.h)
+/// The sum or a component: of these there are previews and filtered pictures.
+LUCERNA_INLINE bool is_component_layer(uint layer) { return layer < k_layer_albedo; }
+/// By a path expression.
+LUCERNA_INLINE bool is_own_layer(uint layer) { return layer >= k_layer_first_own; }
+/// False for features and heat maps.
+LUCERNA_INLINE bool is_light_layer(uint layer) { return is_component_layer(layer) || is_own_layer(layer); }
 
 struct TonePush {
   uint width, height;

@@ -124,6 +124,7 @@ TEST_CASE("round numbers") {
   CHECK(percent_text(0.0182) == "1.82 %");
   CHECK(percent_text(0.182) == "18.2 %");
   CHECK(percent_text(1.82) == "182 %");
+  CHECK(percent_text(25.52) == "> 999 %");
 }
 
 TEST_CASE("a dragged target is rounded to two figures within the setting's range") {
