@@ -148,7 +148,8 @@ nlohmann::ordered_json make_ledger(const stats::Ledger& ledger) {
       j["component_s"][stats::k_layer_names[k]] = e.component_s[k];
     }
     for (size_t l = 0; l < e.layers.size(); ++l)
-      j["seen"][ledger.layers()[l]] = e.layers[l], j["of_mean"][ledger.layers()[l]] = e.of_mean.layers[l];
+      if (e.layers[l] > 0)
+        j["seen"][ledger.layers()[l]] = e.layers[l], j["of_mean"][ledger.layers()[l]] = e.of_mean.layers[l];
     if (e.has_error)
       j["seen_records"] = e.records, j["seen_bias"] = e.interpolation, j["seen_total"] = e.sum(),
       j["seen_degrees"] = e.degrees, j["of_mean_records"] = e.of_mean.records,

@@ -259,7 +259,7 @@ void hover(const AccuracyView& view, const Plot& plot, const Accuracy& a) {
       {run_figures(chosen, line), colour::text_dim}};
   const stats::Entry& then = chosen.ledger.entries()[line];
   if (best.layer && *best.layer >= stats::k_layers)
-    rows.emplace_back(fmt::format("A layer, relative to the light of the whole picture; of the mean {}",
+    rows.emplace_back(fmt::format("A layer. 100 %: as much as the picture's light there; of the mean {}",
                                   percent_text(error_of(then.of_mean, *best.layer))),
                       colour::text_dim);
   else if (best.layer && *best.layer > 0)
@@ -345,12 +345,12 @@ void line_names(const AccuracyView& view, const Accuracy& a, const ImVec2& lo, f
     put(a.reference_applies ? "\xC2\xB7 \xC2\xB7 \xC2\xB7 true error of the mean"
                             : "reference of another view",
         a.reference_applies ? colour::text : colour::warning, 8);
+  for (size_t k = stats::k_layers; k < line_count(a); ++k)
+    if (error_of(a.ledger.entries().back(), k) > 0) put(layer_name(a, k), layer_ink(k), 8);
   // The components come last: without room for them, their colours are known from the panel on the left.
   const auto error = a.error();
   for (const size_t c : k_components)
     if (error[c + 1] > 0) put(session::k_component_names[c], colour::component[c], 8);
-  for (size_t k = stats::k_layers; k < line_count(a); ++k)
-    if (error_of(a.ledger.entries().back(), k) > 0) put(layer_name(a, k), layer_ink(k), 8);
   if (!view.runs.earlier().empty())
     put(fmt::format("{} earlier", view.runs.earlier().size()), colour::text_faint, 8);
 }

@@ -35,12 +35,12 @@ const session::LayerStatus* status_of(const session::Snapshot* picture, const st
 }
 
 std::string about_layer(const paths::Layer& layer, const session::LayerStatus* status) {
-  std::string text =
-      layer.expression + "\nA click shows it; another one the picture. Share: of the picture's light.";
+  std::string text = layer.expression +
+                     "\nClick to show this layer, again to show the picture. At the right its share of the "
+                     "picture's light.";
   if (status && status->error)
-    text += fmt::format(
-        "\nIts noise as seen is {} of the light of the whole picture; the plot in Accuracy has its line.",
-        percent_text(*status->error));
+    text += fmt::format("\nNoise: {} of the picture's light around each pixel; ACCURACY draws it over time.",
+                        percent_text(*status->error));
   if (status && !status->lacks.empty())
     text += "\nPart of its " + status->lacks +
             " light is not known, because its solver stores light of several words together.";

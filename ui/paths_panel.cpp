@@ -12,7 +12,7 @@
 namespace lucerna::ui {
 namespace {
 
-constexpr size_t k_most_rows = 40, k_most_shares = 5;
+constexpr size_t k_most_rows = 40, k_few_rows = 8, k_most_shares = 5;
 constexpr float k_path_row = 18;
 
 using recording::Event;
@@ -101,7 +101,9 @@ void list_block(Controls& controls, const commands::PathInquiry& traced) {
   const Recording& all = *traced.paths;
   const double most =
       traced.order.empty() ? 0 : recording::luminance_of(all.events_of(all.paths[traced.order[0]]));
-  for (size_t i = 0; i < std::min(traced.order.size(), k_most_rows); ++i) {
+  // Down to the followed path, which is explained below.
+  const size_t rows = traced.followed < 0 ? k_most_rows : std::max(k_few_rows, size_t(traced.followed) + 1);
+  for (size_t i = 0; i < std::min(traced.order.size(), rows); ++i) {
     const auto events = all.events_of(all.paths[traced.order[i]]);
     const double light = recording::luminance_of(events);
     uint32_t brightest = 0;
@@ -122,8 +124,8 @@ void list_block(Controls& controls, const commands::PathInquiry& traced) {
                      .faint = light <= 0}))
       controls.act("inspect.follow", on ? 0 : int(i) + 1);
   }
-  if (traced.order.size() > k_most_rows)
-    paragraph(fmt::format("and {} more", traced.order.size() - k_most_rows), colour::text_faint);
+  if (traced.order.size() > rows)
+    paragraph(fmt::format("and {} more", traced.order.size() - rows), colour::text_faint);
 }
 
 std::string triple(const vec3& v) { return fmt::format("{:.3g} {:.3g} {:.3g}", v.x, v.y, v.z); }
@@ -213,7 +215,13 @@ void noise_block(Controls& controls, const commands::Workspace& work, const Path
   if (report.sentence.empty()) return paragraph("No noise: the paths of each pixel have the same light.");
   paragraph(report.sentence, colour::text);
   gap(4);
-  if (!report.cure.settings.empty()) {
+  const bool in_use = std::all_of(report.cure.settings.begin(), report.cure.settings.end(),
+                                  [&](const auto& s) { return controls.open.setting(s.first) == s.second; });
+  if (!report.cure.settings.empty() && in_use) {
+    paragraph(
+        report.cure.label +
+        ": in use now. What is said here is of the picture before; trace again for the noise that is left.");
+  } else if (!report.cure.settings.empty()) {
     if (button("##cure", report.cure.label, false, ImGui::CalcItemWidth()))
       for (const auto& [key, value] : report.cure.settings) controls.act("set", key, value);
     std::string keys;

@@ -87,7 +87,14 @@ const Part<session::LayerStatus> k_layer_parts[] = {
     {"expression", [](const session::LayerStatus& l) { return l.expression; }},
     {"luminance", [](const session::LayerStatus& l) { return word(luminance(l.mean)); }},
     {"share", [](const session::LayerStatus& l) { return word(l.share); }},
-    {"error", [](const session::LayerStatus& l) { return known_error(l.error); }},
+    {"error",
+     [](const session::LayerStatus& l) {
+       if (!l.lacks.empty())
+         throw Error("", fmt::format("its error is not known: it lacks {} light, which is stored for several "
+                                     "words together",
+                                     l.lacks));
+       return known_error(l.error);
+     }},
     {"lacks", [](const session::LayerStatus& l) { return l.lacks; }},
 };
 

@@ -56,15 +56,22 @@ bool Preview::fits(const gpu::Limits& limits, uint32_t width, uint32_t height) {
 
 void Preview::forget() {
   shown_ = history_.known = history_.recoloured = repainted_ = false;
+  for (History& h : aside_) h.known = false;
   moved_camera_.reset();
   judged_.reset();
   filtered_shown_.reset();
   errors_.restart();
 }
 
-void Preview::keep(const vec3& scale, bool repainted, bool same_light, float doubt) {
+void Preview::keep(const vec3& scale, bool repainted, bool same_light, float doubt, uint64_t light) {
   if (shown_) {
+    // A newer picture of the same light takes the place of the former one.
+    if (history_.known && history_.light != 0 && history_.light != light) {
+      if (aside_[0].light != history_.light) std::swap(aside_[0], aside_[1]);
+      std::swap(aside_[0], history_);
+    }
     std::swap(now_, history_.pixels);
+    history_.light = light;
     history_.known = true, history_.surfaces = surfaces_known_;
     history_.camera = camera_, history_.exposure = exposure_;
     history_.scale = vec3(1);
@@ -82,6 +89,19 @@ void Preview::keep(const vec3& scale, bool repainted, bool same_light, float dou
   repainted_ |= repainted;
 }
 
+bool Preview::put_back(uint64_t light) {
+  const auto is_of = [&](const History& h) { return h.known && h.light == light && h.pixels.light; };
+  if (!is_of(history_)) {
+    const auto found = std::find_if(aside_.begin(), aside_.end(), is_of);
+    if (found == aside_.end()) return false;
+    std::swap(*found, history_);
+    moved_camera_.reset();
+  }
+  history_.scale = vec3(1);
+  history_.same_light = true, history_.recoloured = false, history_.doubt = 0;
+  return true;
+}
+
 void Preview::better() {
   // The shown picture is mostly the one before, if it is steady, and otherwise has noisier light.
   const bool same_light = history_.known && history_.same_light;
@@ -94,7 +114,8 @@ uint64_t Preview::bytes() const {
   const auto add = [&](const gpu::Buffer& b) {
     if (b) sum += b.bytes();
   };
-  for (const Pixels* p : {&now_, &history_.pixels, &moved_, &draft_}) add(p->light), add(p->surfaces);
+  for (const Pixels* p : {&now_, &history_.pixels, &aside_[0].pixels, &aside_[1].pixels, &moved_, &draft_})
+    add(p->light), add(p->surfaces);
   for (const gpu::Buffer* b :
        {&grid_,       &grid_surfaces_,   &filtered_,        &before_[0], &before_[1], &lost_[0],    &lost_[1],
         &texture_[0], &texture_[1],      &noise_,           &changes_,   &ratios_,    &shares_,     &depths_,

@@ -46,8 +46,14 @@ class Preview {
   void forget();
   /// Starts a new picture: the last one becomes the history. `scale`: known factor of the edit on all light;
   /// `repainted`: surfaces may have other colours; `same_light`: only the camera or the computation of light
-  /// has changed; `doubt`: expected relative change of light whose change is not known.
-  void keep(const vec3& scale = vec3(1), bool repainted = false, bool same_light = false, float doubt = 0);
+  /// has changed; `doubt`: expected relative change of light whose change is not known; `light`: number of
+  /// the light of the shown picture, if that is good enough for put_back(), else 0.
+  void keep(const vec3& scale = vec3(1), bool repainted = false, bool same_light = false, float doubt = 0,
+            uint64_t light = 0);
+  /// Call after keep() if the new picture has the light of that number: makes the last picture that was kept
+  /// with it the history, if it is one of the last two such pictures besides the present one. False, and
+  /// nothing is done, if not.
+  bool put_back(uint64_t light);
   /// Starts a new picture with better light. The history stays unchanged.
   void better();
   /// Makes the film's picture, for layers with shared::is_component_layer().
@@ -108,6 +114,7 @@ class Preview {
     bool same_light = true;
     bool recoloured = false;  ///< surfaces had other colours
     float doubt = 0;          ///< expected relative change of its light by edits since
+    uint64_t light = 0;       ///< number of its light when it was shown, as in keep()
     vec3 scale_for(const View& view) const { return scale * (view.exposure / exposure); }
   };
   void make_pixels(Pixels& to);
@@ -138,7 +145,8 @@ class Preview {
   uint32_t width_ = 0, height_ = 0;
   Pixels now_, draft_;
   History history_;
-  Pixels moved_;  ///< the history's pixels from the present camera, if it has moved
+  std::array<History, 2> aside_;  ///< earlier pictures, for put_back(); the newest first
+  Pixels moved_;                  ///< the history's pixels from the present camera, if it has moved
   gpu::Buffer grid_, grid_surfaces_, filtered_, before_[2], lost_[2], texture_[2], noise_, changes_, ratios_,
       shares_, depths_, nearest_;
   /// The last two shown pictures, and the sums of samples at their time.

@@ -15,7 +15,8 @@ constexpr uint32_t k_draft_until = 4;
 
 }  // namespace
 
-void Display::restart(const scene::Changes& changes, const vec3& scale, bool same_light, float doubt) {
+bool Display::restart(const scene::Changes& changes, const vec3& scale, bool same_light, float doubt,
+                      uint64_t light, uint64_t now) {
   const auto is = [&](scene::Change c) { return changes.edits.contains(c); };
   const bool repainted =
       is(scene::Change::colour) || is(scene::Change::material) || is(scene::Change::shaders);
@@ -23,10 +24,12 @@ void Display::restart(const scene::Changes& changes, const vec3& scale, bool sam
   if (changes.other_surfaces() || is(scene::Change::size))
     preview_.forget();
   else
-    preview_.keep(scale, repainted, same_light, doubt);
+    preview_.keep(scale, repainted, same_light, doubt, light);
+  const bool returned = !same_light && preview_.put_back(now);
   plan_.restart();
   former_is_preview_ = false;
   ++version_;
+  return same_light || returned;
 }
 
 bool Display::take(gpu::Stream& stream, const film::Film& film, double noise) {

@@ -19,8 +19,10 @@ class Display {
       : device_(device), preview_(device, compiler), sight_(device, compiler) {}
 
   /// Call when the picture begins with other light or another view. `scale`: known factor of the edit on all
-  /// light. `same_light`: only the computation or the view has changed. `doubt`: as in film::Preview::keep.
-  void restart(const scene::Changes& changes, const vec3& scale, bool same_light, float doubt);
+  /// light. `same_light`: only the computation or the view has changed. `doubt`, `light`: as in
+  /// film::Preview::keep. `now`: number of the new light. True if the former picture has that light.
+  bool restart(const scene::Changes& changes, const vec3& scale, bool same_light, float doubt, uint64_t light,
+               uint64_t now);
   /// Call before that, while the film still holds samples of every pixel: keeps it as the shown picture, if
   /// plain() says so. `noise`: factor on the standard errors of its halves. True if taken.
   bool take(gpu::Stream& stream, const film::Film& film, double noise = 1);

@@ -134,8 +134,12 @@ void ImageProgress::note(bool at_once) {
     const film::ImageError error = estimate_error();
     for (int k = 0; k < stats::k_layers; ++k)
       entry.error[k] = error.seen(k), entry.of_mean.error[k] = error.relative(k);
-    for (const film::LayerError& layer : error.layers)
-      entry.layers.push_back(layer.seen_rms), entry.of_mean.layers.push_back(error.relative(layer));
+    const std::vector<uint32_t>& unknown = setup_.engine->layers_unknown();
+    for (size_t l = 0; l < error.layers.size(); ++l) {
+      const bool known = l < unknown.size() && unknown[l] == 0;
+      entry.layers.push_back(known ? error.layers[l].seen_rms : 0);
+      entry.of_mean.layers.push_back(known ? error.relative(error.layers[l]) : 0);
+    }
     entry.records = error.seen_lookup_noise, entry.interpolation = error.seen_interpolation;
     entry.degrees = error.seen_degrees;
     entry.of_mean.records = error.relative_lookup_noise();

@@ -61,7 +61,7 @@ std::vector<LayerStatus> layer_status(const Engine& engine, const film::Image& i
                     .share = luminance(all) > 0 ? double(luminance(means[l]) / luminance(all)) : 0,
                     .error = {},
                     .error_of_mean = {}});
-    if (ledger.entries().empty()) continue;
+    if (ledger.entries().empty() || engine.layers_unknown()[l] != 0) continue;
     const stats::Entry& last = ledger.entries().back();
     if (l < last.layers.size()) list.back().error = last.layers[l];
     if (l < last.of_mean.layers.size()) list.back().error_of_mean = last.of_mean.layers[l];

@@ -32,8 +32,8 @@ struct LayerStatus {
   std::string lacks;  ///< components of whose light it has an unknown part, for display; "": it is complete
   vec3 mean{0};       ///< mean radiance
   double share = 0;   ///< of the mean luminance of the picture; layers may overlap
-  /// Its noise, relative to the light of the whole picture, as seen and of the mean (stats::Entry::layers);
-  /// known after two samples a pixel.
+  /// Its noise, relative to the light of the whole picture, as seen and of the mean (stats::Entry::layers).
+  /// Known after two samples a pixel, unless it lacks light.
   std::optional<double> error, error_of_mean;
   bool operator==(const LayerStatus&) const = default;
 };

@@ -315,8 +315,9 @@ bool PictureOutput::keep_former(const std::vector<vec3>* factors) {
                         filtered ? std::sqrt(filtered->error.over_noise) : 1);
 }
 
-void PictureOutput::restart(const scene::Changes& changes, const vec3& scale, bool same_light, float doubt) {
-  if (display_) display_->restart(changes, scale, same_light, doubt);
+bool PictureOutput::restart(const scene::Changes& changes, const vec3& scale, bool same_light, float doubt,
+                            uint64_t light, uint64_t now) {
+  return display_ ? display_->restart(changes, scale, same_light, doubt, light, now) : same_light;
 }
 
 void PictureOutput::worked(double seconds) {

@@ -109,7 +109,8 @@ class PictureOutput {
   /// null: none. True if it is shown.
   bool keep_former(const std::vector<vec3>* factors);
   /// Call when the picture begins (Display::restart).
-  void restart(const scene::Changes& changes, const vec3& scale, bool same_light, float doubt);
+  bool restart(const scene::Changes& changes, const vec3& scale, bool same_light, float doubt, uint64_t light,
+               uint64_t now);
   /// Estimates the error of the window's filtered picture again, from the samples added since.
   void judge_filtered();
   /// Call after a work item that took that time [s].

@@ -159,6 +159,8 @@ bool shows_light(const std::vector<vec3>& factors) {
 /// Expected relative change of light by another sky, or by a growth that the former picture cannot show: so
 /// large that older light is only used where there is no new light.
 constexpr float k_other_light = 4;
+/// Samples of a picture from which a return to its light shows it again.
+constexpr uint32_t k_settled = 4;
 
 }  // namespace
 
@@ -173,6 +175,7 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
   const std::optional<vec3> factor = shown ? scene::common_factor(*factors) : std::nullopt;
   const bool by_group = shown && !factor && setup_.film->groups() == factors->size();
   bool known = factor || keeps_light(changes);
+  const uint64_t shown_light = samples() >= k_settled ? former_light_.present() : 0;
   if (samples() > 0) {
     const bool taken = output_.keep_former(by_group ? &*factors : nullptr);
     known = known || (by_group && taken);
@@ -185,7 +188,10 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
   mix_.restart();
   sampling_.restart();
   const bool unlike = !known && (other_sky || (factors && !shown));
-  output_.restart(changes, factor.value_or(vec3(1)), known, unlike ? k_other_light : 0);
+  const uint64_t light = former_light_.begin(
+      {setup_.world.lit, setup_.settings.all(), setup_.camera.lens, setup_.relight.weights});
+  known = output_.restart(changes, factor.value_or(vec3(1)), known, unlike ? k_other_light : 0, shown_light,
+                          light);
   if (changes.other_surfaces() || changes.edits.contains(scene::Change::shaders)) overlays_.forget_surfaces();
   begun_lens_ = setup_.camera.lens;
   previews_.restart(known);
@@ -198,10 +204,7 @@ void Renderer::restart(const scene::Changes& changes, const std::optional<std::v
 bool Renderer::keeps_light(const scene::Changes& changes) const {
   const auto kept = [&](const std::string& key) {
     const auto before = applied_.find(key);
-    if (key.rfind("components.", 0) == 0)
-      return before != applied_.end() && before->second != "off" && setup_.settings.text(key) != "off";
-    const OptionInfo* option = plan::find_option(key);
-    return option && option->same_light;
+    return before != applied_.end() && session::keeps_light(key, before->second, setup_.settings.text(key));
   };
   // Through another lens, pixels mix the light of other surfaces.
   if (setup_.camera.lens != begun_lens_) return false;

@@ -13,6 +13,7 @@
 #include "scene/texture_source.h"
 #include "session/active_solvers.h"
 #include "session/choice_review.h"
+#include "session/former_light.h"
 #include "session/layer_status.h"
 #include "session/lights_edit.h"
 #include "session/lookup_refinement.h"
@@ -246,6 +247,7 @@ class Renderer {
   std::optional<double> seconds_limit_;
   ChoiceReview review_;
   bool reviewed_ = false;
+  FormerLight former_light_;
   scene::Lens begun_lens_;  ///< of the picture begun last
   uint64_t restarts_ = 0;
   double load_seconds_ = 0;

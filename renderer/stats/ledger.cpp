@@ -48,7 +48,8 @@ std::string Ledger::csv() const {
                 : ",,,";
     for (const auto* errors : {&e.layers, &e.of_mean.layers})
       for (size_t l = 0; l < layers_.size(); ++l)
-        text += e.has_error && l < errors->size() ? fmt::format(",{}", (*errors)[l]) : ",";
+        text +=
+            e.has_error && l < errors->size() && (*errors)[l] > 0 ? fmt::format(",{}", (*errors)[l]) : ",";
     for (size_t l = 0; l < layers_.size(); ++l)
       text += l < e.truth_of_layers.size() && e.truth_of_layers[l] ? fmt::format(",{}", *e.truth_of_layers[l])
                                                                    : ",";

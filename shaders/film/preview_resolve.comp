@@ -33,6 +33,8 @@ const float k_clean = 0.02, k_noisy = 0.08;
 const float k_prior = 0.35, k_fewest = 1.0 / 256.0;
 // A pixel's own noise is used if it exceeds this times the noise of its surroundings.
 const float k_outlier = 3.0;
+// A lamp is as before if its light has not changed by this factor: samples of a thin one are uncertain.
+const float k_same_lamp = 2.0;
 // Assumed relative error of filtered light.
 const float k_filter_error = 0.04;
 // Mean absolute deviation in standard errors: sqrt(2 / pi) for a normal variable, times 1.25, measured on filtered interiors,
@@ -188,6 +190,21 @@ bool isolated(ivec2 at, PreviewSurface here) {
   return !akin;
 }
 
+// Luminance of a lamp of which the pixel may show a part, if it shines as it did before the edit; 0: none.
+float lamp_beside(ivec2 at) {
+  float lamp = 0.0;
+  for (int k = 0; k < 9; ++k) {
+    ivec2 there = at + ivec2(k % 3, k / 3) - 1;
+    if (any(lessThan(there, ivec2(0))) || there.x >= int(push.width) || there.y >= int(push.height)) continue;
+    int pixel = there.y * int(push.width) + there.x;
+    if (!preview_surface(texelFetch(guide_surfaces, pixel)).emits) continue;
+    float now = luminance(preview_light(packed_texels, pixel).of[0].rgb);
+    float was = luminance(push.history_scale * preview_light(history_texels, pixel).of[0].rgb);
+    if (max(now, was) < k_same_lamp * min(now, was)) lamp = max(lamp, max(now, was));
+  }
+  return lamp;
+}
+
 void main() {
   uint pixel = global_index(), lane = gl_LocalInvocationIndex;
   vec4 totals = vec4(0.0);
@@ -290,6 +307,10 @@ void main() {
     float by_chance = push.same_light != 0u ? k_by_chance_same : k_by_chance;
     PreviewLight result;
     vec3 color = vec3(0.0);
+    float lamp = 0.0;
+    if (has_old && push.sampled != 0u && push.moved == 0u && push.surfaces == k_preview_surface_seen &&
+        max(primary, luminance(push.history_scale * old.of[0].rgb)) > k_preview_bright)
+      lamp = lamp_beside(ivec2(pixel % push.width, pixel / push.width));
     float former = 0.0;    // luminance of older light in the shown colour
     float variance = 0.0;  // of a mean of the shown picture over 3x3 pixels
     bool unknown = false;
@@ -322,6 +343,13 @@ void main() {
         float n = max(here.samples, 1.0), least = k_least_noise * luminance(before);
         v = max(v, square(least) / n);
         unsure = max(rough, smoothstep(k_clean, k_noisy, least / (n * max(max(smooth_luminance, own_luminance), k_luminance_floor))));
+      }
+      // The samples of a pixel at a lamp's edge show its share of the lamp by chance.
+      if (c == 0u && lamp > 0.0) {
+        float n = max(here.samples, 1.0), share = clamp(luminance(before) / lamp, 0.0, 1.0);
+        float by_share = lamp * sqrt(share * (1.0 - share) / n);
+        v = max(v, square(by_share));
+        unsure = max(unsure, smoothstep(k_clean, k_noisy, by_share / max(max(smooth_luminance, own_luminance), k_luminance_floor)));
       }
       float difference = luminance(modulation) * before_smooth[c] * inverse - smooth_luminance;
       // Chance alone must not count as change: it would show as specks.

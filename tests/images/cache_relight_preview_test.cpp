@@ -250,6 +250,42 @@ TEST_CASE("after a switch of solvers the preview starts from the previous pictur
   CHECK(bed.shown() < 0.9 * before);
 }
 
+TEST_CASE("an edit taken back shows the picture from before it at once, and again after that") {
+  Bed bed(true, "hessian");
+  test::set(bed.r, {{"components.primary", "path"}, {"samples", "16"}});
+  test::finish(bed.r);
+  const auto picture = [&] { return bed.r.output().shown_picture(bed.r.samples() == 0); };
+  const auto difference = [](const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
+    double sum = 0;
+    for (size_t i = 0; i < a.size(); ++i) sum += std::abs(int(a[i]) - int(b[i]));
+    return sum / double(a.size());
+  };
+  const vec3 intensity = bed.r.scene()->lights[0].intensity, position = bed.r.scene()->lights[0].position;
+  const std::vector<uint8_t> before = picture();
+  // Seen briefly, or until it is a picture of its own; by way of other places.
+  for (const bool settled : {false, true}) {
+    INFO((settled ? "a finished picture" : "few samples"));
+    for (const float x : {0.2f, 0.4f, 0.5f}) {
+      bed.set_lamp(0.4f * intensity, position + vec3(x, 0, 0));
+      bed.draw_drafts();
+      picture();
+    }
+    if (settled) test::finish(bed.r);
+    const std::vector<uint8_t> edited = picture();
+    const double change = difference(edited, before);
+    CHECK(change > 4);
+    bed.set_lamp(intensity, position);
+    bed.draw_drafts();
+    CHECK(difference(picture(), before) < 0.15 * change);
+    CHECK(bed.r.output().preview_shares().stale > 0.8);
+    if (!settled) continue;
+    // Done again: the finished picture of the edit.
+    bed.set_lamp(0.4f * intensity, position + vec3(0.5f, 0, 0));
+    bed.draw_drafts();
+    CHECK(difference(picture(), edited) < 0.15 * change);
+  }
+}
+
 TEST_CASE("batch rendering has no preview samples and no preview light") {
   Bed batch(false, "hessian");
   batch.set_lamp(vec3(1), vec3(0, 1, 0));

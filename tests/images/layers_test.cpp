@@ -189,6 +189,8 @@ TEST_CASE("what stored light does not tell apart is missing, and said") {
   const float part = luminance(status[0].mean);
   CHECK(status[1].lacks.empty());
   CHECK(status[1].share > 0.5);
+  CHECK_FALSE(status[0].error);
+  CHECK(status[1].error.value() > 0);
   test::set(renderer, {{"components.tertiary", "path"}, {"components.secondary", "path"}});
   image = test::finish(renderer);
   status = renderer.layer_status(image);

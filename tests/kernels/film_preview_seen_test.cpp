@@ -70,6 +70,41 @@ TEST_CASE("a lamp flush with a ceiling neither glows onto the ceiling nor gets d
   }
 }
 
+TEST_CASE("a lamp's edge stays smooth after an edit of other light, and goes dark with the lamp") {
+  // The pixels beside a bright lamp show 15 % of it: of four samples, half find nothing of it.
+  constexpr float k_lamp = 3, k_wall = 0.2f, k_share = 0.15f;
+  const auto lamp = [](uint32_t x) { return x >= 40 && x < 56; };
+  const auto beside = [](uint32_t x) { return x == 39 || x == 56; };
+  for (const bool off : {false, true}) {
+    Stage stage(96, 64);
+    stage.component = 0;
+    const gpu::Buffer surfaces =
+        surfaces_of(stage, [&](uint32_t x, uint32_t) { return Seen{.emits = lamp(x)}; });
+    std::mt19937 random(11);
+    std::uniform_real_distribution<float> uniform;
+    const auto light = [&](uint32_t x, float of_lamp) {
+      return Sample{.light = vec3(lamp(x) || (beside(x) && uniform(random) < k_share) ? of_lamp : k_wall)};
+    };
+    stage.sample(stage.film, 1024, [&](uint32_t x, uint32_t) { return light(x, k_lamp); });
+    show_seen(stage, surfaces);
+    stage.preview.keep(vec3(1), false, false);
+    stage.film.clear(stage.stream);
+    stage.sample(stage.film, 4, [&](uint32_t x, uint32_t) { return light(x, off ? k_wall : k_lamp); });
+    show_seen(stage, surfaces);
+    const std::vector<float> shown = stage.shown();
+    const float truth = off ? k_wall : k_share * k_lamp + (1 - k_share) * k_wall;
+    double squares = 0;
+    float most = 0;
+    for (uint32_t y = 0; y < stage.height; ++y)
+      for (const uint32_t x : {39u, 56u}) {
+        const float is = shown[y * stage.width + x];
+        squares += (is / truth - 1) * (is / truth - 1), most = std::max(most, is);
+      }
+    INFO((off ? "lamp off" : "lamp as before") << ", brightest " << most);
+    CHECK(std::sqrt(squares / 128) < 0.12);
+  }
+}
+
 TEST_CASE("the error that a preview reports is close to its true error") {
   for (const uint32_t samples : {2u, 4u, 16u}) {
     for (const bool filtered : {true, false}) {
