@@ -37,7 +37,7 @@ struct Entry {
   std::array<double, k_layers> error{};
   /// Likewise, of the layers by path expressions; 0 also if a layer lacks light (LayerSet::Routed).
   std::vector<double> layers;
-  double degrees = 0;          ///< degrees of freedom of error[0]^2 (film::ImageError::seen_degrees)
+  double degrees = 0;  ///< degrees of freedom of error[0]^2 (film::ImageError::seen_degrees)
   /// The other parts of the sum's error, as seen: the noise of records, and the mean error of lookups
   /// (film/error.h). More samples do not reduce them, except the blur of photons, slowly, as their discs
   /// shrink.
