@@ -37,13 +37,13 @@ film::ImageError ImageProgress::estimate_error() const {
   setup_.engine->estimator().estimate(wavefront.stream(), *setup_.film, setup_.seen_range());
   wavefront.account_stages();
   const film::Film& film = *setup_.film;
-  const auto sampled = [&](std::span<const shared::BlockError> all) {
-    return sampling_.whole() ? std::vector(all.begin(), all.end())
-                             : inside(all, sampling_.region(), film.blocks_across(), 1);
+  const auto of_region = [&](auto summary, std::span<const shared::BlockError> all) {
+    return sampling_.whole() ? summary(all)
+                             : summary(inside(all, sampling_.region(), film.blocks_across(), 1));
   };
-  film::ImageError error = film::image_error(sampled(film.errors()));
+  film::ImageError error = of_region(film::image_error, film.errors());
   for (uint32_t first = 0; first < film.layers(); first += shared::k_error_layers) {
-    const auto some = film::layer_errors(sampled(film.layer_errors(first)));
+    const auto some = of_region(film::layer_errors, film.layer_errors(first));
     error.layers.insert(error.layers.end(), some.begin(), some.end());
   }
   error.layers.resize(film.layers());
