@@ -83,6 +83,7 @@ std::string tick_text(double value, Unit unit) {
       if (value < 1) return fmt::format("{:.3g} \xC2\xB5s", 1e3 * value);
       return value < 1000 ? fmt::format("{:.3g} ms", value) : fmt::format("{:.3g} s", 1e-3 * value);
     case Unit::count:
+      if (value >= 1e9) return fmt::format("{:.3g}G", 1e-9 * value);
       if (value >= 1e6) return fmt::format("{:.3g}M", 1e-6 * value);
       return value >= 1e4 ? fmt::format("{:.3g}k", 1e-3 * value) : fmt::format("{:.4g}", value);
     case Unit::seconds:

@@ -1,6 +1,7 @@
 // The log and the console below it.
 #include <fmt/format.h>
 #include <imgui.h>
+#include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include <algorithm>
@@ -82,6 +83,18 @@ std::string console_hint(const commands::Registry& registry, const std::string& 
   return "";
 }
 
+/// Empties the last text field and keeps the keyboard there. ImGui leaves a field at Enter; taking it back a
+/// frame later would lose what is typed meanwhile, and letters would act as shortcuts.
+void stay_in_field() {
+  ImGuiContext& context = *ImGui::GetCurrentContext();
+  ImGuiInputTextState& field = context.InputTextState;
+  field.ClearText();
+  field.Stb.undostate.undo_point = 0, field.Stb.undostate.undo_char_point = 0;
+  field.InitialTextA.resize(1);
+  field.InitialTextA[0] = 0;
+  ImGui::SetActiveID(context.LastItemData.ID, context.CurrentWindow);
+}
+
 void draw_console(Actions& actions, const commands::Registry& registry, LogView& log, const Area& area) {
   ImDrawList* list = ImGui::GetWindowDrawList();
   list->AddLine({area.lo.x, area.lo.y}, {area.hi.x, area.lo.y}, colour::hairline);
@@ -102,10 +115,12 @@ void draw_console(Actions& actions, const commands::Registry& registry, LogView&
                        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
                            ImGuiInputTextFlags_CallbackHistory,
                        edit_console, &edited);
+  if (entered) stay_in_field();
   ImGui::PopStyleColor();
   ImGui::PopStyleVar(2);
   console.active = ImGui::IsItemActive();
-  tooltip("Runs a command. Tab completes, arrows browse the history, 'help' lists the commands. Ctrl+L.");
+  if (!console.active)  // it would cover the answer
+    tooltip("Runs a command. Tab completes, arrows browse the history, 'help' lists the commands. Ctrl+L.");
   const float used = px(24) + text_width(console.text) + px(14);
   const std::string hint = console.active         ? console_hint(registry, console.text)
                            : console.text.empty() ? "Command"
@@ -119,7 +134,6 @@ void draw_console(Actions& actions, const commands::Registry& registry, LogView&
     log.typed.push_back(std::exchange(console.text, {}));
     console.at = -1;
     log.follows = true;
-    console.focus = true;
     actions.wake(3);
   }
 }

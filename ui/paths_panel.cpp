@@ -157,7 +157,7 @@ void follow_block(Controls& controls, const commands::PathInquiry& traced) {
   const auto count = int(events.size());
   const auto follow = [&](int event) { controls.act("inspect.follow", traced.followed + 1, event); };
   ImGui::BeginDisabled(traced.vertex <= 0);
-  if (button("##before", "Before", false, half_width())) follow(traced.vertex - 1);
+  if (button("##before", "Previous", false, half_width())) follow(traced.vertex - 1);
   tooltip("The event before.");
   ImGui::EndDisabled();
   ImGui::SameLine(0, px(4));

@@ -163,7 +163,7 @@ void Film::clear(gpu::Stream& stream) {
   stream.fill(errors_, 0);
   for (gpu::Buffer& b : layer_errors_) stream.fill(b, 0);
   stream.run();
-  lookup_errors_complete_ = lookup_bias_known_ = false;
+  lookup_errors_complete_ = lookup_errors_current_ = lookup_bias_known_ = false;
 }
 
 void Film::bind(gpu::Resources& r) const {

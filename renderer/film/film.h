@@ -123,10 +123,11 @@ class Film {
   /// Allocates the errors of lookups (BlockLookups, one per block in raster order), written by kernels as
   /// FilmLookups and BlockLookupSums; and marks them as complete. Unknown until then, and after a clear().
   void make_room_for_lookup_errors();
-  void complete_lookup_errors() { lookup_errors_complete_ = true; }
-  /// Invalidates these errors, after a change of the stored light.
-  void forget_lookup_errors() { lookup_errors_complete_ = false; }
+  void complete_lookup_errors() { lookup_errors_complete_ = lookup_errors_current_ = true; }
+  /// The stored light has less noise than before: the errors are too large until they are complete again.
+  void outdate_lookup_errors() { lookup_errors_current_ = false; }
   bool lookup_errors_complete() const { return lookup_errors_complete_; }
+  bool lookup_errors_current() const { return lookup_errors_current_; }
   /// Empty while unknown.
   std::span<const shared::BlockLookups> lookup_errors() const;
   /// Allocates the sums of lookup bias, which arrives with the light of paths (LUCERNA_LOOKUP_BIAS):
@@ -170,7 +171,7 @@ class Film {
   std::vector<gpu::Buffer> layer_errors_;  // one for each k_error_layers layers
   gpu::Device& device_;
   gpu::Buffer lookups_, block_lookups_;  // small where there are none
-  bool lookup_errors_complete_ = false;
+  bool lookup_errors_complete_ = false, lookup_errors_current_ = false;
   std::array<gpu::Buffer, 2> lookup_bias_;  // likewise
   bool lookup_bias_known_ = false;
 };

@@ -23,33 +23,48 @@ std::optional<bool> LookupRefinement::refine(const PictureView& view, const std:
   if (!solver) {
     // At powers of two, where passes over the picture end for any size of work items (schedule/uniform.h):
     // the picture does not depend on that size.
-    constexpr uint32_t k_least = 16;
+    constexpr uint32_t k_least = 4;
     solver = setup_.engine->refinable();
     if (!solver) return std::nullopt;
     const uint32_t samples = sampling_.most_samples();
-    if (samples < k_least || !std::has_single_bit(samples) || samples == weighed_at_) return std::nullopt;
+    if (samples < k_least || !std::has_single_bit(samples) || samples == balanced_at_) return std::nullopt;
+    auto& refinement = *solvers::offered<solvers::Refinement>(*solver);
+    const uint64_t paths = refinement.paths_refined();
+    if (samples != weighed_at_) most_paths_ = paths + setup_.engine->wavefront().stats().paths;
     weighed_at_ = samples;
-    if (!pays(solvers::offered<solvers::Refinement>(*solver)->paths_refined())) return std::nullopt;
+    const double factor = balanced(paths);
+    if (factor <= 1) {
+      balanced_at_ = samples;
+      return std::nullopt;
+    }
+    refinement.begin_refining(factor);
+    if (!refinement.refines()) return std::nullopt;
   }
   auto& refinement = *solvers::offered<solvers::Refinement>(*solver);
   const bool went = setup_.engine->with(*solver, view, [&](const solvers::Picture& picture) {
     return refinement.refine(setup_.engine->wavefront(), picture, cancel);
   });
   if (!refinement.refines()) {
-    setup_.film->forget_lookup_errors();
+    setup_.film->outdate_lookup_errors();
     errors_of_ = nullptr;
   }
   return went;
 }
 
-bool LookupRefinement::pays(uint64_t paths) const {
-  // With n paths both squared errors are proportional to 1/n, with derivative error / n. Refinement doubles
-  // its paths in each step, so the two are balanced in the middle of a step.
+double LookupRefinement::balanced(uint64_t paths) const {
+  // With n paths both squared errors are proportional to 1/n, with derivative error / n: a path gains equally
+  // on both sides if these are equal. A factor f on the records' paths divides their ratio by f^2.
   const film::ImageError error = progress_.estimate_error();
   const double sampled = error.seen_rms[0] * error.seen_rms[0],
                read = error.seen_lookup_noise * error.seen_lookup_noise;
-  const uint64_t traced = setup_.engine->wavefront().stats().paths;
-  return 2 * read / double(paths) > sampled / double(std::max<uint64_t>(traced, 1));
+  const double traced = double(std::max<uint64_t>(setup_.engine->wavefront().stats().paths, 1));
+  // By whole doublings, so that the two are balanced in the middle of one. The picture waits meanwhile: at
+  // most about as long as it has taken so far.
+  double factor = 1;
+  while (factor * double(paths) < double(most_paths_) &&
+         2 * read * traced > sampled * double(paths) * factor * factor)
+    factor *= 2;
+  return factor;
 }
 
 }  // namespace lucerna::session

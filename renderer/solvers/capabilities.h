@@ -99,10 +99,12 @@ class Refinement {
   virtual ~Refinement() = default;
   /// Number of paths already used for refinable data; 0: nothing can be refined.
   virtual uint64_t paths_refined() const = 0;
-  /// Runs one bounded work item, the first one if none is running. Requires ready(). Errors must then be
-  /// estimated again. While refines() no path of the picture is traced. False if cancelled.
-  virtual bool refine(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) = 0;
+  /// Begins to refine with about `factor` > 1 times the paths in total. Requires ready(). Errors must be
+  /// estimated again when it ends; while refines() no path of the picture is traced.
+  virtual void begin_refining(double factor) = 0;
   virtual bool refines() const = 0;
+  /// Runs one bounded work item. Requires refines(). False if cancelled.
+  virtual bool refine(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) = 0;
 };
 
 /// Prepares data again for each sample of the picture, in addition to Preparation. Sample i of every pixel
@@ -130,7 +132,7 @@ class PreviewLookups {
 class LookupErrors {
  public:
   virtual ~LookupErrors() = default;
-  /// True if the film does not have them all yet.
+  /// True if the film does not have all of them, or only outdated ones.
   virtual bool owes_errors(const film::Film& film) const = 0;
   /// Runs one work item. Requires ready(). `restarted`: a new picture has begun. False if cancelled.
   virtual bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const Picture& picture,

@@ -4,6 +4,8 @@
 // items.
 #include <catch2/catch.hpp>
 
+#include <cmath>
+
 #include "cache_support.h"
 #include "support/rooms.h"
 
@@ -57,6 +59,24 @@ TEST_CASE("records are refined once more rays reduce the error more than further
   while (!other.r.done()) other.r.step([&] { return ++calls % 97 == 0; });
   CHECK(test::identical(other.r.image(), picture));
   CHECK(other.records().lights == after.lights);
+}
+
+TEST_CASE("refinement continues until records and samples gain equally, or cost as much as the picture") {
+  test::CacheRenderer shown(test::block_room(), 48, false);
+  test::Settings settings = noisy_records("128");
+  settings["cache.noise"] = "10";  // nothing above the first rays before
+  shown.set(settings);
+  while (shown.r.samples() == 0) REQUIRE(shown.r.step());
+  const uint64_t rays = shown.status().rays;
+  shown.finish();
+  const film::ImageError error = shown.r.image_error();
+  const double read = std::pow(error.seen_lookup_noise, 2), sampled = std::pow(error.seen_rms[0], 2);
+  const double now = double(shown.status().rays), paths = double(shown.r.stats().paths);
+  INFO(rays << " rays, then " << now << "; " << paths << " paths; noise of records " << error.seen_lookup_noise
+            << ", of samples " << error.seen_rms[0]);
+  CHECK(shown.r.film().lookup_errors_current());
+  CHECK(now > 2.0 * double(rays));
+  CHECK((2 * read * paths <= sampled * now || now - double(rays) >= paths / 2));
 }
 
 TEST_CASE("records whose noise does not matter keep their rays") {

@@ -98,6 +98,7 @@ TEST_CASE("ticks: 1-2-5 with enough room, otherwise decades, and never overlappi
         }
   CHECK(tick_text(0.02, Unit::seconds) == "20 ms");
   CHECK(tick_text(20000, Unit::count) == "20k");
+  CHECK(tick_text(1e9, Unit::count) == "1G");
   CHECK(tick_text(0.05, Unit::milliseconds) == "50 \xC2\xB5s");
 }
 

@@ -255,7 +255,7 @@ TEST_CASE("mouse, keys and console act through commands, which a saved session c
              "mouse.move 980 50\nmouse.down\nmouse.move 990 50\nmouse.move 1000 50\nmouse.up\n"
              "key ctrl+z\nkey ctrl+shift+z\n"
              // The console completes, reports errors and continues.
-             "key ctrl+l\nwait 0.3\ntype \"film.tone_curve ag\"\nkey tab\nkey enter\nwait 0.3\n"
+             "key ctrl+l\nwait 0.3\ntype \"film.tone_curve ag\"\nkey tab\nkey enter\n"
              "type \"film.ev bright\"\nkey enter\nwait 0.3\n"
              "script.save " +
                  saved + "\nquit\n");

@@ -92,7 +92,7 @@ struct Cache::Impl {
   void replace_records(const RawRecords& raw);
 
   /// Queues further rays for records whose noise exceeds the last bound over sqrt(2).
-  void begin_refining();
+  void begin_refining(double factor);
   /// Cancels that; the next time starts from the noise bound of building.
   void end_refining();
   void forget_refining();

@@ -170,9 +170,9 @@ bool Cache::Impl::next_level() {
   return true;
 }
 
-void Cache::Impl::begin_refining() {
+void Cache::Impl::begin_refining(double factor) {
   if (progress.stage != Stage::done || ranges.evaluated() == 0) return;
-  progress.refining = {.under_way = true, .noise = progress.refining.noise / std::sqrt(2.0f)};
+  progress.refining = {.under_way = true, .noise = progress.refining.noise / float(std::sqrt(factor))};
   progress.queue.set({});
   progress.stage = Stage::evaluate;
   if (status.passes.empty()) status.passes.push_back({.number = status.pass, .complete = true});  // loaded

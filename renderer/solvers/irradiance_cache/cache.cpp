@@ -114,7 +114,7 @@ void Cache::look_from(const CacheView& view) { impl_->look_from(view); }
 
 bool Cache::ready() const { return impl_->progress.stage == Stage::done || refines(); }
 
-void Cache::refine() { impl_->begin_refining(); }
+void Cache::refine(double factor) { impl_->begin_refining(factor); }
 
 bool Cache::refines() const { return impl_->progress.refining.under_way; }
 

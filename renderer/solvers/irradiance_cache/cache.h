@@ -148,10 +148,10 @@ class Cache {
   /// Stops building. Complete records serve; pixels without records are path traced. Does nothing while
   /// relighting.
   void finish_early();
-  /// Requires ready(). Starts further rays for records whose noise exceeds the bound of the last time over
-  /// sqrt(2), without changing places and radii. step() does the work while refines(). Any other change of
-  /// the cache ends it.
-  void refine();
+  /// Requires ready(). Starts further rays, to about `factor` > 1 times all rays so far, for records whose
+  /// noise exceeds the bound of the last time over sqrt(factor), without changing places and radii. step()
+  /// does the work while refines(). Any other change of the cache ends it.
+  void refine(double factor);
   bool refines() const;
   /// Continues building with the present records for another camera or size; passes are counted from 0 again.
   /// Work in progress is finished first; a pause stays.

@@ -194,8 +194,7 @@ bool CacheSolver::prepare(transport::Wavefront& wavefront, const Picture& pictur
 }
 
 bool CacheSolver::refine(transport::Wavefront& wavefront, const Picture& picture, const Cancel& cancel) {
-  if (!cache_.refines()) cache_.refine();
-  return !cache_.refines() || cache_.step(wavefront, picture.task.automaton, view(picture), cancel);
+  return cache_.step(wavefront, picture.task.automaton, view(picture), cancel);
 }
 
 bool CacheSolver::estimate_errors(transport::Wavefront& wavefront, film::Film& film, const Picture& picture,

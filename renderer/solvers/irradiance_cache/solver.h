@@ -50,11 +50,12 @@ class CacheSolver final : public solvers::Solver,
   bool usable() const override { return ready() || cache_.status().pass >= 1; }
   void finish_early() override { cache_.finish_early(); }
   uint64_t paths_refined() const override { return cache_.status().rays; }
+  void begin_refining(double factor) override { cache_.refine(factor); }
   bool refines() const override { return cache_.refines(); }
   bool refine(transport::Wavefront& wavefront, const solvers::Picture& picture,
               const solvers::Cancel& cancel) override;
   bool warm() const override { return ready() || cache_.status().pass >= 2; }
-  bool owes_errors(const film::Film& film) const override { return !film.lookup_errors_complete(); }
+  bool owes_errors(const film::Film& film) const override { return !film.lookup_errors_current(); }
   bool estimate_errors(transport::Wavefront& wavefront, film::Film& film, const solvers::Picture& picture,
                        bool restarted, const solvers::Cancel& cancel) override;
 
