@@ -457,10 +457,11 @@ void help_menu(Actions& actions, LogView& log) {
 std::array<std::string, 3> state_texts(const session::Snapshot& s) {
   const bool adaptive = s.accuracy && s.accuracy->adaptive;
   const size_t digits = fmt::format("{}", s.max_samples).size();
-  const std::string state = s.finished ? "finished"
-                            : s.paused ? "paused"
-                            : s.coarse ? "first pass"
-                                       : "rendering";
+  const std::string state = s.finished           ? "finished"
+                            : s.paused           ? "paused"
+                            : s.coarse           ? "first pass"
+                            : s.refining.empty() ? "rendering"
+                                                 : s.refining;
   if (!s.preparing.empty() && !s.paused) {
     const std::string text =
         fmt::format("{}{}", s.preparing,

@@ -24,8 +24,8 @@ class LookupRefinement {
 
  private:
   std::optional<bool> refine(const PictureView& view, const std::function<bool()>& cancel);
-  /// Factor on the `paths` spent on lookup data at which a further path reduces the picture's squared error as
-  /// much there as in the picture; 1: not more than now.
+  /// Factor on the `paths` spent on lookup data at which a further path reduces the picture's squared error
+  /// as much there as in the picture; 1: not more than now.
   double balanced(uint64_t paths) const;
 
   const SetupContext& context_;
@@ -33,8 +33,8 @@ class LookupRefinement {
   const Sampling& sampling_;
   const ImageProgress& progress_;
   const solvers::Solver* errors_of_ = nullptr;  ///< solver whose errors were being estimated
-  uint64_t most_paths_ = 0;  ///< where refinement ends at that number of samples
-  uint32_t balanced_at_ = 0;  ///< samples at which nothing was left to refine
+  uint64_t most_paths_ = 0;                     ///< where refinement ends at that number of samples
+  uint32_t balanced_at_ = 0;                    ///< samples at which nothing was left to refine
   uint32_t weighed_at_ = 0;                     ///< samples at the latest balanced()
 };
 

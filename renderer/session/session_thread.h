@@ -227,6 +227,9 @@ struct SessionThread {
   /// Updates preparation progress from the solvers' reports and times.
   void update_preparing() {
     next.preparing.clear(), next.preparing_done = -1, next.preparing_left.reset();
+    next.refining.clear();
+    for (const auto& report : next.reports)
+      if (next.refining.empty()) next.refining = report->refining;
     const auto preparing = std::find_if(next.reports.begin(), next.reports.end(),
                                         [](const auto& report) { return !report->preparing.empty(); });
     if (preparing == next.reports.end()) {

@@ -177,6 +177,8 @@ struct Report {
   std::string to_go_on;  ///< if it waits: the reason, and the command that continues
   /// Work in progress, for the window's bar: "cache, pass 3: 2810 records"; "" if ready.
   std::string preparing;
+  /// Work on complete data while the samples of the picture wait: "refining records"; "" if there is none.
+  std::string refining;
   /// Progress of that work, 0..1, and its remaining device time [ms]; nullopt: no estimate.
   struct Progress {
     double done = 0, left_ms = 0;

@@ -72,8 +72,8 @@ TEST_CASE("refinement continues until records and samples gain equally, or cost 
   const film::ImageError error = shown.r.image_error();
   const double read = std::pow(error.seen_lookup_noise, 2), sampled = std::pow(error.seen_rms[0], 2);
   const double now = double(shown.status().rays), paths = double(shown.r.stats().paths);
-  INFO(rays << " rays, then " << now << "; " << paths << " paths; noise of records " << error.seen_lookup_noise
-            << ", of samples " << error.seen_rms[0]);
+  INFO(rays << " rays, then " << now << "; " << paths << " paths; noise of records "
+            << error.seen_lookup_noise << ", of samples " << error.seen_rms[0]);
   CHECK(shown.r.film().lookup_errors_current());
   CHECK(now > 2.0 * double(rays));
   CHECK((2 * read * paths <= sampled * now || now - double(rays) >= paths / 2));

@@ -78,6 +78,10 @@ TEST_CASE("the status bar's text follows the build") {
   solvers::Report r = make_report(c, settings());
   CHECK(r.solver == info().name);
   CHECK((r.ready && !r.waits && r.preparing.empty() && r.state == "complete"));
+  CHECK(r.refining.empty());
+  c.refines = true;
+  CHECK(make_report(c, settings()).refining == "refining records");
+  c.refines = false;
   c.status.stop = StopReason::building, c.placed = 2810;
   r = make_report(c, settings());
   CHECK((!r.ready && !r.waits && r.state == "building"));

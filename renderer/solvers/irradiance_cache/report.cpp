@@ -462,6 +462,7 @@ solvers::Report make_report(const CacheReport& data, const OptionValues& setting
   Report report{.solver = info().name, .ready = !building, .waits = s.waits};
   if (s.waits) report.to_go_on = "building of the cache is paused (cache.pause); cache.run continues";
   report.preparing = preparing(data);
+  if (data.refines) report.refining = "refining records";
   if (const auto left = forecast_of(s, settings.real("cache.stop")); left && !s.waits)
     report.progress = {left->done, left->left_ms};
   report.state = s.waits ? "waits" : building ? "building" : "complete";

@@ -14,6 +14,7 @@ struct CacheReport {
   CacheStatus status;
   PlacementShow placement = PlacementShow::off;  ///< what is drawn over the picture; never `stage`
   uint32_t placed = 0;                           ///< records so far, including the current pass
+  bool refines = false;                          ///< records get more rays while the samples wait
   uint32_t room = 0;                             ///< capacity in records
   /// Over the pixels of the picture, as their first samples see the scene; nullopt while building.
   std::optional<Overlap> overlap;

@@ -60,6 +60,7 @@ CacheReport CacheSolver::state(const Canvas& canvas, const Picture& picture, boo
   const auto placement = PlacementShow(settings.choice("overlay.placement"));
   if (placement != PlacementShow::off) all.placement = placement_drawn(placement, cache_.placement());
   all.placed = cache_.records().size();
+  all.refines = cache_.refines();
   all.room = cache_.records().capacity();
   all.color = uint32_t(settings.choice("overlay.records_by"));
   all.scale = cache_.scale(all.color);
