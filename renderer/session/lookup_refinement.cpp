@@ -30,7 +30,7 @@ std::optional<bool> LookupRefinement::refine(const PictureView& view, const std:
     if (samples < k_least || !std::has_single_bit(samples) || samples == balanced_at_) return std::nullopt;
     auto& refinement = *solvers::offered<solvers::Refinement>(*solver);
     const uint64_t paths = refinement.paths_refined();
-    if (samples != weighed_at_) most_paths_ = paths + setup_.engine->wavefront().stats().paths;
+    if (samples != weighed_at_) most_paths_ = paths + setup_.engine->wavefront().stats().paths, idle_ = 0;
     weighed_at_ = samples;
     const double factor = balanced(paths);
     if (factor <= 1) {
@@ -39,15 +39,22 @@ std::optional<bool> LookupRefinement::refine(const PictureView& view, const std:
     }
     refinement.begin_refining(factor);
     if (!refinement.refines()) return std::nullopt;
+    paths_before_ = paths;
   }
   auto& refinement = *solvers::offered<solvers::Refinement>(*solver);
   const bool went = setup_.engine->with(*solver, view, [&](const solvers::Picture& picture) {
     return refinement.refine(setup_.engine->wavefront(), picture, cancel);
   });
-  if (!refinement.refines()) {
-    setup_.film->outdate_lookup_errors();
-    errors_of_ = nullptr;
+  if (refinement.refines()) return went;
+  // Without further paths the bound was still too high, or all data have all paths that they can have.
+  constexpr uint32_t k_most_idle = 8;
+  if (refinement.paths_refined() == paths_before_) {
+    if (++idle_ == k_most_idle) balanced_at_ = weighed_at_;
+    return went;
   }
+  idle_ = 0;
+  setup_.film->outdate_lookup_errors();
+  errors_of_ = nullptr;
   return went;
 }
 

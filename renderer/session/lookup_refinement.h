@@ -34,6 +34,8 @@ class LookupRefinement {
   const ImageProgress& progress_;
   const solvers::Solver* errors_of_ = nullptr;  ///< solver whose errors were being estimated
   uint64_t most_paths_ = 0;                     ///< where refinement ends at that number of samples
+  uint64_t paths_before_ = 0;                   ///< at the begin of the latest refinement
+  uint32_t idle_ = 0;                           ///< consecutive refinements that needed no path
   uint32_t balanced_at_ = 0;                    ///< samples at which nothing was left to refine
   uint32_t weighed_at_ = 0;                     ///< samples at the latest balanced()
 };
