@@ -115,7 +115,8 @@ void draw_console(Actions& actions, const commands::Registry& registry, LogView&
                        ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_CallbackCompletion |
                            ImGuiInputTextFlags_CallbackHistory,
                        edit_console, &edited);
-  if (entered) stay_in_field();
+  const bool typed = entered && !console.text.empty();
+  if (typed) stay_in_field();
   ImGui::PopStyleColor();
   ImGui::PopStyleVar(2);
   console.active = ImGui::IsItemActive();
@@ -128,7 +129,7 @@ void draw_console(Actions& actions, const commands::Registry& registry, LogView&
   const ImVec2 lo(area.lo.x + (console.text.empty() ? px(26) : used), area.lo.y);
   draw_text(list, lo, {area.hi.x - px(12), area.hi.y}, elided(hint, area.hi.x - px(12) - lo.x),
             colour::text_faint);
-  if (entered && !console.text.empty()) {
+  if (typed) {
     if (console.history.empty() || console.history.back() != console.text)
       console.history.push_back(console.text);
     log.typed.push_back(std::exchange(console.text, {}));

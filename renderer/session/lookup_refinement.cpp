@@ -18,41 +18,40 @@ std::optional<bool> LookupRefinement::step(const std::function<bool()>& cancel) 
   });
 }
 
+bool LookupRefinement::begin(solvers::Refinement& refinement) {
+  // At powers of two, where passes over the picture end for any size of work items (schedule/uniform.h): the
+  // picture does not depend on that size.
+  constexpr uint32_t k_least = 4;
+  const uint32_t samples = sampling_.most_samples();
+  if (samples < k_least || !std::has_single_bit(samples)) return false;
+  const uint64_t paths = refinement.paths_refined();
+  if (samples != weighing_.samples)
+    weighing_ = {.samples = samples, .most_paths = paths + setup_.engine->wavefront().stats().paths};
+  if (weighing_.over) return false;
+  const double factor = balanced(paths);
+  if (factor > 1) refinement.begin_refining(factor);
+  weighing_.paths_before = paths;
+  weighing_.over = !refinement.refines();
+  return !weighing_.over;
+}
+
 std::optional<bool> LookupRefinement::refine(const PictureView& view, const std::function<bool()>& cancel) {
   solvers::Solver* solver = setup_.engine->refining();
-  if (!solver) {
-    // At powers of two, where passes over the picture end for any size of work items (schedule/uniform.h):
-    // the picture does not depend on that size.
-    constexpr uint32_t k_least = 4;
-    solver = setup_.engine->refinable();
-    if (!solver) return std::nullopt;
-    const uint32_t samples = sampling_.most_samples();
-    if (samples < k_least || !std::has_single_bit(samples) || samples == balanced_at_) return std::nullopt;
-    auto& refinement = *solvers::offered<solvers::Refinement>(*solver);
-    const uint64_t paths = refinement.paths_refined();
-    if (samples != weighed_at_) most_paths_ = paths + setup_.engine->wavefront().stats().paths, idle_ = 0;
-    weighed_at_ = samples;
-    const double factor = balanced(paths);
-    if (factor <= 1) {
-      balanced_at_ = samples;
-      return std::nullopt;
-    }
-    refinement.begin_refining(factor);
-    if (!refinement.refines()) return std::nullopt;
-    paths_before_ = paths;
-  }
+  if (!solver) solver = setup_.engine->refinable();
+  if (!solver) return std::nullopt;
   auto& refinement = *solvers::offered<solvers::Refinement>(*solver);
+  if (!refinement.refines() && !begin(refinement)) return std::nullopt;
   const bool went = setup_.engine->with(*solver, view, [&](const solvers::Picture& picture) {
     return refinement.refine(setup_.engine->wavefront(), picture, cancel);
   });
   if (refinement.refines()) return went;
-  // Without further paths the bound was still too high, or all data have all paths that they can have.
-  constexpr uint32_t k_most_idle = 8;
-  if (refinement.paths_refined() == paths_before_) {
-    if (++idle_ == k_most_idle) balanced_at_ = weighed_at_;
+  if (refinement.paths_refined() == weighing_.paths_before) {
+    // The bound was still too high, or all data have all paths that they can have.
+    constexpr uint32_t k_most_idle = 8;
+    weighing_.over = ++weighing_.idle == k_most_idle;
     return went;
   }
-  idle_ = 0;
+  weighing_.idle = 0;
   setup_.film->outdate_lookup_errors();
   errors_of_ = nullptr;
   return went;
@@ -68,7 +67,7 @@ double LookupRefinement::balanced(uint64_t paths) const {
   // By whole doublings, so that the two are balanced in the middle of one. The picture waits meanwhile: at
   // most about as long as it has taken so far.
   double factor = 1;
-  while (factor * double(paths) < double(most_paths_) &&
+  while (factor * double(paths) < double(weighing_.most_paths) &&
          2 * read * traced > sampled * double(paths) * factor * factor)
     factor *= 2;
   return factor;

@@ -104,7 +104,7 @@ struct Snapshot {
   std::string preparing;
   double preparing_done = -1;            ///< progress of that, 0..1; -1: unknown
   std::optional<double> preparing_left;  ///< remaining seconds of rendering, estimated (stats::WorkPace)
-  std::string refining;                  ///< likewise (solvers::Report::refining)
+  std::string refining;                  ///< current solvers::Report::refining, or ""
   /// Pace of pure path tracing (PreviewSamples::path_pace).
   std::optional<stats::SamplePace> path_pace;
   /// Wall time since this image was begun, without pauses: the clock of the ledger's wall_s and of forecasts.

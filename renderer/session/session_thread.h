@@ -227,11 +227,13 @@ struct SessionThread {
   /// Updates preparation progress from the solvers' reports and times.
   void update_preparing() {
     next.preparing.clear(), next.preparing_done = -1, next.preparing_left.reset();
-    next.refining.clear();
-    for (const auto& report : next.reports)
-      if (next.refining.empty()) next.refining = report->refining;
-    const auto preparing = std::find_if(next.reports.begin(), next.reports.end(),
-                                        [](const auto& report) { return !report->preparing.empty(); });
+    const auto first_with = [this](std::string solvers::Report::*text) {
+      return std::find_if(next.reports.begin(), next.reports.end(),
+                          [&](const auto& report) { return !((*report).*text).empty(); });
+    };
+    const auto refining = first_with(&solvers::Report::refining);
+    next.refining = refining == next.reports.end() ? "" : (*refining)->refining;
+    const auto preparing = first_with(&solvers::Report::preparing);
     if (preparing == next.reports.end()) {
       pace = {};
       return;
