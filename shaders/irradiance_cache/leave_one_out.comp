@@ -40,12 +40,12 @@ void main() {
     others += weight > 0.0 ? weight * extrapolated(other, facing, x - octree_copy(i).xyz, n) : 0.0;
     weights += weight;
     squares += weight * square(1.0 - weight);
-    for (uint g = 0u; g < k_lookup_lanes / 4u; ++g) noise[g] += weight * record_error(other) * record_signs(other, g);
+    for (uint g = 0u; g < k_lookup_lanes / 4u; ++g) noise[g] += weight * record_errors(other, g);
   }
   bool estimated = weights > 0.0;
   float at_border = 1.0 / max(squares / max(weights, 1e-30), k_least_square);
   int at = int(record * k_residual_texels);
   residuals[at] = vec4(estimated ? at_border * (others / weights / light - 1.0) : 0.0, 0.0, 0.0, 0.0);
   for (uint g = 0u; g < k_lookup_lanes / 4u; ++g)
-    residuals[at + 1 + int(g)] = estimated ? at_border * (noise[g] / weights - record_error(record) * record_signs(record, g)) / light : vec4(0.0);
+    residuals[at + 1 + int(g)] = estimated ? at_border * (noise[g] / weights - record_errors(record, g)) / light : vec4(0.0);
 }

@@ -42,12 +42,12 @@ void propagate(inout ErrorSums sum, vec4 note, vec4 facing, float share) {
       light += is_component(routes >> (4u * p) & 15u) ? luminance(throughput * record_light(record, p)) : 0.0;
     weights += weight;
     light *= weight;
-    float error = light * record_error(record) / max(record_luminance(record), 1e-30);
+    float share_of_error = light / max(record_luminance(record), 1e-30);
     int residual = int(record * k_residual_texels);
     float bent = light * square(1.0 - weight);  // grows with the squared distance, as in leave_one_out.comp
     here.interpolation += bent * texelFetch(residual_texels, residual).x;
     for (uint g = 0u; g < k_groups; ++g) {
-      here.noise[g] += error * record_signs(record, g);
+      here.noise[g] += share_of_error * record_errors(record, g);
       here.interpolation_noise[g] += bent * texelFetch(residual_texels, residual + 1 + int(g));
     }
   }

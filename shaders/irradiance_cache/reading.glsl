@@ -4,6 +4,8 @@
 #include "irradiance_cache/lookup.glsl"
 #include "irradiance_cache/error_propagation.glsl"
 
+uniform samplerBuffer record_error_texels;
+
 // Weight that cache_lookup() gives the record at place `at` of the octree's lists; 0: not used.
 float read_weight(vec3 x, vec3 n, uint media, uint at) {
   uint record = octree_sphere(at);
@@ -25,6 +27,8 @@ float record_luminance(uint record) {
   for (uint p = 0u; p < k_part_count; ++p) light += luminance(record_light(record, p));
   return light;
 }
-// Standard error of that luminance.
-float record_error(uint record) { return texelFetch(record_texels, int(record * k_record_texels + 2u)).z; }
+// Error of that luminance in lanes 4 group .. 4 group + 3.
+vec4 record_errors(uint record, uint group) {
+  return texelFetch(record_error_texels, int(record * (k_lookup_lanes / 4u) + group));
+}
 #endif

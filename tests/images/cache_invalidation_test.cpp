@@ -132,6 +132,7 @@ TEST_CASE("every kind of change invalidates what its row says, and nothing else"
       {"cache.passes", {{"cache.passes", "3"}}},
       {"cache.stop", {{"cache.stop", "0.01"}}},
       {"cache.max_records", {{"cache.max_records", "6000"}}},
+      {"cache.smooth", {{"cache.smooth", "false"}}},
       {"cache.branches", {{"cache.branches", "1"}}},
       {"cache.pause", {{"cache.pause", "stage"}}},
       {"cache.", {{"cache.error", "0.4"}}},

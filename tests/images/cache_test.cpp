@@ -220,6 +220,44 @@ TEST_CASE("records with split-sphere radii compute the same light, independent o
   CHECK_FALSE(identical(whole.image.components[2], test::render(r).image.components[2]));
 }
 
+TEST_CASE("smoothed records are nearer to the truth; switched off, they are as gathered") {
+  const scene::Scene room = test::PanelRoom(vec3(0), true, 0.001f).s;
+  // Few rays and no further ones: 14 % noise.
+  Settings few = k_cached;
+  few["cache.rays"] = few["cache.max_rays"] = "64", few["cache.smooth"] = "true";
+  Settings raw = few;
+  raw["cache.smooth"] = "false";
+  test::CacheRenderer bed(room, 48);
+  bed.set(few), bed.set({{"samples", "64"}});
+  const film::Image smooth = bed.finish();
+  const irradiance_cache::RawRecords records = bed.records();
+  const uint64_t rays = bed.status().rays;
+  bed.set(raw);
+  CHECK(test::cache(bed.r)->ready());
+  const film::Image gathered = bed.finish();
+  CHECK(bed.status().rays == rays);
+  CHECK(test::identical(bed.records(), records));
+  CHECK_FALSE(identical(gathered.components[2], smooth.components[2]));
+  bed.set(few);
+  const film::Image again = bed.finish();
+  for (int c = 0; c < 4; ++c) CHECK(identical(again.components[c], smooth.components[c]));
+  // The same as without a change.
+  test::CacheRenderer fresh(room, 48);
+  fresh.set(raw), fresh.set({{"samples", "64"}});
+  const film::Image alone = fresh.finish();
+  for (int c = 0; c < 4; ++c) CHECK(identical(alone.components[c], gathered.components[c]));
+
+  const film::Image truth = test::render(room, {}, 1024, 48).image;
+  const auto error = [&](const film::Image& image, int c) {
+    return block_error({.image = image}, {.image = truth}, c, 48);
+  };
+  for (const int c : {1, 2}) {
+    INFO("component " << c << ": " << error(smooth, c) << ", as gathered " << error(gathered, c));
+    CHECK(error(smooth, c) < 0.8 * error(gathered, c));
+    CHECK(std::abs(mean(smooth.components[c]) / mean(truth.components[c]) - 1) < 0.03);
+  }
+}
+
 TEST_CASE("light does not leak through a wall of one millimetre") {
   // Maximum radii, so only the other limits stop records from reaching through.
   Settings wide = k_cached;

@@ -128,6 +128,7 @@ void Cache::Impl::finish(StopReason reason) {
   progress.pauses.complete();
   status.waits = false;
   if (!status.passes.empty()) pass().complete = true;
+  publish_smoothed();
   write_frame();
 }
 

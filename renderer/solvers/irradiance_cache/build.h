@@ -181,6 +181,8 @@ struct Cache::Impl {
   std::vector<uint32_t> without_crowded(std::vector<uint32_t> list) const;
   /// Publishes light and radii of this level to lookups.
   void publish_level(const Work& work);
+  /// Publishes the light of all evaluated records, smoothed (smoothing.h).
+  void publish_smoothed();
 };
 
 }  // namespace lucerna::irradiance_cache

@@ -6,6 +6,7 @@
 #include "gpu/stream.h"
 #include "solvers/irradiance_cache/build.h"
 #include "solvers/irradiance_cache/noise.h"
+#include "solvers/irradiance_cache/smoothing.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -81,7 +82,7 @@ bool Cache::Impl::evaluate(const Work& w) {
   }
   levels.end_level();
   if (progress.refining.under_way) {
-    publish_level(w);
+    publish_smoothed();
     if (!next_refined()) end_refining();
     return true;
   }
@@ -133,6 +134,11 @@ void Cache::Impl::publish_level(const Work& w) {
   add_time(BuildStep::octree, timer.milliseconds());
   if (sets_radii) clamp_radii(w, ranges.evaluated(), options.radius.nearest);
   write_frame();
+}
+
+void Cache::Impl::publish_smoothed() {
+  tables.records.publish(smooth(tables.records.raw(ranges.evaluated()),
+                                {.reach = options.smooth ? SmoothingOptions{}.reach : 0}));
 }
 
 /// Noise bound of a record, relative to the option. The gain of one more level in the picture's squared

@@ -63,6 +63,8 @@ struct CacheOptions {
   /// True: where geometry is nearer than twice the minimum radius, paths gather and end in records one vertex
   /// later.
   bool gather = false;
+  /// Lookups read light that is smoothed over neighbouring records (smoothing.h).
+  bool smooth = true;
   uint32_t branches = 1;  ///< gathering paths per sample of the picture
   uint32_t most_records = 0, most_passes = 0;
   /// Light groups whose shares records store, for films with compact groups; less than 2: none.

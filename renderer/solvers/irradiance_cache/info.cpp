@@ -34,6 +34,7 @@ std::vector<ChangeRow> change_rows() {
       {"cache.passes", k_invalidates_coverage, "when building ends"},
       {"cache.stop", k_invalidates_coverage, "when building ends"},
       {"cache.max_records", k_invalidates_coverage, "capacity; invalidates all if there are more records"},
+      {"cache.smooth", k_invalidates_nothing, "light as lookups read it"},
       {"cache.branches", k_invalidates_nothing, "affects the picture only"},
       {"cache.pause", k_invalidates_nothing, "pauses of building"},
       {"cache.", k_invalidates_all, "places and radii of records"},

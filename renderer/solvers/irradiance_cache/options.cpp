@@ -58,6 +58,10 @@ std::vector<OptionInfo> light_rows() {
                   "that more of the picture reads get more rays, others fewer. The bound falls as samples "
                   "accumulate, where more rays are more efficient than more samples.",
                   "Noise bound"),
+      boolean_option("cache.smooth", "true",
+                     "Irradiance cache: smooths the light of records over their neighbours on the same "
+                     "surface, as far as the difference is not more than noise. Their rays stay the same.",
+                     "Smooth records"),
       real_option("cache.environment_threshold", "16", 2, 1000000, "x mean",
                   "Irradiance cache, with components.primary=cache: texels of the environment brighter than "
                   "this times its mean radiance count as the sun, which is always sampled directly."),

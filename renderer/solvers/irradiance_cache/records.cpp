@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
 #include "base/error.h"
 #include "gpu/kernel.h"
+#include "solvers/irradiance_cache/smoothing.h"
 
 namespace lucerna::irradiance_cache {
 
@@ -15,12 +17,6 @@ using namespace shared;
 namespace {
 
 constexpr uint64_t k_place_bytes = 16 * k_record_texels, k_light_bytes = 16 * k_part_count * k_part_texels;
-
-/// make_basis() of shaders/lib/math.glsl.
-std::array<vec3, 2> basis(const vec3& n) {
-  const float s = n.z >= 0 ? 1.0f : -1.0f, a = -1 / (s + n.z), c = n.x * n.y * a;
-  return {vec3(1 + s * n.x * n.x * a, s * c, -s * n.x), vec3(c, s + n.y * n.y * a, -n.y)};
-}
 
 Record unpack(const vec4* place, const vec4* light) {
   Record r;
@@ -38,7 +34,7 @@ Record unpack(const vec4* place, const vec4* light) {
   const vec3 stretch(place[3]);
   r.lesser_radius = place[3].w;
   r.along = length(stretch) > 0 ? normalize(stretch) : vec3(0);
-  const auto [t, b] = basis(r.place.normal);
+  const auto [t, b] = tangent_basis(r.place.normal);
   r.crowded = (flags & k_record_crowded) != 0;
   for (uint32_t p = 0; p < k_part_count && !r.crowded; ++p) {
     const float* f = &light[p * k_part_texels].x;
@@ -53,6 +49,24 @@ Record unpack(const vec4* place, const vec4* light) {
 }
 
 }  // namespace
+
+std::array<vec3, 2> tangent_basis(const vec3& n) {
+  const float s = n.z >= 0 ? 1.0f : -1.0f, a = -1 / (s + n.z), c = n.x * n.y * a;
+  return {vec3(1 + s * n.x * n.x * a, s * c, -s * n.x), vec3(c, s + n.y * n.y * a, -n.y)};
+}
+
+uint32_t share_pack(vec3 share) {
+  share = glm::clamp(share, vec3(0), vec3(1));
+  const uint32_t most = std::bit_cast<uint32_t>(std::max({share.x, share.y, share.z})) >> 23;
+  const uint32_t exponent = std::min(126 - std::min(most, 126u), 31u);
+  const uvec3 m(glm::round(share * (std::ldexp(511.0f, int(exponent)))));
+  return std::min(m.x, 511u) | std::min(m.y, 511u) << 9 | std::min(m.z, 511u) << 18 | exponent << 27;
+}
+
+vec3 share_unpack(uint32_t bits) {
+  const vec3 m(float(bits & 511), float(bits >> 9 & 511), float(bits >> 18 & 511));
+  return m * (std::ldexp(1.0f, -int(bits >> 27)) / 511.0f);
+}
 
 bool RawRecords::crowded(uint32_t record) const {
   return (std::bit_cast<uint32_t>(places[size_t{record} * k_record_texels + 2].w) & k_record_crowded) != 0;
@@ -89,6 +103,8 @@ Records::Records(gpu::Device& device, uint32_t capacity, uint32_t groups)
       gpu::Buffer(device, {.name = "cache irradiance", .bytes = capacity * k_light_bytes, .texel = true});
   read_ = gpu::Buffer(device,
                       {.name = "cache irradiance as read", .bytes = capacity * k_light_bytes, .texel = true});
+  errors_ = gpu::Buffer(
+      device, {.name = "cache errors", .bytes = capacity * uint64_t{k_lookup_lanes} * 4, .texel = true});
   spheres_ = gpu::Buffer(device, {.name = "cache spheres", .bytes = capacity * sizeof(vec4), .texel = true});
   if (groups_ < 2) return;
   const auto words = [&](const char* name) {
@@ -159,12 +175,13 @@ void Records::restore(const RawRecords& raw) {
   if (size_ == 0) return;
   records_.write(std::span(raw.places));
   irradiance_.write(std::span(raw.lights));
-  read_.write(std::span(raw.lights));
   spheres_.write(std::span(raw.spheres));
-  if (groups_ < 2) return;
-  std::vector<uvec4> shares(size_ * group_bytes() / sizeof(uvec4), uvec4(0));
-  if (raw.groups.size() == shares.size()) shares = raw.groups;
-  shares_.write(std::span(std::as_const(shares))), shares_read_.write(std::span(std::as_const(shares)));
+  if (groups_ > 1) {
+    std::vector<uvec4> shares(size_ * group_bytes() / sizeof(uvec4), uvec4(0));
+    if (raw.groups.size() == shares.size()) shares = raw.groups;
+    shares_.write(std::span(std::as_const(shares)));
+  }
+  publish(smooth(this->raw(size_), {.reach = 0}));
 }
 
 std::vector<Records::Figures> Records::figures() const {
@@ -235,6 +252,14 @@ void Records::publish(gpu::Stream& stream) const {
   if (size_ == 0) return;
   stream.copy(irradiance_, read_, size_ * k_light_bytes);
   if (groups_ > 1) stream.copy(shares_, shares_read_, size_ * group_bytes());
+  stream.run();
+}
+
+void Records::publish(const PublishedLight& light) {
+  if (light.lights.empty()) return;
+  read_.write(std::span(light.lights));
+  errors_.write(std::span(light.errors));
+  if (groups_ > 1) shares_read_.write(std::span(light.groups));
 }
 
 void Records::bind(gpu::Resources& resources, Use use) const {
@@ -242,6 +267,7 @@ void Records::bind(gpu::Resources& resources, Use use) const {
   resources.set("Records", records_);
   resources.set("irradiance_texels", use == Use::gather ? irradiance_ : read_);
   resources.set("Irradiance", irradiance_);
+  resources.set("record_error_texels", errors_);
   resources.set("Spheres", spheres_);
   if (groups_ < 2) return;
   resources.set("record_group_texels", shares(use));

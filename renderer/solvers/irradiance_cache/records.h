@@ -59,6 +59,21 @@ struct RawRecords {
   void keep(std::span<const uint32_t> kept);
 };
 
+/// Light of records as lookups read it.
+struct PublishedLight {
+  std::vector<vec4> lights;   ///< as in RawRecords
+  std::vector<uvec4> groups;  ///< as in RawRecords
+  /// k_lookup_lanes for each record: error of the luminance of all its parts in that lane (picture_error.h).
+  std::vector<float> errors;
+};
+
+/// Shares of a light group, as RawRecords::groups has them: shaders/lib/group_shares.glsl.
+uint32_t share_pack(vec3 share);
+vec3 share_unpack(uint32_t bits);
+
+/// Tangent and bitangent of a record: make_basis() of shaders/lib/math.glsl.
+std::array<vec3, 2> tangent_basis(const vec3& normal);
+
 /// #defines of kernels that read or write light of that many groups.
 inline gpu::Defines group_defines(uint32_t groups) {
   if (groups < 2) return {};
@@ -91,8 +106,9 @@ class Records {
   /// Reads all of them, or one; for tests, files and the inspector.
   std::vector<Record> read() const;
   Record read(uint32_t index) const;
-  /// Reads the first `count`, for files; and replaces all records. At most capacity(); all lists must have
-  /// the same number of records (assertions). Group shares are 0 if missing or of another number of groups.
+  /// Reads the first `count`, for files; and replaces all records, published as they are. At most capacity();
+  /// all lists must have the same number of records (assertions). Group shares are 0 if missing or of another
+  /// number of groups.
   RawRecords raw(uint32_t count) const;
   void restore(const RawRecords& raw);
   /// Values that overlays colour by, for every record.
@@ -116,7 +132,10 @@ class Records {
   /// order of evaluation.
   enum class Use { gather, look_up };
   void bind(gpu::Resources& resources, Use use) const;
+  /// Publishes the gathered light of all records. Runs the stream.
   void publish(gpu::Stream& stream) const;
+  /// Publishes other light for the first records, and their errors. No work is recorded that publishes.
+  void publish(const PublishedLight& light);
   /// Light of the records as lookups read it.
   const gpu::Buffer& light(Use use) const { return use == Use::gather ? irradiance_ : read_; }
   /// Its group shares; no buffer without groups.
@@ -128,7 +147,7 @@ class Records {
  private:
   std::vector<vec4> texels(uint32_t which) const;  ///< one of k_record_texels, of every record
   uint32_t capacity_ = 0, size_ = 0, groups_ = 1;
-  gpu::Buffer records_, irradiance_, read_, spheres_, shares_, shares_read_;
+  gpu::Buffer records_, irradiance_, read_, errors_, spheres_, shares_, shares_read_;
 };
 
 }  // namespace lucerna::irradiance_cache

@@ -24,6 +24,7 @@ CacheOptions read_options(const Task& task) {
           .noise = float(s.real("cache.noise")),
           .thinning = float(s.real("cache.thinning")),
           .gather = s.boolean("cache.gather"),
+          .smooth = s.boolean("cache.smooth"),
           .branches = uint32_t(s.integer("cache.branches")),
           .most_records = uint32_t(s.integer("cache.max_records")),
           .most_passes = uint32_t(s.integer("cache.passes")),

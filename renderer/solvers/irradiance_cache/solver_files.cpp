@@ -12,6 +12,8 @@ namespace {
 /// Options that affect the number of records, not their contents.
 const std::set<std::string> k_amounts{"cache.max_records", "cache.passes", "cache.stop",
                                       "cache.irradiance_weight"};
+/// Changes no record.
+constexpr const char* k_of_lookups = "cache.smooth";
 
 MadeWith current_provenance(const Cache& cache, const OptionValues& settings,
                             const solvers::Provenance& provenance) {
@@ -19,7 +21,8 @@ MadeWith current_provenance(const Cache& cache, const OptionValues& settings,
   made_with.scene = provenance.scene;
   made_with.hashes = provenance.hashes;
   for (const OptionInfo& o : info().options)
-    if (o.key.starts_with("cache.") && o.restarts && !k_amounts.contains(o.key))
+    if (o.key.starts_with("cache.") && o.restarts && !k_amounts.contains(o.key) &&
+        o.key != k_of_lookups)
       made_with.settings[o.key] = settings.text(o.key);
   for (const char* key : {"path.max_depth", "path.roulette_depth"})
     made_with.settings[key] = settings.text(key);
