@@ -15,10 +15,11 @@ namespace lucerna::commands {
 void PixelInquiry::follow(const OpenScene& open, const Navigation& camera) {
   if (!lines.empty() || !is_ready(layers)) return;
   try {
-    lines = to_lines(report_pixel(layers.get(), at));
+    report = report_pixel(layers.get(), at);
     if (open.scene && camera.view)
-      for (std::string& line : surface_lines(*open.scene, camera.view->camera, at, camera.aspect))
-        lines.push_back(std::move(line));
+      surface = surface_lines(*open.scene, camera.view->camera, at, camera.aspect);
+    lines = to_lines(report);
+    lines.insert(lines.end(), surface.begin(), surface.end());
   } catch (const std::exception& error) {
     lines = {error.what()};
   }

@@ -19,6 +19,7 @@
 #include "commands/navigation.h"
 #include "commands/open_scene.h"
 #include "commands/path_inquiry.h"
+#include "commands/pixel_report.h"
 #include "commands/registry.h"
 #include "commands/saved_files.h"
 #include "commands/scene_file.h"
@@ -56,7 +57,9 @@ struct LoggedProblem {
 struct PixelInquiry {
   vec2 at;  ///< 0..1 to the right and down
   std::shared_future<film::FilmImage> layers;
-  std::vector<std::string> lines;  ///< empty until they are known
+  std::vector<std::string> lines;  ///< empty until they are known; an error's message if they cannot be
+  PixelReport report = {};         ///< the first lines as data, unless there was an error
+  std::vector<std::string> surface = {};  ///< the lines after them: "object: Chair"
 
   /// Makes the lines when the layers are there, and logs them.
   void follow(const OpenScene& open, const Navigation& camera);
