@@ -21,8 +21,7 @@ MadeWith current_provenance(const Cache& cache, const OptionValues& settings,
   made_with.scene = provenance.scene;
   made_with.hashes = provenance.hashes;
   for (const OptionInfo& o : info().options)
-    if (o.key.starts_with("cache.") && o.restarts && !k_amounts.contains(o.key) &&
-        o.key != k_of_lookups)
+    if (o.key.starts_with("cache.") && o.restarts && !k_amounts.contains(o.key) && o.key != k_of_lookups)
       made_with.settings[o.key] = settings.text(o.key);
   for (const char* key : {"path.max_depth", "path.roulette_depth"})
     made_with.settings[key] = settings.text(key);
