@@ -18,6 +18,7 @@ constexpr size_t k_light_texels = size_t{k_part_count} * k_part_texels;
 struct Site {
   vec3 position, normal, tangent, bitangent;
   float radius = 0;            ///< lesser one [m]; 0: neither smoothed nor a neighbour
+  float share = 0;             ///< share of its disc that it represents, 0..1
   float weight = 0;            ///< rays, times the share of its disc that it represents
   float light = 0, error = 0;  ///< luminance of all parts, and its standard error
   uint32_t medium = 0;
@@ -35,7 +36,8 @@ Site site_of(const RawRecords& raw, uint32_t r) {
   const float radius = place[3].w, rays = float(std::bit_cast<uint32_t>(place[2].x));
   if (raw.crowded(r) || radius <= 0 || place[0].w <= 0 || rays <= 0) return s;
   s.radius = radius;
-  s.weight = rays * std::clamp(place[2].y / radius, k_least_share, 1.0f);
+  s.share = std::clamp(place[2].y / radius, k_least_share, 1.0f);
+  s.weight = rays * s.share;
   s.medium = std::bit_cast<uint32_t>(place[5].x);
   for (uint32_t p = 0; p < k_part_count; ++p) s.light += luminance(vec3(light[p * k_part_texels]));
   return s;
@@ -90,11 +92,15 @@ class Neighbourhood {
                2 * options_.off_plane * own.radius;
   }
   /// Weight by what the two records' light and errors say: near 1 up to three standard errors of their
-  /// difference, in root mean squares of both errors.
+  /// difference, in root mean squares of both errors. What the own record does not represent may differ by as
+  /// much as the light.
   static float likeness(const Site& s, const Site& own) {
-    const float square = (s.error * s.error + own.error * own.error) / 2, from = s.light - own.light;
+    constexpr float k_errors = 3;
+    const float unknown = (1 - own.share) * std::max(s.light, own.light) / k_errors;
+    const float square = (s.error * s.error + own.error * own.error) / 2 + unknown * unknown;
+    const float from = s.light - own.light;
     if (from == 0) return s.weight;
-    return square > 0 ? s.weight * std::exp(-from * from / (2 * 9 * square)) : 0.0f;
+    return square > 0 ? s.weight * std::exp(-from * from / (2 * k_errors * k_errors * square)) : 0.0f;
   }
 
   const std::vector<Site>& sites_;

@@ -14,8 +14,8 @@
 //     standard errors. Shadows' borders stay, and as records get more rays, less is smoothed;
 //   - the share of its disc that it represents. A record in a crease may see a surface within its minimum
 //     radius. It is then right for a band along the crease as narrow as that distance, but serves its whole
-//     disc; so it counts by the distance over the radius, at most 1. Otherwise its shadow would show as dark
-//     discs.
+//     disc; so it counts by the distance over the radius, at most 1, and the rest of its own disc may be
+//     unlike it. Otherwise its shadow would show as dark discs.
 // Weights of the solution below 0, at borders of surfaces, become 0.
 //
 // All parts, channels and shares of light groups get the same weights, so components still add up, and the
