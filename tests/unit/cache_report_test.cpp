@@ -204,11 +204,11 @@ TEST_CASE("the card shows the record under a point and the records it reads, sho
   Record record;
   record.radius = 0.31f, record.lesser_radius = 0.1f, record.mean_distance = INFINITY, record.rays = 64;
   record.parts[1].value = vec3(0.5f, 0.25f, 0.125f);
-  c.inspection.under = {1508, record, {}};
+  c.inspection.under = {.index = 1508, .record = record, .read = 0.25f, .at = {}};
   const std::string much = reported(), little = reported(Room::little);
   CHECK_THAT(much, Contains("pass 1 \xC2\xB7 screen") && Contains("Radius|10.0 cm x 31.0 cm\n") &&
                        Contains("Mean distance (harmonic)|\xE2\x88\x9E") && Contains("secondary\n") &&
-                       !Contains("tertiary"));
+                       Contains("Luminance, smoothed|0.294, 0.250\n") && !Contains("tertiary"));
   CHECK_THAT(much, Contains("Served by 9 records\nweight 100\n") && Contains("and 3 more|13.3 %"));
   CHECK_THAT(little, Contains("508|31.0 cm\n") && !Contains("Radius") && Contains("weight 105") &&
                          !Contains("weight 106"));

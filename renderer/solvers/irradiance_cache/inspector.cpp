@@ -88,7 +88,10 @@ Inspection Inspector::inspect(const overlay::Canvas& sheet, const Cache& cache, 
   std::stable_sort(found.serving.begin(), found.serving.end(),
                    [](const Serving& a, const Serving& b) { return a.weight > b.weight; });
   if (header->under != k_no_record)
-    found.under = {header->under, cache.records().read(header->under), vec2(header->under_at)};
+    found.under = {.index = header->under,
+                   .record = cache.records().read(header->under),
+                   .read = cache.records().published_luminance(header->under),
+                   .at = vec2(header->under_at)};
   return found;
 }
 

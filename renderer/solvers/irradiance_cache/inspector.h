@@ -32,8 +32,9 @@ struct Serving {
 /// A record whose disc covers a pixel.
 struct Covering {
   uint32_t index = 0;
-  Record record;  ///< its fields
-  vec2 at{0};     ///< its centre in the picture [pixels]
+  Record record;   ///< its fields
+  float read = 0;  ///< Records::published_luminance()
+  vec2 at{0};      ///< its centre in the picture [pixels]
 };
 
 /// Result for a pixel.

@@ -155,6 +155,15 @@ Record Records::read(uint32_t index) const {
   return unpack(place, light);
 }
 
+float Records::published_luminance(uint32_t index) const {
+  vec4 place[k_record_texels], light[k_part_count * k_part_texels];
+  records_.read(place, sizeof place, index * k_place_bytes);
+  read_.read(light, sizeof light, index * k_light_bytes);
+  float sum = 0;
+  for (const Irradiance& part : unpack(place, light).parts) sum += luminance(part.value);
+  return sum;
+}
+
 RawRecords Records::raw(uint32_t count) const {
   assert(count <= size_);
   RawRecords raw{std::vector<vec4>(size_t{count} * k_record_texels),

@@ -106,6 +106,8 @@ class Records {
   /// Reads all of them, or one; for tests, files and the inspector.
   std::vector<Record> read() const;
   Record read(uint32_t index) const;
+  /// Luminance of the sum of a record's parts as lookups read it. 0 for crowded records.
+  float published_luminance(uint32_t index) const;
   /// Reads the first `count`, for files; and replaces all records, published as they are. At most capacity();
   /// all lists must have the same number of records (assertions). Group shares are 0 if missing or of another
   /// number of groups.

@@ -381,11 +381,12 @@ float gradient_length(const std::array<vec3, 3>& by_channel) {
 }
 
 /// Fields of the record whose disc covers the pixel.
-void add_fields(Card& card, uint32_t index, const Record& r) {
+void add_fields(Card& card, const Covering& under) {
+  const Record& r = under.record;
   using Room = Card::Room;
   const auto add = [&](auto line) { card.lines.push_back({std::move(line), Room::much}); };
   const auto row = [&](const char* name, std::string value) { add(Card::Row{name, std::move(value)}); };
-  const std::string name = fmt::format("Record {}", count_text(index));
+  const std::string name = fmt::format("Record {}", count_text(under.index));
   card.lines.push_back({Card::Title{name, metres_text(r.radius)}, Room::little});
   add(Card::Title{name, fmt::format("pass {} \xC2\xB7 {}", r.pass + 1,
                                     k_origins[std::min<size_t>(r.place.origin, k_origins.size() - 1)])});
@@ -403,6 +404,8 @@ void add_fields(Card& card, uint32_t index, const Record& r) {
   row("Standard error",
       bright > 0 ? fmt::format("{} ({:.1f} %)", figure_text(r.error), 100 * double{r.error / bright})
                  : figure_text(r.error));
+  if (!r.crowded)
+    row("Luminance, smoothed", fmt::format("{}, {}", figure_text(bright), figure_text(under.read)));
   add(Card::Rule{.line = false});
   add(Card::FigureHeads{"Irradiance", {"R", "G", "B", "/rad", "/m"}});
   // Parts have the numbers of components, except the first: sky light, which is primary.
@@ -476,7 +479,7 @@ solvers::Report make_report(const CacheReport& data, const OptionValues& setting
   report.looked_at = data.looked_at;
   if (const Inspection& found = data.inspection; data.looked_at && found.solid) {
     report.card.emplace();
-    if (found.under) add_fields(*report.card, found.under->index, found.under->record);
+    if (found.under) add_fields(*report.card, *found.under);
     add_weights(*report.card, found, building);
   }
   report.figures = {{"records", s.records},
