@@ -162,6 +162,15 @@ TEST_CASE("a record in a crease counts by the share of its disc that it represen
   CHECK(narrow > 0.97);
 }
 
+TEST_CASE("the brightest light is smoothed without overflow") {
+  const RawRecords raw = floor_of([](const vec3& p) { return Made{p.x < 12 ? 1e25f : 3e25f, 2e25f}; });
+  const PublishedLight now = smooth(raw, {});
+  for (uint32_t i = 0; i < raw.size(); ++i) {
+    CHECK(light(now.lights, i) >= 0.99e25f);
+    CHECK(light(now.lights, i) <= 3.01e25f);
+  }
+}
+
 TEST_CASE("crowded records and records without a radius keep their texels, and serve no neighbour") {
   RawRecords raw = floor_of([](const vec3& p) { return Made{1 + 0.1f * std::sin(p.x), 1}; });
   const uint32_t crowded = 5 * k_side + 5, unplaced = 15 * k_side + 15;

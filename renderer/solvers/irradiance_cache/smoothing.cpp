@@ -95,12 +95,13 @@ class Neighbourhood {
   /// difference, in root mean squares of both errors. What the own record does not represent may differ by as
   /// much as the light.
   static float likeness(const Site& s, const Site& own) {
-    constexpr float k_errors = 3;
-    const float unknown = (1 - own.share) * std::max(s.light, own.light) / k_errors;
-    const float square = (s.error * s.error + own.error * own.error) / 2 + unknown * unknown;
-    const float from = s.light - own.light;
+    constexpr double k_errors = 3;
+    // In double: squares of the brightest light would overflow.
+    const double a = double{s.error}, b = double{own.error}, from = double{s.light} - double{own.light};
+    const double unknown = (1 - double{own.share}) * double{std::max(s.light, own.light)} / k_errors;
+    const double square = (a * a + b * b) / 2 + unknown * unknown;
     if (from == 0) return s.weight;
-    return square > 0 ? s.weight * std::exp(-from * from / (2 * k_errors * k_errors * square)) : 0.0f;
+    return square > 0 ? s.weight * float(std::exp(-from * from / (2 * k_errors * k_errors * square))) : 0.0f;
   }
 
   const std::vector<Site>& sites_;
