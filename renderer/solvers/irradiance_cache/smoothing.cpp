@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <nanoflann.hpp>
+#include <optional>
 #include <utility>
 
 namespace lucerna::irradiance_cache {
@@ -66,14 +67,16 @@ struct Neighbour {
 class Neighbourhood {
  public:
   Neighbourhood(const std::vector<Site>& sites, const SmoothingOptions& options)
-      : sites_(sites), options_(options), positions_{sites}, tree_(3, positions_) {}
+      : sites_(sites), options_(options), positions_{sites} {
+    if (options.reach > 0) tree_.emplace(3, positions_);
+  }
 
   /// Valid until the next call.
   std::vector<Neighbour>& of(uint32_t record) {
     const Site& own = sites_[record];
     const float reach = options_.reach * own.radius;
     list_.clear(), found_.clear();
-    if (reach > 0) tree_.radiusSearch(&own.position.x, reach * reach, found_, {});
+    if (reach > 0) tree_->radiusSearch(&own.position.x, reach * reach, found_, {});
     for (const auto& [index, square] : found_)
       if (serves(sites_[index], own)) {
         const vec3 away = sites_[index].position - own.position;
@@ -107,7 +110,7 @@ class Neighbourhood {
   const std::vector<Site>& sites_;
   SmoothingOptions options_;
   Positions positions_;
-  Tree tree_;
+  std::optional<Tree> tree_;  ///< none without a reach
   std::vector<std::pair<uint32_t, float>> found_;
   std::vector<Neighbour> list_;
 };

@@ -1,8 +1,8 @@
 // The records of an irradiance cache: layout and kernel parameters. Read by C++ and GLSL.
 //
-// A record stores the irradiance at a surface point in parts, so that components stay separate wherever it is
-// read. Parts have the numbers of the components of a path that begins with ED: direct light, light over one
-// diffuse event, over more, or over mirrors and glass alone.
+// A record stores the irradiance at a surface point in parts, so that components stay separate wherever it is read. Parts
+// have the numbers of the components of a path that begins with ED: direct light, light over one diffuse event, over more,
+// or over mirrors and glass alone.
 #ifndef LUCERNA_SHARED_IRRADIANCE_CACHE_RECORDS_H
 #define LUCERNA_SHARED_IRRADIANCE_CACHE_RECORDS_H
 #include "shaders/shared/compat.h"
@@ -25,26 +25,27 @@ LUCERNA_CONST uint k_record_layout = 5u;
 //   1: normal xyz, unit, on the lit side; harmonic mean of the distances to its rays' hits [m]
 //   2: bits of the number of rays so far, minimum distance [m], standard error of the luminance of the sum of
 //   all parts (irradiance), bits k_record_*
-//   3: the ellipse of validity: direction of its greater axis with length sqrt(1/r^2 - 1/R^2) (0 for a
-//   circle); its lesser radius r [m] 4: with metric `hessian`: estimate from the pilot rays of this record
-//   and its neighbours, which determines the ellipse: Hessian of the irradiance's luminance in tangent and
-//   bitangent, xx, xy, yy [1/m^2], and that luminance 5: bits of the media that contain the record, as in
-//   PathState; with metric `hessian` the greatest r at which such an ellipse contains no hit [m], 0: unknown;
-//   0; 0
+//   3: the ellipse of validity: direction of its greater axis with length sqrt(1/r^2 - 1/R^2) (0 for a circle);
+//   its lesser radius r [m]
+//   4: with metric `hessian`: estimate from the pilot rays of this record and its neighbours, which determines
+//   the ellipse: Hessian of the irradiance's luminance in tangent and bitangent, xx, xy, yy [1/m^2], and that
+//   luminance
+//   5: bits of the media that contain the record, as in PathState; with metric `hessian` the greatest r at which
+//   such an ellipse contains no hit [m], 0: unknown; 0; 0
 LUCERNA_CONST uint k_record_texels = 6u;
 /// Maximum ratio of the greater radius to the lesser.
 LUCERNA_CONST float k_record_ratio = 2.0f;
 LUCERNA_CONST uint k_record_pass = 0x7fu;  ///< mask: the pass that placed it, from 0
-/// Crowded: geometry is nearer than a few minimum radii, so the light there is too fine to interpolate. The
-/// record stores no irradiance; paths within its disc gather. In place of irradiance it stores a guide table
-/// (k_guide_*).
+/// Crowded: geometry is nearer than a few minimum radii, so the light there is too fine to interpolate. The record stores no
+/// irradiance; paths within its disc gather. In place of irradiance it stores a guide table (k_guide_*).
 LUCERNA_CONST uint k_record_crowded = 0x80u;
 LUCERNA_CONST uint k_record_origin_shift = 8u;  ///< 2 bits: origin of its candidate, k_origin_*
 LUCERNA_CONST uint k_record_facet_shift =
     10u;  ///< 11 + 11 bits: the geometric normal, octahedral (Cigolle et al. 2014)
-LUCERNA_CONST uint k_origin_screen = 0u;     ///< a directly visible surface
-LUCERNA_CONST uint k_origin_world = 1u;      ///< seen in mirrors, through glass or by one diffuse bounce
-LUCERNA_CONST uint k_origin_recursive = 2u;  ///< a vertex beyond the lookup, for rays of other records
+LUCERNA_CONST uint k_origin_screen = 0u;  ///< a directly visible surface
+LUCERNA_CONST uint k_origin_world = 1u;   ///< seen in mirrors, through glass or by one diffuse bounce
+LUCERNA_CONST uint k_origin_recursive =
+    2u;  ///< a vertex beyond the lookup, for rays of other records
 
 // irradiance_texels: k_part_texels for each (record, part), record by record: 16 floats:
 //   irradiance rgb; rotational gradient rgb along the tangent, then along the bitangent; translational
@@ -54,17 +55,17 @@ LUCERNA_CONST uint k_origin_recursive = 2u;  ///< a vertex beyond the lookup, fo
 LUCERNA_CONST uint k_part_texels = 4u;
 LUCERNA_CONST float k_record_slope_most = 1e30f;
 
-// For crowded records the same texels store one byte for each cell of the hemisphere, elevations of one
-// azimuth in turn: the luminance of its rays, over the maximum. Cells are uniform in azimuth from the tangent
-// on, and in sin^2 of the angle from the normal.
+// For crowded records the same texels store one byte for each cell of the hemisphere, elevations of one azimuth in turn: the
+// luminance of its rays, over the maximum. Cells are uniform in azimuth from the tangent on, and in sin^2 of the angle from
+// the normal.
 LUCERNA_CONST uint k_guide_azimuths = 32u, k_guide_elevations = 8u;
 LUCERNA_CONST uint k_guide_texels = 16u;
 LUCERNA_CONST uint k_guide_most =
     126u;  ///< maximum value of a byte, so that texels read as floats are neither infinite nor NaN
 LUCERNA_CONST uint k_no_guide = 0xffffffffu;
 
-/// Bytes of a record with its sphere, its irradiance for lookups, and its errors; the references of the
-/// octree are additional.
+/// Bytes of a record with its sphere, its irradiance for lookups, and its errors; the references of the octree are
+/// additional.
 LUCERNA_CONST uint k_record_bytes =
     16u * (k_record_texels + 2u * k_part_count * k_part_texels + 1u) + 4u * k_lookup_lanes;
 
@@ -75,9 +76,9 @@ LUCERNA_CONST uint k_candidate_media = 4u;
 LUCERNA_CONST uint k_candidate_texels = 2u;
 
 struct RelightPreviewPush {
-  vec3 factor;     ///< factor on the light; separate light groups have further factors
-  uint count;      ///< number of records
-  uint sky_group;  ///< light group of the sky
+  vec3 factor;  ///< factor on the light; separate light groups have further factors
+  uint count;  ///< number of records
+  uint sky_group; ///< light group of the sky
 };
 
 LUCERNA_CONST uint k_no_routes = 0x4444u;  ///< k_component_none for every part
@@ -87,8 +88,8 @@ LUCERNA_CONST uint k_probe_none = 0u;
 LUCERNA_CONST uint k_probe_lookups = 1u;
 /// Likewise, but paths continue, and one of the diffuse vertices from the lookup on is noted at random.
 LUCERNA_CONST uint k_probe_beyond = 2u;
-/// Notes the first vertex if it is diffuse, with or without a lookup or records, and ends the path there. If
-/// its normal map is too steep for records, the origin is below 0.
+/// Notes the first vertex if it is diffuse, with or without a lookup or records, and ends the path there. If its
+/// normal map is too steep for records, the origin is below 0.
 LUCERNA_CONST uint k_probe_screen = 3u;
 /// Notes the last vertex with a lookup, with or without records. Paths end as in k_probe_lookups.
 LUCERNA_CONST uint k_probe_reads = 4u;
@@ -96,8 +97,8 @@ LUCERNA_CONST uint k_probe_reads = 4u;
 /// end, is noted.
 LUCERNA_CONST uint k_probe_next = 5u;
 
-/// Notes, in place of a candidate, one of the vertices that read records, with its throughput there. Paths
-/// end at such a vertex or continue by a diffuse event. The mean of the noted throughput times the records'
+/// Notes, in place of a candidate, one of the vertices that read records, with its throughput there. Paths end
+/// at such a vertex or continue by a diffuse event. The mean of the noted throughput times the records'
 /// irradiance there is the light that pictures read from them.
 LUCERNA_CONST uint k_probe_errors = 6u;
 /// Likewise, for the records' own lookups: paths continue past their first lookup and note a later one.
@@ -105,8 +106,7 @@ LUCERNA_CONST uint k_probe_errors_beyond = 7u;
 
 // Noted by the last two, in candidate_texels:
 //   0: position; bits 1 + state of the automaton + k_note_media times the media, 0: nothing noted
-//   1: smooth normal on the lit side, bits throughput_pack() of the throughput after the diffuse lobe, over
-//   pi
+//   1: smooth normal on the lit side, bits throughput_pack() of the throughput after the diffuse lobe, over pi
 LUCERNA_CONST uint k_note_media = 32u;
 
 /// Texels of a record's residual by leave_one_out.comp, relative to the luminance of its irradiance: the
@@ -116,9 +116,9 @@ LUCERNA_CONST uint k_residual_texels = 1u + k_lookup_lanes / 4u;
 
 struct PropagatePush {
   uint width, height;  ///< of the picture, in pixels of the film
-  uint step;           ///< film pixels along the side of one of this kernel's pixels: a power of 2, at most 8
-  uint pixels;         ///< number of this kernel's pixels in the work item, two paths each
-  uint beyond;         ///< not 0: includes the errors of records that records read
+  uint step;  ///< film pixels along the side of one of this kernel's pixels: a power of 2, at most 8
+  uint pixels;  ///< number of this kernel's pixels in the work item, two paths each
+  uint beyond;  ///< not 0: includes the errors of records that records read
 };
 
 /// Parameters of lookups.
@@ -179,8 +179,7 @@ struct ImportancePush {
   uint next;   ///< not 0: includes the places of next lookups
 };
 LUCERNA_CONST uint k_importance_steps = 256u;  ///< importance of a record that provides all light of a pixel
-/// Upper bound of a record's importance through another one, relative to that one: its square in steps is
-/// below 2^32.
+/// Upper bound of a record's importance through another one, relative to that one: its square in steps is below 2^32.
 LUCERNA_CONST float k_importance_most = 2048.0f;
 LUCERNA_CONST uint k_importance_place = 0x40000000u;  ///< flag of a place; above the 22 bits of its normal
 
@@ -191,8 +190,7 @@ struct EllipsePush {
   float dark;         ///< minimum luminance of irradiance for relative errors
   float near;         ///< maximum lesser radius over the greatest one without a hit inside
   float near_tried;   ///< likewise, if only the distance of the nearest hit is known
-  /// Distance of a hit over the minimum radius, below which records are crowded; 0: crowding is already
-  /// decided.
+  /// Distance of a hit over the minimum radius, below which records are crowded; 0: crowding is already decided.
   float crowd;
 };
 
