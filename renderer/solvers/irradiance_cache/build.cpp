@@ -65,6 +65,7 @@ void Cache::Impl::look_from(const CacheView& view) {
 void Cache::Impl::restart_passes(bool beyond) {
   status.pass = 0;
   progress.probing.restart(beyond);
+  progress.ends_early = false;
   status.stop = progress.stopped_before = StopReason::building;
 }
 
@@ -73,7 +74,27 @@ void Cache::Impl::drop_pass() {
   queue_until(ranges.placed());
   progress.stage = Stage::probe;
   progress.probing.begun = false;
+  progress.ends_early = false;
   places.forget();
+}
+
+bool Cache::Impl::end_with_first_level() {
+  if (progress.stage == Stage::evaluate && ranges.waiting() > 0) {
+    // Records get a level of many rays in rounds, all of them a round before the next.
+    const bool one_round = progress.levels.round_rays() == progress.levels.rays();
+    const auto have = uint32_t(one_round ? progress.queue.done_count() : 0);
+    if (have == 0) return false;
+    tables.records.truncate(ranges.evaluated() + have);
+    pass().records = have;
+    queue_until(tables.records.size());
+    progress.stage = Stage::index;
+  } else if (progress.stage != Stage::index) {
+    return false;
+  }
+  progress.ends_early = true;
+  progress.pauses.dropped();
+  status.waits = false;
+  return true;
 }
 
 void Cache::Impl::begin_pass(const Work& w) {
@@ -124,6 +145,7 @@ void Cache::Impl::next_pass() {
 
 void Cache::Impl::finish(StopReason reason) {
   progress.stage = Stage::done;
+  progress.ends_early = false;
   status.stop = reason;
   progress.pauses.complete();
   status.waits = false;

@@ -36,6 +36,7 @@ struct BuildProgress {
   Refining refining;
   /// Why building had stopped before relighting; it stops again for that reason afterwards.
   StopReason stopped_before = StopReason::building;
+  bool ends_early = false;  ///< building ends with the stage `index`
 };
 
 struct Cache::Impl {
@@ -81,6 +82,9 @@ struct Cache::Impl {
   void restart_passes(bool beyond);
   /// Drops places that are not evaluated, and all candidates.
   void drop_pass();
+  /// In the first level of a pass: building ends with those of its records that have all rays of the level.
+  /// Otherwise, or if there are none: returns false and does nothing.
+  bool end_with_first_level();
   void relight(const std::optional<std::vector<vec3>>& factors, uint32_t sky_group);
   /// If the first pass has no light yet: keeps its places and repeats only what depends on light. Otherwise,
   /// or if nothing is being built: returns false and does nothing.

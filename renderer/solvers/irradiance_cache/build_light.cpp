@@ -105,6 +105,12 @@ bool Cache::Impl::evaluate(const Work& w) {
 bool Cache::Impl::index(const Work& w) {
   progress.stage = Stage::evaluate;
   publish_level(w);
+  if (progress.ends_early) {
+    end_stage(BuildStage::octree, true);
+    ranges.complete_pass();
+    finish(StopReason::finished_early);
+    return true;
+  }
   StageTimer timer(w.wavefront);
   picture.importance = picture.reads.measure(w.stream(), binding(), ranges.evaluated());
   add_time(BuildStep::probe, timer.milliseconds());

@@ -147,8 +147,8 @@ class Cache {
   void look_from(const CacheView& view);
   /// Removes all records.
   void clear();
-  /// Stops building. Complete records serve; pixels without records are path traced. Does nothing while
-  /// relighting.
+  /// Ends building, at once or with the next step(): records with all rays of the first level serve, pixels
+  /// without records are path traced. Does nothing while relighting.
   void finish_early();
   /// Requires ready(). Starts further rays, to about `factor` > 1 times all rays so far, for records whose
   /// noise exceeds the bound of the last time over sqrt(factor), without changing places and radii. step()
