@@ -21,8 +21,8 @@ namespace lucerna::plan {
 struct Goal {
   double samples = 256;           ///< cost that may be spent, in path-traced samples
   std::optional<double> error{};  ///< error as seen to be reached at the least cost
-  /// Preparation ends at k_latest_preparation of the cost, as with a limit of time. Where data is missing
-  /// then, paths compute the light.
+  /// Preparation ends at k_most_preparation of the cost, as with a limit of time. Where data is missing then,
+  /// paths compute the light.
   bool cuts_preparation = false;
 };
 /// The settings' goal: samples, or the target error of adaptive sampling. `seconds`: limit of time, if any;

@@ -46,8 +46,11 @@ inline constexpr const char *k_batch = "32768", *k_room = "20000";
 
 /// Dense, low-noise records with gathering along edges: small pictures use more of the cache than with its
 /// defaults, which place few records at first.
-inline const Settings k_dense_records{
-    {"cache.gather", "true"}, {"cache.min_radius", "3"}, {"cache.noise", "0.03"}, {"cache.stop", "0.002"}};
+inline const Settings k_dense_records{{"cache.gather", "true"},
+                                      {"cache.metric", "hessian"},
+                                      {"cache.min_radius", "3"},
+                                      {"cache.noise", "0.03"},
+                                      {"cache.stop", "0.002"}};
 
 /// These settings, and those of dense records where they are not set.
 inline Settings dense_records(Settings settings) {

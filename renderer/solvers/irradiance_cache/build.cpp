@@ -1,5 +1,6 @@
 #include "solvers/irradiance_cache/build.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -95,6 +96,18 @@ bool Cache::Impl::end_with_first_level() {
   progress.pauses.dropped();
   status.waits = false;
   return true;
+}
+
+double Cache::Impl::missing() const {
+  // Paths count the gaps that the passes before have left. The records of a first pass leave gaps that are not
+  // known yet.
+  if (status.passes.empty() || status.passes.back().paths == 0) return 1;
+  const CachePass& now = status.passes.back();
+  const double before = double(now.uncovered) / double(now.paths);
+  if (now.number == 0 || progress.stage < Stage::evaluate) return before;
+  if (ranges.waiting() == 0 || progress.stage == Stage::index) return 0;
+  const RecordQueue& queue = progress.queue;
+  return before * (1 - double(queue.done_count()) / double(std::max<size_t>(queue.all().size(), 1)));
 }
 
 void Cache::Impl::begin_pass(const Work& w) {

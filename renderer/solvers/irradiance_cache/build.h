@@ -85,6 +85,8 @@ struct Cache::Impl {
   /// In the first level of a pass: building ends with those of its records that have all rays of the level.
   /// Otherwise, or if there are none: returns false and does nothing.
   bool end_with_first_level();
+  /// Estimated share of the picture's paths that would find no record if building ended now.
+  double missing() const;
   void relight(const std::optional<std::vector<vec3>>& factors, uint32_t sky_group);
   /// If the first pass has no light yet: keeps its places and repeats only what depends on light. Otherwise,
   /// or if nothing is being built: returns false and does nothing.

@@ -7,18 +7,20 @@
 namespace lucerna::irradiance_cache {
 namespace {
 
-// Measured from scratch on classroom, hall and two real interiors: remaining share of the work when a pass
-// began, ...
-constexpr std::array<double, 7> k_remaining_after = {1, 0.85, 0.6, 0.32, 0.21, 0.11, 0.04};
-// ... share of placement in the first pass, and rays per record in it.
-constexpr double k_placing = 0.22, k_rays_a_record = 600;
+// Measured from scratch with the default settings, on classroom, hall, teapot and two real interiors:
+// remaining share of the work when a pass began, ...
+constexpr std::array<double, 7> k_remaining_after = {1, 0.7, 0.38, 0.12, 0.06, 0.04, 0.03};
+// ... and when the last one began; ...
+constexpr double k_remaining_last = 0.12;
+// ... share of placement in the first pass, and rays per record in it, without those of placement.
+constexpr double k_placing = 0.5, k_rays_a_record = 300;
 
 /// Remaining share of the work by the share of uncovered paths, largest first.
 struct Remaining {
   double share, remaining;
 };
 constexpr std::array<Remaining, 6> k_remaining_uncovered = {
-    {{1, 1}, {0.6, 0.85}, {0.25, 0.57}, {0.02, 0.3}, {0.006, 0.2}, {0.0015, 0.08}}};
+    {{1, 1}, {0.6, 0.75}, {0.1, 0.47}, {0.02, 0.25}, {0.008, 0.14}, {0.0015, 0.05}}};
 
 double remaining_uncovered(double share) {
   if (share <= 0) return 0;
@@ -70,8 +72,9 @@ std::optional<BuildForecast> forecast_of(const CacheStatus& s, double stop_share
   }
   if (now.number == 0) {
     if (now.rays == 0 || now.records == 0) return {};
+    const double evaluating = double(now.rays) - double(now.tried) * Evaluator::k_distance_rays;
     const double part =
-        k_placing + (1 - k_placing) * std::min(1.0, double(now.rays) / (now.records * k_rays_a_record));
+        k_placing + (1 - k_placing) * std::clamp(evaluating / (now.records * k_rays_a_record), 0.0, 1.0);
     return forecast(done / (part * (1 - k_remaining_after[1])), done);
   }
   const double begun = done - of_pass;  // at the start of this pass
@@ -80,7 +83,7 @@ std::optional<BuildForecast> forecast_of(const CacheStatus& s, double stop_share
   // Small scenes have fewer passes, which the share of uncovered paths shows.
   if (looked)
     remaining = std::sqrt(remaining * remaining_uncovered(double(now.uncovered) / double(now.paths)));
-  if (last) remaining = k_remaining_after.back();
+  if (last) remaining = k_remaining_last;
   return forecast(begun / (1 - remaining), done);
 }
 

@@ -114,6 +114,11 @@ void Cache::look_from(const CacheView& view) { impl_->look_from(view); }
 
 bool Cache::ready() const { return impl_->progress.stage == Stage::done || refines(); }
 
+bool Cache::usable() const {
+  constexpr double k_most_missing = 0.1;
+  return ready() || impl_->missing() <= k_most_missing;
+}
+
 void Cache::refine(double factor) { impl_->begin_refining(factor); }
 
 bool Cache::refines() const { return impl_->progress.refining.under_way; }

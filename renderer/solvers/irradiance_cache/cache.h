@@ -187,6 +187,8 @@ class Cache {
   /// changed.
   PlacementShown placement() const;
   bool ready() const;
+  /// True once few paths would find no record if building ended early.
+  bool usable() const;
   /// Replaces all records (Records::raw of a cache with at least these routes' parts). Afterwards as after a
   /// pass: building continues as after extend(), or, with `complete`, is ready with `status`.
   void restore(transport::Wavefront& wavefront, RawRecords raw, const CacheStatus& status, bool complete);

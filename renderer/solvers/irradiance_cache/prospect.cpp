@@ -10,11 +10,11 @@ namespace {
 
 // Measured with the default settings in pictures of k_pixels pixels, on the program's scenes and on others
 // (lucerna bench auto, with kernels compiled before). Cost of building: k_building rays a pixel, within a
-// factor of 1.5 on nine of ten scenes. Where interreflection has the variance V: error of the records,
+// factor of 1.5 on eight of nine scenes. Where interreflection has the variance V: error of the records,
 // k_records V^k_records_power, and samples after which refinement has reduced it; share of V that lookups
 // leave; error of interpolation.
 constexpr double k_pixels = 320 * 180;
-constexpr double k_building = 315, k_records = 0.04, k_records_power = 0.3;
+constexpr double k_building = 480, k_records = 0.04, k_records_power = 0.3;
 constexpr double k_refined = 128, k_left = 0.02, k_interpolation = 0.02;
 
 }  // namespace

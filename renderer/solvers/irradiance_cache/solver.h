@@ -47,7 +47,7 @@ class CacheSolver final : public solvers::Solver,
   }
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
-  bool usable() const override { return ready() || cache_.status().pass >= 1; }
+  bool usable() const override { return cache_.usable(); }
   void finish_early() override { cache_.finish_early(); }
   uint64_t paths_refined() const override { return cache_.status().rays; }
   void begin_refining(double factor) override { cache_.refine(factor); }
