@@ -126,8 +126,10 @@ TEST_CASE("The built-in matrices are valid") {
   CHECK(builtin_matrix("quick", k_scenes).scenes.size() == 3);
   const Matrix indirect = builtin_matrix("indirect", k_scenes);
   CHECK(indirect.scenes.size() == 5);
-  // The default metric.
-  CHECK(indirect.set == SettingValues{{"components.caustic", "off"}, {"components.primary", "off"}});
+  // The metric for many rays.
+  CHECK(indirect.set == SettingValues{{"cache.metric", "hessian"},
+                                      {"components.caustic", "off"},
+                                      {"components.primary", "off"}});
   CHECK_THROWS_AS(builtin_matrix("slow", k_scenes), Error);
 }
 
