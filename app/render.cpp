@@ -350,8 +350,10 @@ double run(session::Renderer& r, const RenderArguments& a, const std::vector<ses
   bool may_prepare = !a.seconds || !makes_picture(a) || !outputs.work().empty();
   while ((makes_picture(a) || !outputs.work().empty()) && !r.done() && !interrupt.signal() &&
          (!a.seconds || timer.seconds() < limit)) {
+    // Of the time since the picture was begun: with components.X=auto its solvers were chosen then.
+    const double since = r.progress().seconds(), left = limit - (timer.seconds() - since);
     const double most = r.solvers().usable() ? plan::k_most_preparation : plan::k_latest_preparation;
-    if (!may_prepare && timer.seconds() > most * limit) {
+    if (!may_prepare && since > most * left) {
       may_prepare = true;
       if (r.preparing()) {
         log::info("{:.0f} % of the time is over: the picture is rendered with the data prepared so far",

@@ -115,6 +115,7 @@ void Cache::look_from(const CacheView& view) { impl_->look_from(view); }
 bool Cache::ready() const { return impl_->progress.stage == Stage::done || refines(); }
 
 bool Cache::usable() const {
+  // Where interreflection has the noise, a tenth of its paths has more of it than the records that are there.
   constexpr double k_most_missing = 0.1;
   return ready() || impl_->missing() <= k_most_missing;
 }

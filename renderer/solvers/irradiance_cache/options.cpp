@@ -11,8 +11,8 @@ std::vector<OptionInfo> radius_rows() {
           "cache.metric", "split-sphere", {"split-sphere", "hessian"}, "",
           "Irradiance cache: measure that sets the radii of records. split-sphere: distances of the "
           "surfaces around, independent of the light. hessian: curvature of the irradiance; the "
-          "region of validity is an ellipse, longer where the light changes less. It takes twice "
-          "the time to build, which pays for many rays a record and small minimum radii.",
+          "region of validity is an ellipse, longer where the light changes less. It takes a quarter "
+          "more time to build, which pays where radii are far above the minimum.",
           "Metric"),
       real_option(
           "cache.error", "0.3", 0.01, 1, "",
