@@ -99,8 +99,8 @@ bool Cache::Impl::end_with_first_level() {
 }
 
 double Cache::Impl::missing() const {
-  // Paths count the gaps that the passes before have left. The records of a first pass leave gaps that are not
-  // known yet.
+  // Paths count the gaps that the passes before have left. The records of a first pass leave gaps that are
+  // not known yet.
   if (status.passes.empty() || status.passes.back().paths == 0) return 1;
   const CachePass& now = status.passes.back();
   const double before = double(now.uncovered) / double(now.paths);
