@@ -121,6 +121,16 @@ struct Bed {
     for (const auto& component : image.components)
       for (const vec3& v : component) REQUIRE((v.x >= 0 && v.x < 1e4f && v.y >= 0 && v.z >= 0));
   }
+
+  /// ... and has the light of that picture. Uncovered points are path traced, with the noise of 64 samples of
+  /// 256 pixels.
+  void finish_as(const film::Image& complete) {
+    finish();
+    watch();
+    const film::Image image = r.image();
+    for (const int c : {0, 1, 2})
+      CHECK(test::mean(image.components[c]) == Approx(test::mean(complete.components[c])).epsilon(0.06));
+  }
 };
 
 /// The current build stage, to locate a failure.
@@ -231,12 +241,7 @@ TEST_CASE("a cache build can finish early at any time, and the picture is that o
     CHECK(test::cache(r)->records().size() == before);
     if (ready) break;
     ++(before == 0 ? none : some);
-    bed.finish();
-    bed.watch();
-    // Uncovered points are path traced, with the noise of 64 samples of 256 pixels.
-    const film::Image image = r.image();
-    for (const int c : {0, 1, 2})
-      CHECK(test::mean(image.components[c]) == Approx(test::mean(complete.components[c])).epsilon(0.06));
+    bed.finish_as(complete);
     // The next light edit relights the existing records.
     bed.edit(0, 0);
     bed.watch();
@@ -276,11 +281,7 @@ TEST_CASE("a build that ends within a first level of rays keeps the records that
       CHECK(record.rays >= 64);
       CHECK(record.radius > 0);
     }
-    bed.finish();
-    bed.watch();
-    const film::Image image = r.image();
-    for (const int c : {0, 1, 2})
-      CHECK(test::mean(image.components[c]) == Approx(test::mean(complete.components[c])).epsilon(0.06));
+    bed.finish_as(complete);
     // An edit relights these records and completes the build.
     bed.edit(0, 0);
     bed.finish();

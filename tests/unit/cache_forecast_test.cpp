@@ -45,7 +45,7 @@ CachePass pass(const Pass& p, uint32_t number, double part) {
   r.number = number, r.complete = part == 1;
   r.paths = 1000000, r.uncovered = uint64_t(p.asked * 1e6);
   r.tried = p.tried, r.records = p.records;
-  const double placing = uint64_t{p.tried} * 64.0;  // rays that measure distances
+  const double placing = double(p.tried) * Evaluator::k_distance_rays;  // rays that measure distances
   const double evaluated = (part * p.ms - p.placing_ms) / (p.ms - p.placing_ms);
   r.rays = uint64_t(placing + std::max(evaluated, 0.0) * (double(p.rays) - placing));
   r.ms[size_t(BuildStep::evaluate)] = part * p.ms;

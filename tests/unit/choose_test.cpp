@@ -97,13 +97,13 @@ TEST_CASE("interreflection goes to the cache where it has the noise and there is
   CHECK(with_time[2].reason.find("instead of") != std::string::npos);
   // No time for records.
   CHECK(plan::choose(facts, settings, &noisy, Goal{.samples = 16})[2].solver == "path");
-  // With a limit of time, half of it is for records, which take 60 samples here; what is missing is traced.
+  // With a limit of time, half of it is for records, which take 69 samples here; what is missing is traced.
   const auto limited = [&](double samples) {
     return plan::choose(facts, settings, &noisy, Goal{.samples = samples, .cuts_preparation = true});
   };
-  CHECK(limited(30)[2].solver == "path");
+  CHECK(limited(36)[2].solver == "path");
   CHECK(limited(70)[2].solver == "cache");
-  // More than with a tenth of its rays, which would be expected if records were placed in no order.
+  // A third of the records serves more than a third of the picture.
   CHECK(limited(50)[2].solver == "cache");
   // Direct light has the noise: records would only cost.
   const Findings direct = findings(20, 0.5, 0.3, 0);

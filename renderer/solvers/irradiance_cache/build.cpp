@@ -75,7 +75,6 @@ void Cache::Impl::drop_pass() {
   queue_until(ranges.placed());
   progress.stage = Stage::probe;
   progress.probing.begun = false;
-  progress.ends_early = false;
   places.forget();
 }
 
@@ -103,7 +102,7 @@ double Cache::Impl::missing() const {
   // not known yet.
   if (status.passes.empty() || status.passes.back().paths == 0) return 1;
   const CachePass& now = status.passes.back();
-  const double before = double(now.uncovered) / double(now.paths);
+  const double before = now.uncovered_share();
   if (now.number == 0 || progress.stage < Stage::evaluate) return before;
   if (ranges.waiting() == 0 || progress.stage == Stage::index) return 0;
   const RecordQueue& queue = progress.queue;
@@ -158,7 +157,6 @@ void Cache::Impl::next_pass() {
 
 void Cache::Impl::finish(StopReason reason) {
   progress.stage = Stage::done;
-  progress.ends_early = false;
   status.stop = reason;
   progress.pauses.complete();
   status.waits = false;

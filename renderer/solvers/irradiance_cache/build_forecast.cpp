@@ -67,8 +67,7 @@ std::optional<BuildForecast> forecast_of(const CacheStatus& s, double stop_share
   const bool looked = now.paths > 0;
   if (before > 0) {
     if (!looked) return {};
-    return forecast(done - of_pass + before * remaining_uncovered(double(now.uncovered) / double(now.paths)),
-                    done, before);
+    return forecast(done - of_pass + before * remaining_uncovered(now.uncovered_share()), done, before);
   }
   if (now.number == 0) {
     if (now.rays == 0 || now.records == 0) return {};
@@ -81,8 +80,7 @@ std::optional<BuildForecast> forecast_of(const CacheStatus& s, double stop_share
   const bool last = looked && double(now.uncovered) <= stop_share * double(now.paths);
   double remaining = k_remaining_after[std::min<size_t>(now.number, k_remaining_after.size() - 1)];
   // Small scenes have fewer passes, which the share of uncovered paths shows.
-  if (looked)
-    remaining = std::sqrt(remaining * remaining_uncovered(double(now.uncovered) / double(now.paths)));
+  if (looked) remaining = std::sqrt(remaining * remaining_uncovered(now.uncovered_share()));
   if (last) remaining = k_remaining_last;
   return forecast(begun / (1 - remaining), done);
 }

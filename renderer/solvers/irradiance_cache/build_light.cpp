@@ -91,6 +91,7 @@ bool Cache::Impl::evaluate(const Work& w) {
   bool more_levels = true;
   if (first) {
     progress.stage = Stage::index;
+    progress.ends_early = false;
   } else {
     more_levels = next_level();
     publish_level(w);

@@ -45,6 +45,7 @@ struct CachePass {
   uint64_t rays = 0;             ///< rays of the records
   /// By BuildStep: device time of the stages, and wall time of host work (including its tracer).
   std::array<double, k_build_steps.size()> ms{};
+  double uncovered_share() const { return double(uncovered) / double(paths); }  ///< requires paths > 0
   double total_ms() const {
     double sum = 0;
     for (const double m : ms) sum += m;

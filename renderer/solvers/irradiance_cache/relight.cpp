@@ -79,7 +79,6 @@ bool Cache::Impl::relight_first_places() {
     progress.levels.restart();
     queue_until(tables.records.size());
   }
-  progress.ends_early = false;
   progress.pauses.dropped();
   status.waits = false;
   return true;
