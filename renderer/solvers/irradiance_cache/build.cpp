@@ -109,6 +109,26 @@ double Cache::Impl::missing() const {
   return before * (1 - double(queue.done_count()) / double(std::max<size_t>(queue.all().size(), 1)));
 }
 
+bool Cache::Impl::work_on_stage(const Work& w) {
+  switch (progress.stage) {
+    case Stage::probe:
+      return probe(w);
+    case Stage::choose:
+      return choose(w);
+    case Stage::measure:
+      return measure(w);
+    case Stage::thin:
+      return thin(w);
+    case Stage::evaluate:
+      return evaluate(w);
+    case Stage::index:
+      return index(w);
+    case Stage::done:
+      break;
+  }
+  return true;
+}
+
 void Cache::Impl::begin_pass(const Work& w) {
   PictureProbing& probing = progress.probing;
   if (probing.camera_moved) drop_roomy(w);

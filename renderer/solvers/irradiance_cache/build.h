@@ -62,13 +62,15 @@ struct Cache::Impl {
   BuildProgress progress;
   CacheStatus status;
   RelightPreview preview;
+  IndexFor index_for = IndexFor::picture;  ///< of the latest octree
   bool previews = false;  ///< a preview of relighting is wanted
 
   Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheRoutes& routes,
        const CacheOptions& o);
 
-  /// One bounded work item of each stage; false if cancelled: it will be repeated. A complete stage starts
-  /// the next one.
+  /// One bounded work item of the present stage, or of each one; false if cancelled: it will be repeated. A
+  /// complete stage starts the next one.
+  bool work_on_stage(const Work& work);
   bool probe(const Work& work);
   bool choose(const Work& work);
   bool measure(const Work& work);
@@ -111,10 +113,15 @@ struct Cache::Impl {
   Radii::Bind binding() const {
     return [this](gpu::Resources& to) { tables.bind(to); };
   }
-  /// Builds the octree over the evaluated records, or over the first `count`.
-  void build_octree(transport::Wavefront& wavefront) { build_octree(wavefront, ranges.evaluated()); }
-  void build_octree(transport::Wavefront& wavefront, uint32_t count) {
-    status.references = tables.build_octree(wavefront, count);
+  /// Builds the octree over the first `count` records.
+  void build_octree(transport::Wavefront& wavefront, uint32_t count, IndexFor use) {
+    status.references = tables.build_octree(wavefront, count, use);
+    index_for = use;
+  }
+  /// Building is complete: the octree gets the detail that the picture wants.
+  void index_for_picture(transport::Wavefront& wavefront) {
+    if (ranges.evaluated() > 0 && index_for != IndexFor::picture)
+      build_octree(wavefront, ranges.evaluated(), IndexFor::picture);
   }
   void write_frame(uint32_t probing, const RouteTable& routes) {
     tables.write_frame(ranges.evaluated(), probing, routes);
@@ -165,8 +172,10 @@ struct Cache::Impl {
   enum class By { distance, light };
   void set_radii(const Work& work, By by);
   /// Clamps the radii of the first `count` records, at least the evaluated ones, by the nearest geometry that
-  /// any neighbour has met; rebuilds the octree.
+  /// any neighbour has met, by the octree over these; rebuilds it over the evaluated ones.
   void clamp_radii(const Work& work, uint32_t count, float near);
+  /// build_octree(), timed.
+  void index_records(const Work& work, uint32_t count, IndexFor use);
 
   // Light:
   /// Traces one batch of the importance paths; false if cancelled.

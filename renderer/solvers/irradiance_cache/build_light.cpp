@@ -136,9 +136,7 @@ void Cache::Impl::publish_level(const Work& w) {
   }
   ranges.evaluate_pass();
   status.records = ranges.evaluated();
-  StageTimer timer(w.wavefront);
-  build_octree(w.wavefront);
-  add_time(BuildStep::octree, timer.milliseconds());
+  index_records(w, ranges.evaluated(), sets_radii ? IndexFor::radii : IndexFor::building);
   if (sets_radii) clamp_radii(w, ranges.evaluated(), options.radius.nearest);
   write_frame();
 }

@@ -61,6 +61,7 @@ bool Cache::Impl::measure(const Work& w) {
     queue_until(ranges.pass_end());
     progress.stage = Stage::evaluate;
   } else {
+    index_records(w, ranges.pass_end(), IndexFor::radii);
     clamp_radii(w, ranges.pass_end(), radii.tried_near());
     places.radii = tables.records.radii(ranges.evaluated());
     progress.stage = Stage::thin;
@@ -72,9 +73,9 @@ bool Cache::Impl::measure(const Work& w) {
 void Cache::Impl::pool(const Work& w) {
   if (ranges.waiting() == 0) return;
   StageTimer timer(w.wavefront);
-  build_octree(w.wavefront, ranges.pass_end());
+  build_octree(w.wavefront, ranges.pass_end(), IndexFor::radii);
   radii.pool(w.stream(), binding(), ranges.evaluated(), ranges.waiting());
-  build_octree(w.wavefront);
+  build_octree(w.wavefront, ranges.evaluated(), IndexFor::building);
   add_time(BuildStep::radius, timer.milliseconds());
 }
 
@@ -90,16 +91,16 @@ void Cache::Impl::set_radii(const Work& w, By by) {
 }
 
 void Cache::Impl::clamp_radii(const Work& w, uint32_t count, float near) {
-  const auto index_first = [&](uint32_t n) {
-    StageTimer timer(w.wavefront);
-    build_octree(w.wavefront, n);
-    add_time(BuildStep::octree, timer.milliseconds());
-  };
-  if (count > ranges.evaluated()) index_first(count);
   StageTimer timer(w.wavefront);
   radii.clamp(w.stream(), binding(), count, near, crowd(), ranges.evaluated());
   add_time(BuildStep::radius, timer.milliseconds());
-  index_first(ranges.evaluated());
+  index_records(w, ranges.evaluated(), IndexFor::building);
+}
+
+void Cache::Impl::index_records(const Work& w, uint32_t count, IndexFor use) {
+  StageTimer timer(w.wavefront);
+  build_octree(w.wavefront, count, use);
+  add_time(BuildStep::octree, timer.milliseconds());
 }
 
 void Cache::Impl::drop_roomy(const Work& w) {
@@ -118,7 +119,7 @@ void Cache::Impl::drop_roomy(const Work& w) {
   if (kept.size() == raw.size()) return;
   raw.keep(kept);
   replace_records(raw);
-  build_octree(w.wavefront);
+  build_octree(w.wavefront, ranges.evaluated(), IndexFor::building);
   write_frame();
 }
 

@@ -101,7 +101,7 @@ void Cache::restore(transport::Wavefront& wavefront, RawRecords raw, const Cache
   c.status.loaded = raw.size();
   c.progress.probing.camera_moved = true;  // all present records are for the old camera
   c.status.rays = status.rays;
-  if (raw.size() > 0) c.build_octree(wavefront);
+  if (raw.size() > 0) c.build_octree(wavefront, c.ranges.evaluated(), IndexFor::picture);
   c.overlay.set_scales(c.tables.records.figures());
   c.write_frame();
   if (!complete) return;
@@ -153,23 +153,9 @@ bool Cache::step(transport::Wavefront& wavefront, const paths::Automaton& automa
   const Impl::Work work{wavefront, automaton, view, cancel};
   impl_->look_from(view);
   if (view.dark) impl_->finish(StopReason::dark);
-  switch (impl_->progress.stage) {
-    case Stage::probe:
-      return impl_->probe(work);
-    case Stage::choose:
-      return impl_->choose(work);
-    case Stage::measure:
-      return impl_->measure(work);
-    case Stage::thin:
-      return impl_->thin(work);
-    case Stage::evaluate:
-      return impl_->evaluate(work);
-    case Stage::index:
-      return impl_->index(work);
-    case Stage::done:
-      break;
-  }
-  return true;
+  const bool complete = impl_->work_on_stage(work);
+  if (impl_->progress.stage == Stage::done) impl_->index_for_picture(wavefront);
+  return complete;
 }
 
 bool Cache::look_at_picture(transport::Wavefront& wavefront, const CacheView& view,

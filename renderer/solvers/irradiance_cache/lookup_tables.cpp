@@ -61,7 +61,6 @@ void LookupTables::bind(gpu::Resources& to) const {
 lookup::OctreeOptions LookupTables::octree_options(uint32_t records) {
   return {.spheres = records,
           .references = k_references * records,
-          .leaf_scale = 0.5f,
           .copies = true,
           .discs = true,
           .crowd = k_crowd};
@@ -71,7 +70,8 @@ lookup::Discs LookupTables::discs(const Records& records) {
   return records.discs(slab_thickness(std::max(k_off_plane, k_off_plane_least), k_normal_tolerance));
 }
 
-double LookupTables::build_octree(transport::Wavefront& wavefront, uint32_t count) {
+double LookupTables::build_octree(transport::Wavefront& wavefront, uint32_t count, IndexFor use) {
+  octree.set_leaf_scale(use == IndexFor::picture ? 0.5f : use == IndexFor::building ? 1.0f : 2.0f);
   const lookup::Discs discs = LookupTables::discs(records);
   const shared::OctreeHeader& h =
       octree.build(wavefront.stream(), records.spheres(), {.most = count}, &discs);

@@ -31,6 +31,13 @@ struct LeastRadius {
 /// CacheFrame::routes.
 using RouteTable = std::array<uint32_t, shared::k_delegated_states>;
 
+/// What an octree will serve. More detail takes longer to build and makes lookups shorter; results are equal.
+enum class IndexFor {
+  radii,     ///< one lookup a record
+  building,  ///< rays of records, and probing
+  picture,
+};
+
 /// The octree lists the evaluated records, or the first of the placed ones while radii are computed; the
 /// frame contains the number of evaluated ones. Neither is updated automatically: code that changes `records`
 /// must build the octree and write the frame.
@@ -46,7 +53,7 @@ struct LookupTables {
                const CacheOptions& options);
   void bind(gpu::Resources& to) const;
   /// Builds the octree over the first `count` records. Returns the mean number of leaves that list a record.
-  double build_octree(transport::Wavefront& wavefront, uint32_t count);
+  double build_octree(transport::Wavefront& wavefront, uint32_t count, IndexFor use);
   /// Writes the frame: `count` records are evaluated; paths write notes by `probing` (shared::k_probe_*),
   /// look up by `routes`, and continue by `branches` where they gather.
   void write_frame(uint32_t count, uint32_t probing, const RouteTable& routes, uint32_t branches = 1);

@@ -170,7 +170,7 @@ solvers::Invalidation Cache::adopt(transport::Wavefront& wavefront, const Cache&
   c.status = o.status;
   c.status.bytes = bytes, c.status.records = count, c.status.relighting.records = 0;
   if (!c.status.passes.empty() && !c.status.passes.back().complete) c.status.passes.pop_back();
-  if (count > 0) c.build_octree(wavefront);
+  if (count > 0) c.build_octree(wavefront, count, IndexFor::picture);
   c.overlay.set_scales(c.tables.records.figures());
   c.write_frame();
   const bool relit = o.status.relighting.records > 0;  // and some are not yet relit

@@ -68,6 +68,8 @@ class Octree {
   /// the core are found in the outermost leaves. Affects speed and memory, never results.
   void set_core(const Box& core) { core_ = core; }
   const Box& core() const { return core_; }
+  /// For later builds: OctreeOptions::leaf_scale. Larger leaves build sooner and list more spheres.
+  void set_leaf_scale(float scale) { options_.leaf_scale = scale; }
 
   /// Of the latest build.
   const shared::OctreeHeader& header() const { return header_; }
