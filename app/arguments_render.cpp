@@ -90,7 +90,8 @@ void add_pixels_and_limits(CLI::App* verb, RenderArguments& a) {
       "--time", a.seconds,
       "stop after this many seconds, of which solvers prepare for half, at most three quarters, or earlier "
       "at --error or a number of samples that is given (also by --set or the scene). Alone, and "
-      "without components.*, relight.* or sampling.* there, it lets the program choose the solvers (auto)");
+      "without sampling.* there, samples go where they lower the error most; without components.* and "
+      "relight.* too, the program chooses the solvers (auto)");
 }
 
 void add_recording(CLI::App* verb, RenderArguments& a) {

@@ -37,7 +37,7 @@ void print_progress(const session::Renderer& r, double seconds, double limit, bo
   if (limit > 0) done = std::max(done, std::min(1.0, seconds / limit));
   const double left = done > 0 ? seconds * (1 - done) / done : 0;
   std::fprintf(stderr, "\r%5.1f %%  %u/%u samples  %.2f Mray/s  %.2f samples/s  %s %.0f s left   %s",
-               100 * done, r.samples(), r.sampling().max_samples(),
+               100 * done, uint32_t(r.sampling().mean_samples()), r.sampling().max_samples(),
                1e-6 * double(r.stats().rays) / std::max(seconds, 1e-9), paths / std::max(seconds, 1e-9),
                "about", left, last ? "\n" : "");
   std::fflush(stderr);
@@ -183,6 +183,16 @@ void choose_solvers(session::Renderer& r, const RenderArguments& a,
   r.apply_settings();
 }
 
+/// With --time alone samples go where they lower the error most, if nothing else says where.
+void choose_sampling(session::Renderer& r, const RenderArguments& a,
+                     const std::vector<session::SettingChange>& changes) {
+  if (!a.seconds || a.error || a.samples != -1 || is_given(r, changes, "sampling.") ||
+      is_given(r, changes, "samples"))
+    return;
+  r.settings().set("sampling.mode", "balanced", "--time");
+  r.apply_settings();
+}
+
 /// A render ends at the first of the given limits: --error, --samples or the settings of the same meaning,
 /// --time. With --time a default number of samples is no limit.
 void set_limits(session::Renderer& r, const RenderArguments& a,
@@ -253,6 +263,7 @@ bool load(session::Renderer& r, const RenderArguments& a, const std::vector<sess
   if (terminal) std::fprintf(stderr, "\r%-60s\r", "");
   set_limits(r, a, changes);
   r.expect_seconds(a.seconds);
+  choose_sampling(r, a, changes);
   choose_solvers(r, a, changes);
   if (!a.camera.empty()) r.choose_camera(a.camera);
   set_lens(r, a);
@@ -365,8 +376,9 @@ double run(session::Renderer& r, const RenderArguments& a, const std::vector<ses
     outputs.save_ready(r);
     if (tev && !tev->follow(r)) tev = nullptr;
     if (!covered && r.samples() > 0) log::info("every pixel has a sample after {:.2f} s", timer.seconds());
-    // Tiles stop by the error as seen, which depends on the exposure.
-    if (!covered && r.samples() > 0 && r.sampling().adaptive()) find_exposure(r, changes);
+    // Tiles get samples by the error as seen, which depends on the exposure.
+    if (!covered && r.samples() > 0 && (r.sampling().adaptive() || r.sampling().balanced()))
+      find_exposure(r, changes);
     covered = r.samples() > 0;
     if (terminal && since_line.seconds() > 0.2)
       print_progress(r, timer.seconds(), limit, false), since_line.restart();
@@ -517,7 +529,7 @@ int render(const RenderArguments& a) {
     wall = run(r, a, changes, outputs, interrupt, terminal, tev ? &*tev : nullptr);
     if (interrupt.signal())
       std::fprintf(stderr, "lucerna: interrupted after %u samples; writing the present picture\n",
-                   r.samples());
+                   uint32_t(r.sampling().mean_samples()));
     else
       check_time(r, a);
     if (makes_picture(a) && r.sampling().adaptive() && !interrupt.signal())

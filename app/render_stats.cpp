@@ -233,7 +233,10 @@ nlohmann::ordered_json make_stats(session::Renderer& r, double wall) {
   j["wall_s"] = wall;
   j["load_s"] = r.load_seconds();
   j["compile_s"] = r.compile_seconds();
-  j["samples"] = r.samples();
+  if (const schedule::BalancedSchedule* s = r.sampling().balanced())
+    j["samples"] = s->mean_samples();
+  else
+    j["samples"] = r.samples();
   j["paths"] = r.stats().paths;
   j["rays"] = r.stats().rays;
   j["shadow_rays"] = r.stats().shadow_rays;

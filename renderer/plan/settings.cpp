@@ -42,12 +42,15 @@ OptionInfo component_option(int c) {
 void add_sampling_options(std::vector<OptionInfo>& list) {
   const size_t first = list.size();
   list.push_back(integer_option("samples", 256, 1, 1 << 20, "samples",
-                                "Samples per pixel at which the image is finished, in uniform sampling.",
+                                "Samples per pixel at which the image is finished, in uniform sampling; in balanced "
+                                "sampling the mean.",
                                 "Samples"));
   list.push_back(without_restart(
-      choice_option("sampling.mode", "uniform", {"uniform", "adaptive"}, "",
+      choice_option("sampling.mode", "uniform", {"uniform", "adaptive", "balanced"}, "",
                     "uniform: equally many samples for all pixels. adaptive: samples for the tiles whose "
-                    "error exceeds the target. A change keeps the present samples.",
+                    "error exceeds the target. balanced: as many samples as uniform on average, more of them "
+                    "where they lower the picture's error most; where photons are traced in rounds, uniform. "
+                    "A change keeps the present samples.",
                     "Sampling")));
   list.push_back(without_restart(real_option(
       "sampling.target_error", "0.05", 0.0001, 10, "",

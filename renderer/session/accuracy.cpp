@@ -96,6 +96,18 @@ std::optional<double> seconds_to_end(const Accuracy& a) {
   return last.wall_s + each * static_cast<double>(last.paths) * (a.max_samples / last.samples - 1);
 }
 
+/// Of the pixels of a tile.
+uint32_t least_samples(const schedule::BalancedSchedule& s, const film::Film& film, uint32_t side,
+                       size_t tile) {
+  const uint32_t each = side / shared::k_block, across = (film.blocks_across() + each - 1) / each;
+  const uint32_t left = uint32_t(tile) % across * each, top = uint32_t(tile) / across * each;
+  uint32_t least = ~0u;
+  for (uint32_t y = top; y < std::min(top + each, film.blocks_down()); ++y)
+    for (uint32_t x = left; x < std::min(left + each, film.blocks_across()); ++x)
+      least = std::min(least, s.counts()[y * film.blocks_across() + x]);
+  return least;
+}
+
 std::vector<TileStatus> tile_status(const Setup& setup, const Sampling& sampling,
                                     const ImageProgress& progress, bool flags) {
   const std::vector<film::TileError> errors =
@@ -119,7 +131,8 @@ std::vector<TileStatus> tile_status(const Setup& setup, const Sampling& sampling
                                                             : static_cast<uint32_t>(known.state);
       t.earlier_error = known.earlier.error, t.earlier_samples = known.earlier.samples;
     } else {
-      t.samples = sampling.samples();
+      t.samples = sampling.balanced() ? least_samples(*sampling.balanced(), *setup.film, side, i)
+                                      : sampling.samples();
       if (errors[i].pixels > 0) {
         t.error = static_cast<float>(errors[i].relative);
         t.records = static_cast<float>(errors[i].relative_lookup_noise);
@@ -177,7 +190,8 @@ void AccuracyKeeper::note_pass(const Renderer& r) {
   }
   pass.paths = stats.paths - pass_paths_;
   pass_paths_ = stats.paths;
-  pass.samples = r.sampling().adaptive() ? r.sampling().adaptive()->most_samples() : r.samples();
+  pass.samples = r.sampling().adaptive() ? r.sampling().adaptive()->most_samples()
+                                         : uint32_t(r.sampling().mean_samples());
   now_.passes.push_back(std::move(pass));
   if (now_.passes.size() > k_passes) now_.passes.pop_front();
   changed_ = true;

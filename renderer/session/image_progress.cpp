@@ -50,6 +50,14 @@ film::ImageError ImageProgress::estimate_error() const {
   return error;
 }
 
+std::vector<float> ImageProgress::block_squares() const {
+  estimate_error();
+  std::vector<float> squares;
+  for (const shared::BlockError& b : setup_.film->errors())
+    squares.push_back(b.pixels > 0 ? b.seen[0] / b.pixels : 0.0f);
+  return squares;
+}
+
 std::vector<film::TileError> ImageProgress::tile_errors() const {
   const uint32_t side = setup_.tile_side();
   std::vector<film::TileError> tiles = film::tile_errors(*setup_.film, side);

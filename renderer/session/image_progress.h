@@ -42,6 +42,9 @@ class ImageProgress {
 
   /// Estimates the error from all pixels of the region that gets samples; a pass over the film.
   film::ImageError estimate_error() const;
+  /// Squared error as seen of every block, in raster order: mean over its pixels; 0 without samples. A pass
+  /// over the film.
+  std::vector<float> block_squares() const;
   /// Estimated error of every tile of sampling.tile, in raster order, with heavy tails marked; as of the last
   /// estimate.
   std::vector<film::TileError> tile_errors() const;

@@ -22,8 +22,8 @@ bool LookupRefinement::begin(solvers::Refinement& refinement) {
   // At powers of two, where passes over the picture end for any size of work items (schedule/uniform.h): the
   // picture does not depend on that size.
   constexpr uint32_t k_least = 4;
-  const uint32_t samples = sampling_.most_samples();
-  if (samples < k_least || !std::has_single_bit(samples)) return false;
+  const uint32_t samples = sampling_.mark();
+  if (samples < k_least) return false;
   const uint64_t paths = refinement.paths_refined();
   if (samples != weighing_.samples)
     weighing_ = {.samples = samples, .most_paths = paths + setup_.engine->wavefront().stats().paths};

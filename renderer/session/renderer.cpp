@@ -293,7 +293,7 @@ void Renderer::apply_settings() {
     progress_.forget_errors();  // of other pixels
     progress_.note(true);
   } else if (changed("sampling.mode") && !again) {
-    if (setup_.settings.text("sampling.mode") == "adaptive") mix_.settle();
+    if (setup_.settings.text("sampling.mode") != "uniform") mix_.settle();
     sampling_.change(progress_);
   } else if (retarget && !again) {
     sampling_.retarget();

@@ -73,6 +73,13 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
     adaptive->report(errors);
     return true;
   }
+  if (schedule::BalancedSchedule* balanced = sampling_.balanced()) {
+    if (balanced->waits()) balanced->judge(progress_.block_squares());
+    const schedule::BalancedSchedule before = *balanced;
+    if (wavefront.run(balanced->next(), *setup_.film, cancel)) return true;
+    *balanced = before;
+    return false;
+  }
   const schedule::UniformSchedule before = sampling_.uniform();
   const schedule::WorkItem item = sampling_.uniform().next();
   if (const std::optional<bool> went = prepare_round(item, cancel)) {
@@ -86,7 +93,7 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
 
 void Renderer::judge_pilot(double seconds, uint64_t rays) {
   pilot_.note(samples(), seconds, rays);
-  if (!pilot_.complete(plan::goal_of(setup_.settings, nullptr), seconds_limit_, sampling_.max_samples()))
+  if (!pilot_.complete(plan::goal_of(setup_.settings, nullptr), seconds_limit_, sampling_.even_samples()))
     return;
   findings_ = pilot::evaluate(setup_.film->read(), samples());
   findings_->pixels = double(setup_.width) * setup_.height;

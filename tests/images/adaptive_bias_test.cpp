@@ -1,10 +1,10 @@
 // links: session
-// Adaptive stopping must not bias the mean: whether a tile continues depends on the samples it already has,
-// and these samples also determine its mean.
+// Adaptive and balanced sampling must not bias the mean: whether a tile or block gets more samples depends on
+// those it already has, and these also determine its mean.
 //
-// The test measures E[adaptive - uniform] over many seeds. The uniform picture is the first min_samples of
-// the same samples, which adaptive sampling then continues, so it is unbiased. Everything that both have in
-// common cancels; the difference is zero in every tile that stopped at the minimum.
+// The test measures E[mode - uniform] over many seeds. The uniform picture is made of the same samples, a
+// fixed number of them, so it is unbiased: for adaptive sampling the minimum, for balanced sampling its mean.
+// Everything that both have in common cancels; the difference is zero in every tile that stopped there.
 #include <catch2/catch.hpp>
 #include <cmath>
 
@@ -18,10 +18,11 @@ namespace {
 
 struct Bias {
   double value[5] = {}, deviation[5] = {};  // of the sum and the components, relative to the sum's mean
-  double stopped = 0;                       // share of tiles that stopped at the minimum
+  double stopped = 0;  // share of tiles that stopped at the minimum; balanced: of blocks below the mean
 };
 
-Bias measure(const std::string& scene, uint32_t width, uint32_t height, double target, uint32_t seeds) {
+Bias measure(const std::string& scene, const char* tested, uint32_t width, uint32_t height, double target,
+             uint32_t seeds) {
   session::Renderer r(test::renderer_options(false));
   r.set_size(width, height);
   r.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/" + scene + "/" + scene + ".gltf");
@@ -33,6 +34,7 @@ Bias measure(const std::string& scene, uint32_t width, uint32_t height, double t
     r.settings().set("seed", std::to_string(seed));
     r.settings().set("sampling.mode", mode);
     r.apply_settings();
+    if (mode == std::string("balanced")) r.restart();  // the uniform picture has as many samples
     while (r.step()) {
     }
     const film::Image image = r.image();
@@ -47,14 +49,16 @@ Bias measure(const std::string& scene, uint32_t width, uint32_t height, double t
   double sum[5] = {}, squares[5] = {}, scale = 0;
   size_t stopped = 0, tiles = 0;
   for (uint32_t seed = 0; seed < seeds; ++seed) {
-    const auto uniform = means(seed, "uniform"), adaptive = means(seed, "adaptive");
-    for (const schedule::Tile& tile : r.sampling().adaptive()->tiles()) {
-      ++tiles;
-      stopped += tile.samples == r.sampling().adaptive()->options().min_samples;
-    }
+    const auto uniform = means(seed, "uniform"), unequal = means(seed, tested);
+    const session::Sampling& sampling = r.sampling();
+    if (sampling.adaptive())
+      for (const schedule::Tile& tile : sampling.adaptive()->tiles())
+        ++tiles, stopped += tile.samples == sampling.adaptive()->options().min_samples;
+    else
+      for (const uint32_t n : sampling.balanced()->counts()) ++tiles, stopped += n < sampling.max_samples();
     scale += uniform[0] / seeds;
     for (int k = 0; k < 5; ++k) {
-      const double d = adaptive[k] - uniform[k];
+      const double d = unequal[k] - uniform[k];
       sum[k] += d, squares[k] += d * d;
     }
   }
@@ -69,9 +73,10 @@ Bias measure(const std::string& scene, uint32_t width, uint32_t height, double t
 
 }  // namespace
 
-TEST_CASE("adaptive sampling does not shift the mean") {
+TEST_CASE("adaptive and balanced sampling do not shift the mean") {
   struct Case {
     const char* scene;
+    const char* mode;
     uint32_t width, height;
     double target;  // loose: about half of the tiles stop at the minimum
     uint32_t seeds;
@@ -79,16 +84,19 @@ TEST_CASE("adaptive sampling does not shift the mean") {
   };
   const char* more = std::getenv("LUCERNA_CALIBRATION");
   const uint32_t k = more ? uint32_t(std::atoi(more)) : 1;
-  for (const Case& c : {Case{"cornell", 64, 64, 0.09, 8, true}, Case{"studio", 96, 54, 0.04, 8, true},
-                        Case{"atrium", 96, 54, 0.22, 5, true}, Case{"glass", 64, 64, 0.11, 2, false}}) {
-    const Bias b = measure(c.scene, c.width, c.height, c.target, c.seeds * k);
-    std::printf("%-8s target %.2f: %2.0f %% of tiles stop at the minimum; bias of the sum %+.3f %% (sd %.3f)",
-                c.scene, c.target, 100 * b.stopped, 100 * b.value[0], 100 * b.deviation[0]);
+  for (const Case& c :
+       {Case{"cornell", "adaptive", 64, 64, 0.09, 8, true}, Case{"studio", "adaptive", 96, 54, 0.04, 8, true},
+        Case{"atrium", "adaptive", 96, 54, 0.22, 5, true}, Case{"glass", "adaptive", 64, 64, 0.11, 2, false},
+        Case{"cornell", "balanced", 64, 64, 0.05, 8, true}, Case{"atrium", "balanced", 96, 54, 0.05, 8, true},
+        Case{"glass", "balanced", 64, 64, 0.05, 4, false}}) {
+    const Bias b = measure(c.scene, c.mode, c.width, c.height, c.target, c.seeds * k);
+    std::printf("%-8s %s, target %.2f: %2.0f %% of tiles stop early; bias of the sum %+.3f %% (sd %.3f)",
+                c.scene, c.mode, c.target, 100 * b.stopped, 100 * b.value[0], 100 * b.deviation[0]);
     for (int i = 1; i < 5; ++i)
       std::printf(", %s %+.3f (%.3f)", paths::k_component_names[i - 1], 100 * b.value[i],
                   100 * b.deviation[i]);
     std::printf("\n");
-    INFO(c.scene);
+    INFO(c.scene << " " << c.mode);
     CHECK(b.stopped > 0.15);
     CHECK(b.stopped < 0.85);
     if (!c.claimed) continue;

@@ -76,14 +76,13 @@ TEST_CASE("bit-identical for any time slices: work cancelled between bounces is 
   r.settings().set("path.batch", "1024");
   r.set_size(40, 36);
   r.load(scene_file("glass"));
-  const bool adaptive = GENERATE(false, true);
-  r.settings().set("samples", "8");
-  if (adaptive) {
-    r.settings().set("sampling.mode", "adaptive");
-    r.settings().set("sampling.min_samples", "8");
-    r.settings().set("sampling.max_samples", "32");
-    r.settings().set("sampling.target_error", "0.3");
-  }
+  const std::string mode = GENERATE("uniform", "adaptive", "balanced");
+  CAPTURE(mode);
+  r.settings().set("sampling.mode", mode);
+  r.settings().set("samples", mode == "balanced" ? "24" : "8");
+  r.settings().set("sampling.min_samples", "8");
+  r.settings().set("sampling.max_samples", "32");
+  r.settings().set("sampling.target_error", "0.3");
   r.apply_settings();
   while (r.step()) {
   }

@@ -81,7 +81,7 @@ TEST_CASE("pixels of a region are bit for bit those of the whole picture, by eac
 }
 
 TEST_CASE("a region set and cleared during rendering loses and repeats no sample") {
-  for (const char* mode : {"uniform", "adaptive"}) {
+  for (const char* mode : {"uniform", "adaptive", "balanced"}) {
     CAPTURE(mode);
     // Learned lights depend on when they were learned; then the rest is not bit for bit the same.
     const test::Settings settings{{"sampling.mode", mode},

@@ -113,7 +113,7 @@ TEST_CASE("another sampling mode keeps existing samples, and each sample stays t
   const uint64_t begun = r.restarts();
   while (r.samples() < 4) REQUIRE(r.step());
   REQUIRE(r.step());
-  for (const char* mode : {"adaptive", "uniform", "adaptive"}) {
+  for (const char* mode : {"adaptive", "uniform", "balanced", "adaptive"}) {
     const uint64_t paths = r.stats().paths;
     const uint32_t samples = r.samples();
     set("sampling.mode", mode);
