@@ -12,6 +12,11 @@ namespace lucerna::commands {
 
 void add_layer_commands(Workspace& work) {
   const auto layers = [&work] { return session::layers_in(work.open.setting("film.layers")); };
+  const auto names = [layers] {
+    std::vector<std::string> list;
+    for (const paths::Layer& layer : layers()) list.push_back(layer.name);
+    return list;
+  };
   work.registry.add(
       {.name = "layer.add",
        .help = "Adds a layer of the light of certain paths (film.layers), or gives one another expression. "
@@ -41,21 +46,17 @@ void add_layer_commands(Workspace& work) {
   work.registry.add({.name = "layer.remove",
                      .help = "Removes a layer that layer.add has made. The picture starts again.",
                      .parameters = {{.name = "name",
-                                     .names =
-                                         [layers](const std::vector<std::string>&) {
-                                           std::vector<std::string> names;
-                                           for (const paths::Layer& layer : layers())
-                                             names.push_back(layer.name);
-                                           return names;
-                                         }}},
+                                     .names = [names](const std::vector<std::string>&) { return names(); }}},
                      .run =
-                         [&work, layers](const Arguments& a) {
+                         [&work, layers, names](const Arguments& a) {
                            std::vector<paths::Layer> all = layers();
                            const size_t before = all.size();
                            std::erase_if(
                                all, [&](const paths::Layer& layer) { return layer.name == a.text("name"); });
+                           if (before == 0) throw Error("", "no layer has been added");
                            if (all.size() == before)
-                             throw Error("", fmt::format("there is no layer '{}'", a.text("name")));
+                             throw Error("", fmt::format("there is no layer '{}'; there are {}",
+                                                         a.text("name"), fmt::join(names(), ", ")));
                            if (work.open.setting("film.layer") == a.text("name"))
                              work.run("set film.layer beauty");
                            work.run(line("set", "film.layers", paths::layers_text(all)));

@@ -53,8 +53,13 @@ class RenderSession final : public Session {
       const auto count = [](uint64_t n, const char* what) {
         return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
       };
-      log::info("{} loaded: {}, {}, {}", file.string(), count(scene::count_triangles(*r.scene()), "triangle"),
-                count(r.scene()->lights.size(), "lamp"), count(r.scene()->cameras.size(), "camera"));
+      const uint64_t glowing =
+          uint64_t(std::count_if(r.scene()->materials.begin(), r.scene()->materials.end(),
+                                 [](const scene::Material& m) { return m.emission != vec3(0); }));
+      log::info("{} loaded: {}, {}, {}, {}", file.string(),
+                count(scene::count_triangles(*r.scene()), "triangle"),
+                count(r.scene()->lights.size(), "lamp"), count(glowing, "emissive material"),
+                count(r.scene()->cameras.size(), "camera"));
     };
     thread_.post({.run = run, .subject = file.string()});
   }

@@ -142,12 +142,15 @@ bool scatter(VertexIn v, inout VertexHooks hooks, vec3 wo, bool sky_known, uint 
 }
 
 #if LUCERNA_PATH_EVENTS
-// The vertex, unless a former branch has written it, and the end of the path there. `branches`: further branches begin here.
-void record_vertex(uint slot, PathEvent vertex, Hit hit, bool again, bool branches, bool continues) {
+// The vertex, unless a former branch has written it. `branches`: further branches begin here.
+void record_vertex(uint slot, PathEvent vertex, bool again, bool branches) {
   if (!again) write_event(slot, event_vertex, vertex);
   if (event_vertex != k_path_no_event) event_state.last = event_vertex;
   if (branches) event_state.branch = event_state.last;
-  if (continues) return;
+}
+
+// The end of the path at the vertex.
+void record_end(uint slot, PathEvent vertex, Hit hit) {
   PathEvent end = new_event(k_path_end, event_state.last, k_path_by_none, vertex.position);
   end.throughput = vertex.throughput;
   end.bits |= (hit.prim == k_no_hit ? k_end_left : event_end) << k_path_reason_shift;
@@ -382,7 +385,7 @@ void main() {
 #if LUCERNA_PATH_EVENTS
   // A ray that leaves the scene is one event.
   if (hit.prim == k_no_hit && event_counts(gain, automaton_component(state))) add_light(vertex, gain, automaton_component(state), group);
-  record_vertex(slot, vertex, hit, again, found.branches > 1u && push.round == 0u, continues);
+  record_vertex(slot, vertex, again, found.branches > 1u && push.round == 0u);
   if (!again) record_found(slot, vertex, hit, found, state, group, gain, sun);
 #if LUCERNA_SHAPES
   // Lamps with a shape, which the ray has met on its way.
@@ -392,6 +395,7 @@ void main() {
   if (!again)
     for (uint g = 0u; g < k_group_count; ++g) record_light(slot, of_lamp, of_shapes[g], automaton_component(state), g);
 #endif
+  if (!continues) record_end(slot, vertex, hit);
   path_event_states[slot] = event_state;
 #endif
   if (again) return;
