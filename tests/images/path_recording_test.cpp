@@ -103,6 +103,10 @@ TEST_CASE("the light of all recorded paths is the film's, by component") {
     for (const recording::Path& path : all.paths) {
       const auto events = all.events_of(path);
       for (uint32_t i = 0; i < events.size(); ++i) {
+        // Light that a vertex has met is listed before the path's end there.
+        if (i > 0 && recording::kind_of(events[i]) == shared::k_path_emission &&
+            recording::kind_of(events[i - 1]) == shared::k_path_end)
+          FAIL_CHECK("emission after the end");
         const std::string word = recording::word_of(events, i);
         if (!recording::contributes_light(events[i])) continue;
         if (recording::is_open(word)) {
