@@ -243,7 +243,7 @@ Block tiles_block(const session::Accuracy& a) {
 
 HeatWords heat_words(uint32_t layer) {
   if (layer == shared::k_layer_samples)
-    return {"Samples per pixel", "Dark: few. Bright: as many as a pixel may take."};
+    return {"Samples per pixel", "Dark: few. Bright: as many as a pixel may take; balanced: twice the mean."};
   if (layer == shared::k_layer_error)
     return {"Error as seen, estimated",
             "Of squares of 8 \xC3\x97 8 pixels, relative to the light around them. Middle of the scale: the "

@@ -41,10 +41,11 @@ OptionInfo component_option(int c) {
 /// Number and distribution of samples, and how they are traced.
 void add_sampling_options(std::vector<OptionInfo>& list) {
   const size_t first = list.size();
-  list.push_back(integer_option("samples", 256, 1, 1 << 20, "samples",
-                                "Samples per pixel at which the image is finished, in uniform sampling; in balanced "
-                                "sampling the mean.",
-                                "Samples"));
+  list.push_back(
+      integer_option("samples", 256, 1, 1 << 20, "samples",
+                     "Samples per pixel at which the image is finished, in uniform sampling; in balanced "
+                     "sampling the mean.",
+                     "Samples"));
   list.push_back(without_restart(
       choice_option("sampling.mode", "uniform", {"uniform", "adaptive", "balanced"}, "",
                     "uniform: equally many samples for all pixels. adaptive: samples for the tiles whose "

@@ -40,6 +40,8 @@ film::View PictureOutput::view() const {
 }
 
 film::HeatScale PictureOutput::heat_scale(uint32_t layer) const {
+  if (layer == shared::k_layer_samples && sampling_.balanced())
+    return film::sample_scale(0, std::max(2u, uint32_t(2 * sampling_.mean_samples())));
   if (layer == shared::k_layer_samples)
     return film::sample_scale(sampling_.adaptive() ? sampling_.adaptive()->options().min_samples : 0,
                               sampling_.max_samples());

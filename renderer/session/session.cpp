@@ -56,9 +56,10 @@ class RenderSession final : public Session {
       const uint64_t glowing =
           uint64_t(std::count_if(r.scene()->materials.begin(), r.scene()->materials.end(),
                                  [](const scene::Material& m) { return m.emission != vec3(0); }));
-      log::info("{} loaded: {}, {}, {}, {}", file.string(),
+      log::info("{} loaded: {}, {}{}, {}", file.string(),
                 count(scene::count_triangles(*r.scene()), "triangle"),
-                count(r.scene()->lights.size(), "lamp"), count(glowing, "emissive material"),
+                count(r.scene()->lights.size(), "lamp"),
+                glowing > 0 ? ", " + count(glowing, "emissive material") : std::string(),
                 count(r.scene()->cameras.size(), "camera"));
     };
     thread_.post({.run = run, .subject = file.string()});
