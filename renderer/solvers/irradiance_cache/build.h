@@ -63,7 +63,7 @@ struct Cache::Impl {
   CacheStatus status;
   RelightPreview preview;
   IndexFor index_for = IndexFor::picture;  ///< of the latest octree
-  bool previews = false;  ///< a preview of relighting is wanted
+  bool previews = false;                   ///< a preview of relighting is wanted
 
   Impl(gpu::Device& device, gpu::ShaderCompiler& compiler, uint32_t slots, const CacheRoutes& routes,
        const CacheOptions& o);
