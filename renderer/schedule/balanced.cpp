@@ -35,6 +35,12 @@ uint32_t BalancedSchedule::least_samples() const {
   return least;
 }
 
+uint32_t BalancedSchedule::most_samples() const {
+  uint32_t most = 0;
+  for (const uint32_t b : blocks_) most = std::max(most, counts_[b]);
+  return most;
+}
+
 double BalancedSchedule::mean_samples() const {
   double sum = 0;
   for (const uint32_t b : blocks_) sum += counts_[b];

@@ -47,6 +47,7 @@ class BalancedSchedule {
   const std::vector<uint32_t>& counts() const { return counts_; }
   /// Over the pixels of the region.
   uint32_t least_samples() const;
+  uint32_t most_samples() const;
   double mean_samples() const;
   /// ... when the present round began. It does not depend on how rounds are cut into items.
   double mean_before_round() const { return mean_before_; }

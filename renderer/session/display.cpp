@@ -104,7 +104,7 @@ bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view
   film.set_mix(view.mix);
   shared::Frame frame = engine.draft_frame(view, film.width(), film.height());
   frame.most_branches = 1;  // the number of samples matters more than their quality
-  wavefront.set_frame(frame, engine.plan().enabled());
+  wavefront.set_frame(frame, engine.enabled());
   schedule::UniformSchedule schedule(film.blocks(), 1, wavefront.slots());
   bool complete = true;
   const auto look_up_preview = [&](bool on) {
@@ -121,7 +121,7 @@ bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view
     }
   });
   look_up_preview(false);
-  wavefront.set_frame(engine.frame(view, view.width, view.height), engine.plan().enabled());
+  wavefront.set_frame(engine.frame(view, view.width, view.height), engine.enabled());
   return complete;
 }
 

@@ -84,6 +84,13 @@ void to_paths(plan::Plan& plan, uint32_t components) {
       plan.solver[c] = solvers::find("path"), plan.rest[c] = nullptr;
 }
 
+/// Components (bits) that are computed. Where all surfaces are diffuse, no path from the eye has a caustic:
+/// paths followed for it alone would find nothing.
+uint32_t enabled_by(const plan::Plan& plan, bool only_diffuse) {
+  const bool nothing = only_diffuse && plan.solver[paths::k_caustic] == solvers::find("path");
+  return plan.enabled() & ~(nothing ? uint32_t{paths::k_caustic_bit} : 0u);
+}
+
 }  // namespace
 
 solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
@@ -97,7 +104,7 @@ solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
   }
   return {.automaton = automaton,
           .settings = settings,
-          .enabled = plan.enabled(),
+          .enabled = enabled_by(plan, effects.only_diffuse()),
           .own = plan.components_of(solver),
           .directly_visible_by_other = plan.rests_of(solver),
           .provided = provided,
@@ -110,6 +117,7 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
                gpu::Defines defines, const Engine* before, std::span<const Predecessor> predecessors)
     : automaton_(automaton),
       plan_(plan),
+      only_diffuse_(world.flat.effects.only_diffuse()),
       made_for_{.scene_defines = world.device->defines(), .lights = upload::light_separation(world.flat)} {
   const Timer timer;
   route(settings, world.flat.effects);
@@ -181,6 +189,8 @@ bool Engine::serves(const plan::Plan& plan, const plan::Settings& settings, cons
   });
 }
 
+uint32_t Engine::enabled() const { return enabled_by(plan_, only_diffuse_); }
+
 const Predecessor* Engine::working_on(const solvers::SolverInfo& info, const solvers::Task& task,
                                       std::span<const Predecessor> predecessors) const {
   const auto restarts = [&](const std::string& key) {
@@ -243,7 +253,7 @@ void Engine::begin(const PictureView& picture, const scene::Changes& changes,
   if (learned && !learned_elsewhere_)
     wavefront_->forget_learned(upload::make_light_clusters(picture.world.flat));
   route(picture.settings, picture.world.flat.effects);  // with the components delegated now
-  wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
+  wavefront_->set_frame(frame(picture, picture.width, picture.height), enabled());
 }
 
 void Engine::set_layers(const PictureView& picture) {
@@ -308,7 +318,7 @@ bool Engine::learns(uint32_t samples) const {
 void Engine::begin_samples(const PictureView& picture) {
   if (!std::exchange(learned_elsewhere_, false)) return;
   wavefront_->forget_learned();
-  wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
+  wavefront_->set_frame(frame(picture, picture.width, picture.height), enabled());
 }
 
 bool Engine::learn(const PictureView& picture, const std::function<bool()>& cancel) {
@@ -325,7 +335,7 @@ bool Engine::learn(const PictureView& picture, const std::function<bool()>& canc
   shared::Frame pilot = pilot_frame(picture, 8 * across, 8 * down);
   pilot.max_depth = std::min(pilot.max_depth, shared::k_learned_vertices);
   const bool went =
-      wavefront_->learn(item, pilot, frame(picture, picture.width, picture.height), plan_.enabled(), cancel);
+      wavefront_->learn(item, pilot, frame(picture, picture.width, picture.height), enabled(), cancel);
   if (went && generation + 1 == std::size(k_generations)) wavefront_->learning()->end();
   return went;
 }
@@ -353,7 +363,7 @@ bool Engine::prepare(solvers::Solver& solver, const PictureView& picture,
   });
   if (preparation.delegated_components() != before) {
     route(picture.settings, picture.world.flat.effects);
-    wavefront_->set_frame(frame(picture, picture.width, picture.height), plan_.enabled());
+    wavefront_->set_frame(frame(picture, picture.width, picture.height), enabled());
   }
   return went;
 }
@@ -379,7 +389,9 @@ solvers::Routing Engine::routing(const plan::Plan& plan, const plan::Settings& s
                                  const upload::Effects& effects) const {
   // Without lookups everything is traced.
   solvers::Routing all{
-      .lookups = {.component = {}, .parts = 0, .traced = plan.enabled()}, .fallback = 0, .gather = {}};
+      .lookups = {.component = {}, .parts = 0, .traced = enabled_by(plan, effects.only_diffuse())},
+      .fallback = 0,
+      .gather = {}};
   ByComponent<const solvers::SolverInfo*> by{};
   uint32_t always = 0;  // components of solvers without a fallback
   for (const solvers::SolverInfo* info : plan.at_work()) {

@@ -56,6 +56,8 @@ class Engine {
   /// Switches to a plan that it serves.
   void set_plan(plan::Plan plan) { plan_ = std::move(plan); }
   const plan::Plan& plan() const { return plan_; }
+  /// Components (bits) that are computed: those of the plan that the scene can have.
+  uint32_t enabled() const;
   /// True if a solver of this engine took over the predecessor's work when the engine was made.
   bool took_up(const solvers::Solver& predecessor) const;
   const MadeFor& made_for() const { return made_for_; }
@@ -145,6 +147,7 @@ class Engine {
 
   const paths::Automaton& automaton_;
   plan::Plan plan_;
+  bool only_diffuse_ = false;  ///< upload::Effects::only_diffuse() of the scene
   gpu::Defines learned_defines_, path_defines_;
   bool begun_ = false;
   bool learned_elsewhere_ = false;  ///< from another view

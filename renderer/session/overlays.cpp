@@ -63,14 +63,14 @@ void Overlays::trace(const std::function<bool()>& cancel) {
   transport::Wavefront& wavefront = engine.wavefront();
   fit(scale());
   try {
-    sheet().trace(wavefront, *setup_.film, engine.plan().enabled(), engine.defines(), cancel);
+    sheet().trace(wavefront, *setup_.film, engine.enabled(), engine.defines(), cancel);
   } catch (const Error& e) {
     wavefront.stream().discard();
     sheet().forget();
     fails_ = true;
     log::warning("{}; overlays follow the samples of the picture", e.what());
   }
-  wavefront.set_frame(engine.frame(view(), setup_.width, setup_.height), engine.plan().enabled());
+  wavefront.set_frame(engine.frame(view(), setup_.width, setup_.height), engine.enabled());
 }
 
 std::vector<uint8_t> Overlays::finish(const film::View& shown, const std::function<bool()>& cancel) {

@@ -89,7 +89,7 @@ bool PathRecording::record(Engine& engine, const PictureView& picture,
   const upload::FlatScene& flat = picture.world.flat;
   const std::vector<uint32_t> lights = LightNames(flat, into.materials).by_entry;
   const shared::Frame frame = engine.frame(picture, picture.width, picture.height);
-  wavefront.set_frame(frame, engine.plan().enabled());
+  wavefront.set_frame(frame, engine.enabled());
   const auto sink = [&](const transport::RecordedPath& path) {
     into.paths.push_back({path.of.pixel, path.of.sample_index, uint32_t(into.events.size()),
                           uint32_t(path.events.size()), path.lost});

@@ -76,10 +76,10 @@ bool PixelSight::see(Engine& engine, const PictureView& view, const shared::Fram
     wavefront.stream().dispatch(note_, resources_, push, gpu::groups_for(push.count, 64));
   };
   frame.max_depth = k_most_turns;
-  wavefront.set_frame(frame, engine.plan().enabled());
+  wavefront.set_frame(frame, engine.enabled());
   bool complete = true;
   wavefront.uncounted([&] { complete = rays.see(wavefront, "sight", note, cancel, &look_); });
-  wavefront.set_frame(engine.frame(view, view.width, view.height), engine.plan().enabled());
+  wavefront.set_frame(engine.frame(view, view.width, view.height), engine.enabled());
   return complete;
 }
 

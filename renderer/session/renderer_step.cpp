@@ -73,7 +73,7 @@ bool Renderer::render_item(const std::function<bool()>& cancel) {
     adaptive->report(errors);
     return true;
   }
-  if (schedule::BalancedSchedule* balanced = sampling_.balanced()) {
+  if (schedule::BalancedSchedule* balanced = sampling_.balanced()) {  // no solver works in rounds
     if (balanced->waits()) balanced->judge(progress_.block_squares());
     const schedule::BalancedSchedule before = *balanced;
     if (wavefront.run(balanced->next(), *setup_.film, cancel)) return true;

@@ -48,8 +48,9 @@ uint32_t Sampling::mark() const {
 }
 
 uint32_t Sampling::most_samples() const {
-  if (!adaptive_ && !balanced_) return uniform_.complete();
-  if (!whole() && adaptive_) return adaptive_->most_samples();
+  if (balanced_) return balanced_->most_samples();
+  if (!adaptive_) return uniform_.complete();
+  if (!whole()) return adaptive_->most_samples();
   const std::vector<uint32_t> all = counts();
   return all.empty() ? 0 : *std::max_element(all.begin(), all.end());
 }

@@ -48,6 +48,8 @@ struct Effects {
   std::array<uint32_t, shared::k_hit_kinds> kinds{};  ///< features by kind of hits (upload/material_kinds.h)
   std::array<uint32_t, shared::k_texture_uses> texture_buckets{};  ///< by use: bit b: bucket b may be read
   bool transparent() const { return alpha || thin_glass; }
+  /// No surface reflects or passes light other than diffusely: no path has a glossy or specular event.
+  bool only_diffuse() const { return !specular && !solid_glass && !thin_glass; }
   /// Separate light groups with all components together (film::GroupStorage::compact).
   bool has_compact_groups() const { return light_groups > 1 && !group_components; }
 };

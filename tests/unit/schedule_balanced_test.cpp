@@ -152,8 +152,13 @@ TEST_CASE("a picture with samples continues: blocks behind catch up, none is rep
 }
 
 TEST_CASE("only blocks of the region get samples; tiny pictures and few slots") {
-  BalancedSchedule s(k_across, {.samples = 40, .region = {2, 3, 5, 6}}, none());
+  std::vector<uint32_t> have = none();
+  BalancedSchedule s(k_across, {.samples = 40, .region = {2, 3, 5, 6}}, have);
   play(s, on_the_right);
+  CHECK(s.most_samples() >= 40);
+  CHECK(s.most_samples() < 60);
+  have[0] = 1000;  // outside
+  CHECK(BalancedSchedule(k_across, {.samples = 40, .region = {2, 3, 5, 6}}, have).most_samples() == 0);
   for (uint32_t b = 0; b < s.counts().size(); ++b) {
     const uint32_t x = b % k_across, y = b / k_across;
     CHECK((s.counts()[b] > 0) == (x >= 2 && x < 5 && y >= 3 && y < 6));
