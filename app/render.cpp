@@ -167,13 +167,20 @@ bool is_given(const session::Renderer& r, const std::vector<session::SettingChan
          std::any_of(scenes.begin(), scenes.end(), [&](const auto& s) { return s.first.starts_with(begin); });
 }
 
+/// True if nothing but --time ends the render, and nothing else says where its samples go.
+bool is_free_in_time(const session::Renderer& r, const RenderArguments& a,
+                     const std::vector<session::SettingChange>& changes) {
+  return a.seconds && !a.error && a.samples == -1 && !is_given(r, changes, "samples") &&
+         !is_given(r, changes, "sampling.");
+}
+
 /// With --time alone the program chooses the solvers, if nothing else says who computes which light: in ten
 /// scenes this is up to 20 times better than path tracing, and nowhere worse by more than 4 % (lucerna bench
 /// auto, 10 s at 320x180).
 void choose_solvers(session::Renderer& r, const RenderArguments& a,
                     const std::vector<session::SettingChange>& changes) {
-  if (!a.seconds || a.error || a.samples != -1) return;
-  for (const char* key : {"components.", "relight.", "samples", "sampling."})
+  if (!is_free_in_time(r, a, changes)) return;
+  for (const char* key : {"components.", "relight."})
     if (is_given(r, changes, key)) return;
   if (std::any_of(a.solver_load.begin(), a.solver_load.end(),
                   [](const auto& l) { return !l.second.empty(); }))
@@ -186,9 +193,7 @@ void choose_solvers(session::Renderer& r, const RenderArguments& a,
 /// With --time alone samples go where they lower the error most, if nothing else says where.
 void choose_sampling(session::Renderer& r, const RenderArguments& a,
                      const std::vector<session::SettingChange>& changes) {
-  if (!a.seconds || a.error || a.samples != -1 || is_given(r, changes, "sampling.") ||
-      is_given(r, changes, "samples"))
-    return;
+  if (!is_free_in_time(r, a, changes)) return;
   r.settings().set("sampling.mode", "balanced", "--time");
   r.apply_settings();
 }
