@@ -194,8 +194,8 @@ std::string bias_text(const Accuracy& a, size_t layer) {
 
 std::string run_figures(const Accuracy& a, size_t line) {
   const stats::Entry& e = a.ledger.entries()[line];
-  return fmt::format("{} \xC2\xB7 {:.3g} samples per pixel \xC2\xB7 {} rays", seconds_text(e.wall_s),
-                     e.samples, count_text(static_cast<double>(e.rays)));
+  return fmt::format("{} \xC2\xB7 {} samples per pixel \xC2\xB7 {} rays", seconds_text(e.wall_s),
+                     mean_text(e.samples), count_text(static_cast<double>(e.rays)));
 }
 
 /// Shows what is under the pointer: a line's values at that time, or how an earlier run differs.

@@ -42,7 +42,7 @@ std::string content_text(const HeldResult& held) {
   const std::string methods = session::methods_text(p.methods);
   std::string text;
   const auto add = [&](const std::string& part) { text += (text.empty() ? "" : " \xC2\xB7 ") + part; };
-  if (p.samples > 0) add(fmt::format("{:.3g} sample{}", p.samples, p.samples == 1 ? "" : "s"));
+  if (p.samples > 0) add(fmt::format("{} sample{}", mean_text(p.samples), p.samples == 1 ? "" : "s"));
   if (!p.file.empty()) add(p.is_foreign ? "file of unknown origin" : "file");
   if (!p.shows.empty()) add(p.shows + " only");
   if (!methods.empty() && !held.name.starts_with(methods)) add(methods);

@@ -25,6 +25,8 @@ std::string count_text(double n) {
   return result;
 }
 
+std::string mean_text(double n) { return n < 99.95 ? fmt::format("{:.3g}", n) : count_text(n); }
+
 std::string ms_text(double ms) {
   if (ms < 99.95) return fmt::format("{:.1f} ms", ms);
   if (ms < 9999.5) return fmt::format("{:.0f} ms", ms);

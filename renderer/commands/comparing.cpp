@@ -1,6 +1,7 @@
 #include "commands/comparing.h"
 
 #include "base/error.h"
+#include "base/figures.h"
 #include "base/future.h"
 #include "base/log.h"
 
@@ -46,8 +47,8 @@ void Comparing::take_held(const OpenScene& open) {
   const session::HeldPicture& p = *added.picture;
   std::string facts;
   const auto add = [&](const std::string& part) { facts += (facts.empty() ? "" : ", ") + part; };
-  if (p.samples > 0) add(fmt::format("{:.4g} samples", p.samples));
-  if (p.seconds > 0) add(fmt::format("{:.3g} s", p.seconds));
+  if (p.samples > 0) add(fmt::format("{:.0f} samples", p.samples));
+  if (p.seconds > 0) add(seconds_text(p.seconds));
   if (p.error) add(fmt::format("error {:.3g}", *p.error));
   if (p.displayed)
     add("display colours of a file, compared as they are");

@@ -7,15 +7,18 @@ uniform samplerBuffer filter_noisy, filter_surfaces;
 layout(scalar) writeonly buffer FilterMeasured { vec4 measured[]; };
 #include "film/filter/window.glsl"
 
+// A disk of 21 pixels, as window.glsl has one.
+const int k_noise_reach = 2;
+int noise_row(int y) { return min(k_noise_reach, 3 - abs(y)); }
+
 void main() {
   uint pixel = global_index();
   if (pixel >= push.width * push.height) return;
   Window window = window_at(pixel);
   FilterLight here = filter_light(texelFetch(filter_noisy, int(pixel)));
   float sum = 0.0, weights = 0.0;
-  for (int y = -k_window_reach; y <= k_window_reach; ++y)
-    for (int x = -k_window_reach; x <= k_window_reach; ++x) {
-      if (!window_near(x, y)) continue;
+  for (int y = -k_noise_reach; y <= k_noise_reach; ++y)
+    for (int x = -noise_row(y); x <= noise_row(y); ++x) {
       ivec2 step = int(push.stride) * ivec2(x, y), at = window.xy + step;
       bool inside = window_has(at);
       int there = inside ? at.y * int(push.width) + at.x : int(pixel);

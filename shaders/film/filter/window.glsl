@@ -7,9 +7,10 @@ struct Window {
   vec2 slope;  // of depth [m a pixel]
 };
 
-// A window is a disk: its pixels are those of a square of this half side that are near enough.
+// A window is a disk of 37 pixels: rows -k_window_reach to k_window_reach, each from -window_row(y) to window_row(y). Both bound
+// loops, because a loop is left early where a condition within it would not save its work.
 const int k_window_reach = 3;
-bool window_near(int x, int y) { return x * x + y * y <= 10; }
+int window_row(int y) { return min(k_window_reach, 4 - abs(y)); }
 
 bool window_has(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(push.width, push.height))); }
 
