@@ -16,7 +16,7 @@ namespace {
 using commands::CompareView;
 using commands::HeldResult;
 
-constexpr float k_tag = 20, k_edge = 12, k_ramp = 248, k_grip = 6;
+constexpr float k_tag = 20, k_least_tag = 32, k_edge = 12, k_ramp = 248, k_grip = 6;
 
 /// The view that is shown: with the key held, the other one of live picture and held result.
 CompareView shown_view(const commands::HeldResults& results, bool flipped) {
@@ -24,10 +24,14 @@ CompareView shown_view(const commands::HeldResults& results, bool flipped) {
   return results.view() == CompareView::flip ? CompareView::off : CompareView::flip;
 }
 
-/// A small label: `head` dim, `text` bright; its left or right end is at `x`.
-void tag(float x, float y, bool ends_here, const std::string& head, const std::string& text) {
+/// A small label in `room` pixels: `head` dim, `all` bright, cut if too long; its left or right end is at
+/// `x`.
+void tag(float x, float y, float room, bool ends_here, const std::string& head, const std::string& all) {
   ImFont* font = theme().fonts.small;
   const float between = px(6), pad = px(8), first = text_width(head, font);
+  const float rest = room - first - between - 2 * pad;
+  if (rest < px(k_least_tag)) return;
+  const std::string text = elided(all, rest, font);
   const float width = first + between + text_width(text, font) + 2 * pad;
   const ImVec2 lo(std::floor(ends_here ? x - width : x), y), hi(lo.x + width, y + px(k_tag));
   ImDrawList* list = card(lo, hi, 0.9f);
@@ -55,12 +59,9 @@ void draw_wipe(const commands::Workspace& work, const CompareState& state, const
   ImDrawList* list = ImGui::GetWindowDrawList();
   list->PushClipRect(picture.lo, picture.hi, true);
   // Labels stay on their sides.
-  list->PushClipRect(picture.lo, {x, picture.hi.y}, true);
-  tag(x - px(k_edge), y, true, "Held", held_text(held));
-  list->PopClipRect();
-  list->PushClipRect({x, picture.lo.y}, picture.hi, true);
-  tag(x + px(k_edge), y, false, "Now", live_text(*work.open.snapshot));
-  list->PopClipRect();
+  const float left = x - picture.lo.x - 2 * px(k_edge), right = picture.hi.x - x - 2 * px(k_edge);
+  tag(x - px(k_edge), y, left, true, "Held", held_text(held));
+  tag(x + px(k_edge), y, right, false, "Now", live_text(*work.open.snapshot));
   const float middle = std::floor(0.5f * (picture.lo.y + picture.hi.y)), grip = px(k_grip);
   const ImU32 ink = state.dragging ? colour::accent : colour::text;
   list->AddRectFilled({x - px(2), picture.lo.y}, {x + px(2), picture.hi.y}, IM_COL32(0, 0, 0, 110));
@@ -75,7 +76,8 @@ void draw_wipe(const commands::Workspace& work, const CompareState& state, const
 
 void draw_held(const CompareState& state, const HeldResult& held, const Area& picture) {
   image(state.pictures.held(held), picture, picture.lo.x, picture.hi.x);
-  tag(picture.lo.x + px(k_edge), picture.lo.y + px(k_edge), false, "Held", held_text(held));
+  tag(picture.lo.x + px(k_edge), picture.lo.y + px(k_edge), picture.width() - 2 * px(k_edge), false, "Held",
+      held_text(held));
 }
 
 /// What the colours of the difference mean, and its figures.

@@ -72,7 +72,7 @@ void trace_block(Controls& controls, const commands::Workspace& work, PathsView&
   if (slider("##count", "Paths", count, {.lo = 1, .hi = 4096, .log = true, .decimals = 0, .step = 1})) {
     view.count = int(std::lround(count));
   }
-  tooltip("Number of paths that are traced: the first samples of the pixel.");
+  tooltip("Number of paths to trace at the next click: the first samples of the pixel.");
   option_control(controls, "overlay.path_color", "Colour");
   if (!work.traced)
     return paragraph(
@@ -85,6 +85,8 @@ void trace_block(Controls& controls, const commands::Workspace& work, PathsView&
   if (!all.paths.empty())
     value_row("Pixel", fmt::format("{} {}", all.paths[0].pixel % all.width, all.paths[0].pixel / all.width),
               "Column and row, from the upper left.");
+  value_row("Traced paths", count_text(double(all.paths.size())),
+            "Paths in the picture and in the list; the slider is for the next pixel.");
   value_row("Mean light", fmt::format("{:.4g}", work.traced->mean_light), "Mean luminance of these paths.");
   value_row("Without light", share_text(double(work.traced->dark), n), "Paths that contribute no light.");
   if (const uint64_t lost = all.lost())

@@ -409,6 +409,11 @@ std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const L
                      (further_on ? 1u << 27 : 0u) | (mirrors.count(static_cast<uint8_t>(i)) ? 1u << 28 : 0u) |
                      (further_on ? static_cast<uint32_t>(std::countr_zero(further_on)) : 0u) << 29);
   }
+  for (size_t i = 0; i < packed.size(); ++i) {
+    const uint32_t behind = packed[packed[i] & 0xffu];
+    const bool nothing = (behind >> 27 & 1u) == 0 && !shared::is_component(behind >> 24 & 7u);
+    if (nothing && looked_up[i] == 0) packed[i] |= shared::k_ends_on_diffuse;
+  }
   return packed;
 }
 

@@ -77,8 +77,9 @@ struct LookupRoutes {
 /// The uploaded automaton: packed[state] bits 0-7 next on D, 8-15 next on G, 16-23 next on S, 24-26 component
 /// (shared::k_component_none: none, or off), bit 27: further light is possible, of an enabled component or by
 /// a lookup, bit 28: no D so far (E[SG]*), bits 29-30: component to which rays are accounted, the lowest of
-/// those. `enabled` bit i: component i is on. `met`: some lights can be hit by rays; if all are points or
-/// directions, a path that could only hit a light contributes nothing.
+/// those, bit 31: a surface with diffuse lobes alone adds nothing and ends the path. `enabled` bit i:
+/// component i is on. `met`: some lights can be hit by rays; if all are points or directions, a path that
+/// could only hit a light contributes nothing.
 std::vector<uint32_t> pack(const Automaton& automaton, uint32_t enabled, const LookupRoutes& routes = {},
                            bool met = true);
 

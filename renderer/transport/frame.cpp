@@ -89,7 +89,7 @@ shared::Frame make_frame(const upload::FlatScene& flat, const scene::Camera& cam
     for (uint32_t i = 0; i < table.size(); ++i) {
       uint32_t& known = f.automaton[shared::in_phase(i, shared::k_phase_known)];
       const bool meets = met && shared::is_component(known >> 24 & 7u);
-      known = (known & ~(k_next | k_live)) | k_dead | (meets ? k_live : 0);
+      known = (known & ~(k_next | k_live)) | k_dead | (meets ? k_live : 0) | shared::k_ends_on_diffuse;
     }
     f.automaton[shared::k_dead_state] = k_dead | k_none;
   }

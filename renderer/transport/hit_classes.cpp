@@ -55,6 +55,19 @@ std::array<uint32_t, 4> packed(const HitClasses& classes) {
   return words;
 }
 
+uint32_t diffuse_kinds(std::span<const uint32_t> features, const gpu::Defines& all) {
+  for (const char* name : {"LUCERNA_PATH_EVENTS", "LUCERNA_SHAPES", "LUCERNA_NO_AUTOMATON"})
+    if (const auto found = all.find(name); found != all.end() && found->second != "0") return 0;
+  constexpr uint32_t k_diffuse = k_feature_light_samples | k_feature_base_texture | k_feature_normal_map |
+                                 k_feature_relief | k_feature_diffuse_transmission |
+                                 k_feature_diffuse_transmission_texture | k_feature_rough_diffuse |
+                                 k_feature_diffuse_roughness_texture;
+  uint32_t kinds = 0;
+  for (uint32_t kind = k_kind_first; kind < features.size(); ++kind)
+    if ((features[kind] & ~k_diffuse) == 0) kinds |= 1u << kind;
+  return kinds;
+}
+
 gpu::Defines defines_of(const HitClass& hits, const gpu::Defines& all) {
   gpu::Defines d = all;
   const auto on = [&](const char* name) {

@@ -19,6 +19,7 @@ bool automaton_live(uint state) { return true; }
 bool automaton_no_diffuse(uint state) { return state == 0u; }
 bool automaton_goes_on(uint state) { return true; }
 uint automaton_account(uint state) { return 0u; }
+bool automaton_ends_on_diffuse(uint state) { return false; }
 #else
 // One word a state (paths/automaton.h, pack()).
 uint automaton_after(uint state, uint event) { return (frame.automaton[state] >> (8u * event)) & 0xffu; }
@@ -34,6 +35,7 @@ bool automaton_goes_on(uint state) {
   return on;
 }
 uint automaton_account(uint state) { return (frame.automaton[state] >> 29) & 3u; }
+bool automaton_ends_on_diffuse(uint state) { return (frame.automaton[state] & k_ends_on_diffuse) != 0u; }
 #endif
 
 // Offset of a point of the picture (0..1 to the right and down) from the middle, along camera_right and camera_up.

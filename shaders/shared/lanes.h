@@ -16,6 +16,7 @@ LUCERNA_SHARED_BEGIN
 
 LUCERNA_CONST uint k_component_count = 4u;
 LUCERNA_CONST uint k_component_none = k_component_count;  ///< in packed tables: no component
+LUCERNA_CONST uint k_ends_on_diffuse = 1u << 31;          ///< bit of a packed table (paths/automaton.h, pack())
 LUCERNA_CONST uint k_all_components = (1u << k_component_count) - 1u;  ///< a bit each
 LUCERNA_INLINE bool is_component(uint c) { return c < k_component_count; }
 LUCERNA_CONST uint k_most_groups = 16u;

@@ -23,6 +23,12 @@ void main() {
 #if LUCERNA_COUNT_KINDS
   atomicAdd(counters[k_counter_kinds + kind], 1u);
 #else
+  // A path of which only emission counts ends without light at most surfaces. Those at the first surface and at the maximum
+  // depth are written or counted.
+  PathState path = load_path(slot);
+  uint depth = path_depth(path);
+  bool ends = (push.diffuse >> kind & 1u) != 0u && automaton_ends_on_diffuse(path_automaton(path)) && depth > 0u && depth < frame.max_depth;
+  if (ends) return;
   const uint in_word = 32u / k_class_bits;
   uint to = push.classes[kind / in_word] >> k_class_bits * (kind % in_word) & (1u << k_class_bits) - 1u;
   class_queue[to * push.slots + atomicAdd(counters[k_counter_classes + to], 1u)] = slot;

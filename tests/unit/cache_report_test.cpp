@@ -86,6 +86,9 @@ TEST_CASE("the status bar's text follows the build") {
   r = make_report(c, settings());
   CHECK((!r.ready && !r.waits && r.state == "building"));
   CHECK(r.preparing == "cache, pass 3: 2810 records");
+  c.placed = 0;
+  CHECK(make_report(c, settings()).preparing == "cache, pass 3: choosing places for records");
+  c.placed = 2810;
   c.status.relighting.records = 100, c.status.relighting.share = 0.4f;
   CHECK(make_report(c, settings()).preparing == "cache: relighting 100 records, 40 %");
   c.status.waits = true, c.status.last = StageDone{.stage = BuildStage::probe};

@@ -220,6 +220,26 @@ TEST_CASE("a path continues as long as a light or a lookup can contribute") {
   for (const uint32_t packed : paths::pack(a, 15, {}, false)) CHECK(live(packed));
 }
 
+TEST_CASE("diffuse surfaces end paths where they neither read stored light nor lead to other light") {
+  const paths::Automaton a = paths::compile_components();
+  const uint8_t d = a.after(0, paths::Event::diffuse), dg = a.after(d, paths::Event::glossy);
+  const auto ends = [](uint32_t packed) { return (packed & shared::k_ends_on_diffuse) != 0; };
+  for (const uint32_t packed : paths::pack(a, 15)) CHECK_FALSE(ends(packed));
+  // Interreflection is looked up at the first diffuse surface; behind it there are emitters and caustics.
+  const auto routes = paths::lookup_routes(a, 0b1111, 0b0110);
+  REQUIRE(routes.traced == 0b1001);
+  const auto looked = paths::pack(a, routes.traced, routes);
+  CHECK_FALSE(ends(looked[0]));
+  CHECK_FALSE(ends(looked[a.after(0, paths::Event::specular)]));
+  CHECK(ends(looked[d]));
+  CHECK(ends(looked[dg]));
+  // Tertiary light alone is looked up at the second one.
+  const auto deep = paths::lookup_routes(a, 0b1111, 0b0100);
+  const auto later = paths::pack(a, deep.traced, deep);
+  CHECK_FALSE(ends(later[d]));
+  CHECK(ends(later[a.after(d, paths::Event::diffuse)]));
+}
+
 TEST_CASE("a light path and a camera path form the word of the connected path") {
   const paths::Automaton a = paths::compile_components();
   const paths::LightAutomaton light = paths::reverse(a);

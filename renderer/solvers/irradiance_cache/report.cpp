@@ -33,6 +33,7 @@ std::string preparing(const CacheReport& r) {
   if (s.relighting.records > 0)
     return fmt::format("cache: relighting {} records, {:.0f} %", s.relighting.records,
                        100 * s.relighting.share);
+  if (r.placed == 0) return fmt::format("cache, pass {}: choosing places for records", s.pass + 1);
   return fmt::format("cache, pass {}: {} records", s.pass + 1, r.placed);
 }
 
