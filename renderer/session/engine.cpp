@@ -311,7 +311,9 @@ solvers::Solver* Engine::refinable() const {
 
 bool Engine::learns(uint32_t samples) const {
   const transport::LightLearning* learning = wavefront_->learning();
-  if (!learning || learned_elsewhere_ || learning->generations() >= std::size(k_generations)) return false;
+  if (!learning || learned_elsewhere_ || !learning->pays() ||
+      learning->generations() >= std::size(k_generations))
+    return false;
   return samples >= 1u << learning->generations();
 }
 
@@ -336,7 +338,8 @@ bool Engine::learn(const PictureView& picture, const std::function<bool()>& canc
   pilot.max_depth = std::min(pilot.max_depth, shared::k_learned_vertices);
   const bool went =
       wavefront_->learn(item, pilot, frame(picture, picture.width, picture.height), enabled(), cancel);
-  if (went && generation + 1 == std::size(k_generations)) wavefront_->learning()->end();
+  transport::LightLearning& learning = *wavefront_->learning();
+  if (went && (generation + 1 == std::size(k_generations) || !learning.pays())) learning.end();
   return went;
 }
 

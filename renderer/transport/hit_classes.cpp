@@ -55,16 +55,20 @@ std::array<uint32_t, 4> packed(const HitClasses& classes) {
   return words;
 }
 
-uint32_t diffuse_kinds(std::span<const uint32_t> features, const gpu::Defines& all) {
+DarkKinds dark_kinds(std::span<const uint32_t> features, const gpu::Defines& all) {
   for (const char* name : {"LUCERNA_PATH_EVENTS", "LUCERNA_SHAPES", "LUCERNA_NO_AUTOMATON"})
-    if (const auto found = all.find(name); found != all.end() && found->second != "0") return 0;
+    if (const auto found = all.find(name); found != all.end() && found->second != "0") return {};
+  constexpr uint32_t k_not_dark = k_feature_emission | k_feature_unlit | k_feature_alpha |
+                                  k_feature_thin_glass | k_feature_catcher | k_feature_deep_relief;
   constexpr uint32_t k_diffuse = k_feature_light_samples | k_feature_base_texture | k_feature_normal_map |
                                  k_feature_relief | k_feature_diffuse_transmission |
                                  k_feature_diffuse_transmission_texture | k_feature_rough_diffuse |
                                  k_feature_diffuse_roughness_texture;
-  uint32_t kinds = 0;
-  for (uint32_t kind = k_kind_first; kind < features.size(); ++kind)
-    if ((features[kind] & ~k_diffuse) == 0) kinds |= 1u << kind;
+  DarkKinds kinds;
+  for (uint32_t kind = k_kind_first; kind < features.size(); ++kind) {
+    if ((features[kind] & k_not_dark) == 0) kinds.all |= 1u << kind;
+    if ((features[kind] & ~k_diffuse) == 0) kinds.diffuse |= 1u << kind;
+  }
   return kinds;
 }
 

@@ -39,11 +39,15 @@ HitClasses choose_hit_classes(std::span<const uint32_t> features, std::span<cons
 /// transport::ClassesPush::classes.
 std::array<uint32_t, 4> packed(const HitClasses& classes);
 
-/// Kinds (bits) of surfaces with diffuse lobes alone, which neither emit nor let rays pass: where diffuse
-/// events bring no more light, paths that hit them need no shading (transport::ClassesPush::diffuse). None
-/// where kernels compiled with these defines do more at a hit: record paths, or add lamps that the ray has
-/// passed.
-uint32_t diffuse_kinds(std::span<const uint32_t> features, const gpu::Defines& all);
+/// Kinds (bits) of surfaces at which paths of which only emission counts need no shading, because they
+/// neither emit nor let rays pass (transport::ClassesPush).
+struct DarkKinds {
+  uint32_t diffuse = 0;  ///< with diffuse lobes alone: where only further diffuse events bring no light
+  uint32_t all = 0;      ///< with any lobes: where no further event does
+};
+/// `features`: by kind. None where kernels compiled with these defines do more at a hit: record paths, or add
+/// lamps that the ray has passed.
+DarkKinds dark_kinds(std::span<const uint32_t> features, const gpu::Defines& all);
 
 /// Defines of a class's kernel; `all`: of the kernel for all hits.
 gpu::Defines defines_of(const HitClass& hits, const gpu::Defines& all);

@@ -55,7 +55,7 @@ void HitShading::begin_run(gpu::Stream& stream) {
 
 void HitShading::count(gpu::Stream& stream, size_t parity, uint32_t hits, bool use_queue) {
   if (!counting_) return;
-  stream.dispatch(counts_, from_[parity], ClassesPush{hits, use_queue ? 1u : 0u, 0, {}, 0},
+  stream.dispatch(counts_, from_[parity], ClassesPush{hits, use_queue ? 1u : 0u, 0, {}, 0, 0},
                   gpu::groups_for(hits, 64), "sort hits");
 }
 
@@ -70,7 +70,7 @@ void HitShading::end_run(uint64_t hits, const uint32_t* counters) {
 void HitShading::choose() {
   classes_ = choose_hit_classes(features_, hits_);
   packed_ = packed(classes_);
-  diffuse_ = diffuse_kinds(features_, defines_);
+  dark_ = dark_kinds(features_, defines_);
   chosen_ = true;
   if (classes_.classes.empty()) return;
   sorts_ = gpu::Kernel(device_, compiler_, "transport/classes.comp");
@@ -87,11 +87,14 @@ void HitShading::choose() {
 void HitShading::sort(gpu::Stream& stream, size_t parity, uint32_t hits, bool use_queue,
                       const gpu::Buffer& counters) {
   stream.fill(counters, 0, 4 * k_counter_classes, 4 * k_hit_classes);
-  stream.dispatch(
-      sorts_, from_[parity],
-      ClassesPush{
-          hits, use_queue ? 1u : 0u, slots_, {packed_[0], packed_[1], packed_[2], packed_[3]}, diffuse_},
-      gpu::groups_for(hits, 64), "sort hits");
+  stream.dispatch(sorts_, from_[parity],
+                  ClassesPush{hits,
+                              use_queue ? 1u : 0u,
+                              slots_,
+                              {packed_[0], packed_[1], packed_[2], packed_[3]},
+                              dark_.diffuse,
+                              dark_.all},
+                  gpu::groups_for(hits, 64), "sort hits");
 }
 
 void HitShading::shade(gpu::Stream& stream, size_t parity, const gpu::Kernel& all, const uint32_t* counters) {

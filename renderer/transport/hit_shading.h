@@ -67,7 +67,7 @@ class HitShading {
   bool counting_ = false, chosen_ = false, ready_ = false;
   HitClasses classes_;
   std::array<uint32_t, 4> packed_{};
-  uint32_t diffuse_ = 0;  ///< diffuse_kinds()
+  DarkKinds dark_;
   std::future<std::vector<gpu::Kernel>> compiling_;
   std::vector<gpu::Kernel> kernels_;  ///< by class
   gpu::Kernel counts_, sorts_;

@@ -108,7 +108,6 @@ class Learner {
       const Range range = find(all, facing << 3 * k_levels, (facing + 1) << 3 * k_levels);
       visit(range, facing, 0, uvec3(0), root, row);
     }
-    to_.gain = noise_learned_ > 0 ? noise_plain_ / noise_learned_ : 1;
   }
 
   void fill_all(uint32_t row) { to_.grid.assign(k_bricks, row << 1); }
@@ -201,21 +200,6 @@ class Learner {
     return moments;
   }
 
-  void judge(Range range, const Moments& moments, uint32_t row) {
-    // From the last moments_of(): mean of arriving light, and second moments of a light sample.
-    double mean = 0, plain = 0, learned = 0;
-    for (size_t c = 0; c < moments.size(); ++c) {
-      if (clusters_.plain[c] <= 0) continue;
-      const double p = double(to_.rows[size_t(row) * clusters_.count() + c].z) * clusters_.plain[c];
-      mean += firsts_[c];
-      plain += moments[c] / clusters_.plain[c], learned += moments[c] / p;
-    }
-    if (!(mean > 0)) return;
-    const double weight = double(range.size()) / (mean * mean);
-    noise_plain_ += weight * std::max(0.0, plain - mean * mean);
-    noise_learned_ += weight * std::max(0.0, learned - mean * mean);
-  }
-
   /// Share for the last generation's rays; `around`: used if these are too few.
   void note_arrived(Range range, uint32_t row, float around) {
     size_t count = 0, arrived = 0;
@@ -228,18 +212,13 @@ class Learner {
   /// A cell of a level, with the moments and the row of its parent.
   void visit(Range range, uint32_t key, uint32_t level, uvec3 corner, const Moments& around, uint32_t row) {
     Moments own = around;
-    bool judged = false;
     if (range.size() >= cut_ / 5 && to_.row_count < most_rows_) {
       own = moments_of(range, around, true);
       const uint32_t around_row = std::exchange(row, add_row(own));
       note_arrived(range, row, to_.arrived[around_row]);
       fill(level, corner, key, row);
-      judged = true;
     }
-    if (range.size() < cut_ || level == k_levels) {
-      if (judged) judge(range, own, row);
-      return;
-    }
+    if (range.size() < cut_ || level == k_levels) return;
     const uint32_t shift = 3 * (k_levels - level - 1);
     for (uint32_t child = 0; child < 8; ++child) {
       const uint32_t below = key << 3 | child;
@@ -288,10 +267,20 @@ class Learner {
   uint32_t most_rows_ = 0;
   std::vector<double> sums_, firsts_, weights_, rates_, even_;
   std::vector<uint32_t> counts_;
-  double noise_plain_ = 0, noise_learned_ = 0;
 };
 
 }  // namespace
+
+uint32_t LearnedLights::row_at(const vec3& position, uint32_t facing) const {
+  const uvec3 cell(
+      glm::clamp((position - cells.origin) * cells.scale, vec3(0), vec3(float(k_learned_cells) - 0.5f)));
+  const uvec3 top = cell / k_learned_brick, in = cell % k_learned_brick;
+  uint32_t word = grid[((facing * k_learned_top + top.z) * k_learned_top + top.y) * k_learned_top + top.x];
+  if ((word & 1u) != 0)
+    word = grid[k_bricks +
+                (((word >> 1) * k_learned_brick + in.z) * k_learned_brick + in.y) * k_learned_brick + in.x];
+  return word >> 1;
+}
 
 LearnedCells learned_cells(std::span<const LightRecord> records) {
   std::array<std::vector<float>, 3> along;
@@ -331,6 +320,42 @@ LearnedLights learn_lights(const upload::LightClusters& clusters, const LearnedC
   LearnedLights to;
   Learner(clusters, cells, records, to, last).learn();
   return to;
+}
+
+double measured_gain(const upload::LightClusters& clusters, const LearnedLights& lights,
+                     std::span<const LightRecord> records) {
+  // What a sample says of its row: light, and the second moments with both probabilities.
+  struct Sample {
+    uint32_t row;
+    double light, learned, plain;
+  };
+  std::vector<Sample> samples;
+  for (const LightRecord& r : records) {
+    if (r.full == 0) continue;
+    const uint32_t row = lights.row_at(r.position, r.cell >> 16), c = r.cell & 0xffffu;
+    const double plain = clusters.plain[c],
+                 p = double(lights.rows[size_t(row) * clusters.count() + c].z) * plain;
+    if (!(p > 0)) continue;
+    const double value = r.full > 0 ? double(r.value) * (r.arrived / r.full) : 0.0;
+    samples.push_back({row, value / p, value * value / (p * p), value * value / (p * plain)});
+  }
+  // Sums must not depend on the order of arrival.
+  std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) {
+    return std::tie(a.row, a.light, a.plain) < std::tie(b.row, b.light, b.plain);
+  });
+  double mean = 0, learned = 0, plain = 0;
+  for (const Sample& s : samples) mean += s.light / double(samples.size());
+  const double floor = 0.05 * mean;
+  for (size_t i = 0, end = 0; i < samples.size(); i = end) {
+    Sample sum{samples[i].row, 0, 0, 0};
+    for (; end < samples.size() && samples[end].row == sum.row; ++end)
+      sum.light += samples[end].light, sum.learned += samples[end].learned, sum.plain += samples[end].plain;
+    const double n = double(end - i), m = sum.light / n, weight = n / (m * m + floor * floor);
+    if (!(m > 0)) continue;
+    learned += weight * std::max(0.0, sum.learned / n - m * m);
+    plain += weight * std::max(0.0, sum.plain / n - m * m);
+  }
+  return learned > 0 ? plain / learned : 1;
 }
 
 }  // namespace lucerna::transport

@@ -26,9 +26,9 @@ struct LearnedLights {
   uint32_t row_count = 0;
   /// By row: share of unblocked shadow rays among the light samples of the last generation; < 0: unknown.
   std::vector<float> arrived;
-  /// Variance of a light sample without learning over that with these probabilities, both relative to the
-  /// squared arriving light and estimated from the same samples. 1 without records.
-  double gain = 1;
+
+  /// Row for a place and facing (shared::LightRecord::cell), as kernels find it.
+  uint32_t row_at(const vec3& position, uint32_t facing) const;
 };
 
 /// Probabilities of an unlearned start: nearly as without learning, with a tenth uniform over clusters.
@@ -41,5 +41,11 @@ LearnedLights exploring_lights(const upload::LightClusters& clusters);
 /// order of records does not matter. `last`: number of records of the last generation, at the end.
 LearnedLights learn_lights(const upload::LightClusters& clusters, const LearnedCells& cells,
                            std::span<const shared::LightRecord> records, size_t last = 0);
+/// Variance of a light sample without learning over that with `lights`, both relative to the squared light of
+/// its row with a floor of 5 % of the mean. `records`: sampled with `lights`, which must not have learned
+/// from them: variances of the same samples would be too small by far. Their order does not matter. 1 without
+/// light.
+double measured_gain(const upload::LightClusters& clusters, const LearnedLights& lights,
+                     std::span<const shared::LightRecord> records);
 
 }  // namespace lucerna::transport

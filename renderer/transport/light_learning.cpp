@@ -39,12 +39,13 @@ void LightLearning::upload_clusters() {
   put(device_, facets_, "emissive triangles", std::exchange(clusters_.facets, {}));
 }
 
-void LightLearning::take(const LearnedLights& lights) {
+void LightLearning::take(LearnedLights lights) {
   put(device_, grid_, "learned cells", lights.grid);
   put(device_, rows_, "learned lights", lights.rows);
-  cells_ = lights.cells, row_count_ = lights.row_count, gain_ = lights.gain;
+  row_count_ = lights.row_count;
   row_arrived_ = lights.arrived;
   row_arrived_.resize(row_count_, -1.f);
+  lights_ = std::move(lights);
   ++version_;
 }
 
@@ -61,8 +62,8 @@ void LightLearning::bind(gpu::Resources& r) const {
 }
 
 void LightLearning::describe(Frame& frame) const {
-  frame.learned_origin = cells_.origin;
-  frame.learned_scale = cells_.scale;
+  frame.learned_origin = lights_.cells.origin;
+  frame.learned_scale = lights_.cells.scale;
   frame.light_clusters = clusters_.count();
   frame.sky_clusters = clusters_.sky;
   frame.learning = recording_ ? 1 : 0;
@@ -96,16 +97,21 @@ void LightLearning::finish_generation() {
   size_t arrived = 0;
   for (const LightRecord& r : fresh_) arrived += r.arrived > 0;
   arrived_ = fresh_.empty() ? 0 : double(arrived) / double(fresh_.size());
-  if (cells_.scale == 0) cells_ = learned_cells(fresh_);
+  if (generations_ > 0) gain_ = measured_gain(clusters_, lights_, fresh_);
+  pays_ = generations_ == 0 || gain_ >= k_least_gain;
+  const LearnedCells cells = lights_.cells.scale > 0 ? lights_.cells : learned_cells(fresh_);
   samples_.insert(samples_.end(), fresh_.begin(), fresh_.end());
   record_count_ = samples_.size();
   const size_t last = fresh_.size();
   fresh_.clear();
-  take(learn_lights(clusters_, cells_, samples_, last));
+  take(pays_ ? learn_lights(clusters_, cells, samples_, last) : plain_lights(clusters_));
   ++generations_;
 }
 
-void LightLearning::end() { samples_ = {}, fresh_ = {}; }
+void LightLearning::end() {
+  samples_ = {}, fresh_ = {};
+  lights_.grid = {}, lights_.rows = {};
+}
 
 void LightLearning::learn(std::vector<LightRecord> records) {
   fresh_ = std::move(records);
@@ -121,7 +127,7 @@ void LightLearning::forget(upload::LightClusters clusters) {
 void LightLearning::forget() {
   end();
   record_count_ = 0;
-  cells_ = {};
+  gain_ = 1, pays_ = true;
   recording_ = false;
   generations_ = 0;
   take(plain_lights(clusters_));
@@ -138,7 +144,8 @@ std::vector<float> LightLearning::row(uint32_t row) const {
 uint64_t LightLearning::bytes() const {
   return grid_.bytes() + rows_.bytes() + cluster_texels_.bytes() + members_.bytes() + primitives_.bytes() +
          shapes_.bytes() + tiles_.bytes() + facets_.bytes() + records_.bytes() +
-         (samples_.capacity() + fresh_.capacity()) * sizeof(LightRecord);
+         (samples_.capacity() + fresh_.capacity()) * sizeof(LightRecord) +
+         lights_.grid.capacity() * sizeof(uint32_t) + lights_.rows.capacity() * sizeof(vec4);
 }
 
 }  // namespace lucerna::transport

@@ -8,6 +8,9 @@
 
 namespace lucerna::transport {
 
+/// Minimum of measured_gain() with which learned selection pays: it takes a sixth of a sample's time.
+inline constexpr double k_least_gain = 1.3;
+
 class LightLearning {
  public:
   /// At first, selection is as without learning. `most_paths`: maximum number of paths recorded at once.
@@ -32,6 +35,9 @@ class LightLearning {
   void abandon_generation();
   /// Frees the records; no generation may follow.
   void end();
+  /// False once a generation has shown that light samples gain little by learning (k_least_gain). Selection is
+  /// then as without learning, which costs less, and further generations would be in vain.
+  bool pays() const { return pays_; }
   /// Likewise, with samples recorded elsewhere, as a generation.
   void learn(std::vector<shared::LightRecord> records);
   uint32_t generations() const { return generations_; }
@@ -44,6 +50,7 @@ class LightLearning {
   const upload::LightClusters& clusters() const { return clusters_; }
   uint32_t rows() const { return row_count_; }
   size_t records() const { return record_count_; }
+  /// measured_gain() of the last generation; 1 before the second one, whose samples are the first to show it.
   double gain() const { return gain_; }
   /// Share of the last generation's recorded light samples that contributed light.
   double arrived() const { return arrived_; }
@@ -55,18 +62,18 @@ class LightLearning {
   uint64_t bytes() const;
 
  private:
-  void take(const LearnedLights& lights);
+  void take(LearnedLights lights);
   void upload_clusters();
 
   gpu::Device& device_;
   upload::LightClusters clusters_;
   uint32_t most_paths_;
   gpu::Buffer grid_, rows_, cluster_texels_, members_, primitives_, shapes_, tiles_, facets_, records_;
-  LearnedCells cells_;
+  LearnedLights lights_;  ///< present selection, until the end
   std::vector<shared::LightRecord> samples_, fresh_;  ///< of earlier generations, and of the current one
   std::vector<float> row_arrived_;
   size_t record_count_ = 0;
-  bool recording_ = false;
+  bool recording_ = false, pays_ = true;
   uint32_t generations_ = 0, row_count_ = 0, version_ = 0;
   double gain_ = 1, arrived_ = 0;
 };

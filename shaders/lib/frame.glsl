@@ -20,6 +20,7 @@ bool automaton_no_diffuse(uint state) { return state == 0u; }
 bool automaton_goes_on(uint state) { return true; }
 uint automaton_account(uint state) { return 0u; }
 bool automaton_ends_on_diffuse(uint state) { return false; }
+bool automaton_ends(uint state) { return false; }
 #else
 // One word a state (paths/automaton.h, pack()).
 uint automaton_after(uint state, uint event) { return (frame.automaton[state] >> (8u * event)) & 0xffu; }
@@ -36,6 +37,12 @@ bool automaton_goes_on(uint state) {
 }
 uint automaton_account(uint state) { return (frame.automaton[state] >> 29) & 3u; }
 bool automaton_ends_on_diffuse(uint state) { return (frame.automaton[state] & k_ends_on_diffuse) != 0u; }
+// Likewise on surfaces with any lobes.
+bool automaton_ends(uint state) {
+  uint glossy = automaton_after(state, 1u), specular = automaton_after(state, 2u);
+  bool bright = is_component(automaton_component(glossy)) || is_component(automaton_component(specular));
+  return automaton_ends_on_diffuse(state) && !bright && !automaton_live(glossy) && !automaton_live(specular);
+}
 #endif
 
 // Offset of a point of the picture (0..1 to the right and down) from the middle, along camera_right and camera_up.

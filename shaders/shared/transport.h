@@ -101,7 +101,7 @@ struct ClassesPush {
   uint count, use_queue;  ///< as in TransportPush
   uint slots;             ///< entries of a class's part of the queue
   uint classes[4];        ///< by kind, k_class_bits each
-  uint diffuse;           ///< bit k: surfaces of kind k have diffuse lobes alone; hits at which such end the path are left out
+  uint diffuse, all;      ///< bits by kind (transport::DarkKinds): hits of these that add no light are left out
 };
 
 struct TransportPush {

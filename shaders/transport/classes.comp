@@ -27,7 +27,9 @@ void main() {
   // depth are written or counted.
   PathState path = load_path(slot);
   uint depth = path_depth(path);
-  bool ends = (push.diffuse >> kind & 1u) != 0u && automaton_ends_on_diffuse(path_automaton(path)) && depth > 0u && depth < frame.max_depth;
+  bool of_diffuse = (push.diffuse >> kind & 1u) != 0u && automaton_ends_on_diffuse(path_automaton(path));
+  bool of_all = (push.all >> kind & 1u) != 0u && automaton_ends(path_automaton(path));
+  bool ends = (of_diffuse || of_all) && depth > 0u && depth < frame.max_depth;
   if (ends) return;
   const uint in_word = 32u / k_class_bits;
   uint to = push.classes[kind / in_word] >> k_class_bits * (kind % in_word) & (1u << k_class_bits) - 1u;

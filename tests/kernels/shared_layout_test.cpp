@@ -214,7 +214,7 @@ std::vector<SharedStruct> structs() {
              eta_scale, nulls, light_group),
       SHARED("transport.h", ShadowState, diffuse, lanes, glossy, tag),
       SHARED("transport.h", TransportPush, count, use_queue, pixel_count, round),
-      SHARED("transport.h", ClassesPush, count, use_queue, slots, classes, diffuse),
+      SHARED("transport.h", ClassesPush, count, use_queue, slots, classes, diffuse, all),
   };
 }
 

@@ -116,16 +116,21 @@ TEST_CASE("there are no more classes than kernels") {
   for (const uint32_t c : chosen.of_kind) CHECK(c < shared::k_hit_classes);
 }
 
-TEST_CASE("surfaces with diffuse lobes alone are known, unless hits need more than shading") {
+TEST_CASE("surfaces that only scatter are known, unless hits need more than shading") {
   Features features;
   features.fill(k_all_features);
   features[1] = k_matt, features[2] = k_matt | k_feature_base_texture | k_feature_normal_map;
   features[3] = k_gloss, features[4] = k_matt | k_feature_emission, features[5] = k_matt | k_feature_alpha;
   features[shared::k_kind_sky] = 0;
-  CHECK(transport::diffuse_kinds(features, {}) == 0b110);
-  CHECK(transport::diffuse_kinds(features, {{"LUCERNA_SHAPES", "0"}}) == 0b110);
-  for (const char* name : {"LUCERNA_PATH_EVENTS", "LUCERNA_SHAPES", "LUCERNA_NO_AUTOMATON"})
-    CHECK(transport::diffuse_kinds(features, {{name, "1"}}) == 0);
+  features[6] = k_pane;
+  for (const gpu::Defines& defines : {gpu::Defines{}, gpu::Defines{{"LUCERNA_SHAPES", "0"}}}) {
+    CHECK(transport::dark_kinds(features, defines).diffuse == 0b110);
+    CHECK(transport::dark_kinds(features, defines).all == 0b1110);
+  }
+  for (const char* name : {"LUCERNA_PATH_EVENTS", "LUCERNA_SHAPES", "LUCERNA_NO_AUTOMATON"}) {
+    CHECK(transport::dark_kinds(features, {{name, "1"}}).diffuse == 0);
+    CHECK(transport::dark_kinds(features, {{name, "1"}}).all == 0);
+  }
 }
 
 TEST_CASE("a class's kernel keeps what light samples read of emissive surfaces") {

@@ -191,13 +191,44 @@ TEST_CASE("a cluster that reaches one corner is chosen there") {
   const transport::LearnedCells cells = transport::learned_cells(list);
   const transport::LearnedLights learned = transport::learn_lights(clusters, cells, list);
   const auto chosen_at = [&](vec3 p) {
-    const uvec3 cell((p - cells.origin) * cells.scale), top = cell / 8u, in = cell % 8u;
-    uint32_t word = learned.grid[((2 * 16 + top.z) * 16 + top.y) * 16 + top.x];
-    if (word & 1u) word = learned.grid[6 * 16 * 16 * 16 + (word >> 1) * 512 + (in.z * 8 + in.y) * 8 + in.x];
-    return learned.rows[size_t(word >> 1) * clusters.count() + seen].z * clusters.plain[seen];
+    return learned.rows[size_t(learned.row_at(p, 2)) * clusters.count() + seen].z * clusters.plain[seen];
   };
   CHECK(chosen_at({1, 1.5f, 1}) > 0.8f);
   CHECK(clusters.plain[seen] < 0.01f);
+}
+
+TEST_CASE("the gain of learning is measured by samples that were not learned from") {
+  const upload::LightClusters clusters = upload::make_light_clusters(upload::flatten(lights()));
+  const uint32_t n = clusters.count();
+  std::mt19937 random(11);
+  const auto unit = [&] { return float(random() >> 8) / 16777216.f; };
+  // Light samples of vertices, each chosen by the row there; `light`: of a cluster at a place.
+  const auto sampled = [&](const transport::LearnedLights& by, const auto& light) {
+    std::vector<LightRecord> list;
+    for (uint32_t i = 0; i < 60000; ++i) {
+      LightRecord r{};
+      r.position = vec3(10 * unit(), 1.5f, 8 * unit());
+      const vec4* row = &by.rows[size_t(by.row_at(r.position, 2)) * n];
+      const uint32_t at = random() % n, c = unit() < row[at].x ? at : std::bit_cast<uint32_t>(row[at].y);
+      r.cell = 2u << 16 | c;
+      r.value = light(c, r.position), r.full = r.value > 0 ? 1.f : -1.f, r.arrived = 1;
+      list.push_back(r);
+    }
+    return list;
+  };
+  const auto gain = [&](const auto& light) {
+    const auto first = sampled(transport::exploring_lights(clusters), light);
+    const auto learned = transport::learn_lights(clusters, transport::learned_cells(first), first);
+    return transport::measured_gain(clusters, learned, sampled(learned, light));
+  };
+  // Of all lamps one faint one arrives, in half of the room another.
+  const double high = gain([&](uint32_t c, vec3 p) { return c == n - (p.x < 5 ? 1 : 2) ? 1.f : 0.f; });
+  // Everything arrives, as much as expected: nothing can be gained.
+  const double none = gain([&](uint32_t c, vec3) { return clusters.plain[c]; });
+  INFO(high << " and " << none);
+  CHECK(high > 10);
+  CHECK(none < 1.05);
+  CHECK(transport::measured_gain(clusters, transport::plain_lights(clusters), {}) == 1);
 }
 
 }  // namespace learned_lights_tests
