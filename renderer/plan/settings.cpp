@@ -83,8 +83,7 @@ void add_sampling_options(std::vector<OptionInfo>& list) {
       choice_option("lights.sampling", "learned", {"power", "learned"}, "",
                     "Light selection at a vertex. power: by emitted power. learned: by the light that "
                     "arrives nearby, learned in short pilots between the first samples: less noise where "
-                    "walls or blinds hide most lights, or most of the sky; by power after all where a pilot "
-                    "shows that learning gains little. Unbiased in both cases. "
+                    "walls or blinds hide most lights, or most of the sky. Unbiased in both cases. "
                     "Both sample the sky through portals too (lights.portals).",
                     "Light selection"));
   list.push_back(

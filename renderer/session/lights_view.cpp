@@ -50,7 +50,6 @@ Card card_of(const overlay::ServedPoint& served, const transport::LightLearning&
   add(Card::Rule{});
   add(Card::Row{"Shadow rays that arrive", served.arrived < 0 ? "not known" : share_text(served.arrived, 1)});
   if (learning.generations() == 0) add(Card::Note{"Nothing is learned yet: lights are chosen by power."});
-  if (!learning.pays()) add(Card::Note{"Learning gains little in this scene: lights are chosen by power."});
   return card;
 }
 

@@ -355,7 +355,7 @@ double measured_gain(const upload::LightClusters& clusters, const LearnedLights&
     learned += weight * std::max(0.0, sum.learned / n - m * m);
     plain += weight * std::max(0.0, sum.plain / n - m * m);
   }
-  return learned > 0 ? plain / learned : 1;
+  return plain > 0 ? plain / std::max(learned, 1e-6 * plain) : 1;
 }
 
 }  // namespace lucerna::transport

@@ -43,8 +43,8 @@ LearnedLights learn_lights(const upload::LightClusters& clusters, const LearnedC
                            std::span<const shared::LightRecord> records, size_t last = 0);
 /// Variance of a light sample without learning over that with `lights`, both relative to the squared light of
 /// its row with a floor of 5 % of the mean. `records`: sampled with `lights`, which must not have learned
-/// from them: variances of the same samples would be too small by far. Their order does not matter. 1 without
-/// light.
+/// from them: variances of the same samples would be too small by far. Their order does not matter. At most
+/// 10^6; 1 without light.
 double measured_gain(const upload::LightClusters& clusters, const LearnedLights& lights,
                      std::span<const shared::LightRecord> records);
 

@@ -98,13 +98,13 @@ void LightLearning::finish_generation() {
   for (const LightRecord& r : fresh_) arrived += r.arrived > 0;
   arrived_ = fresh_.empty() ? 0 : double(arrived) / double(fresh_.size());
   if (generations_ > 0) gain_ = measured_gain(clusters_, lights_, fresh_);
-  pays_ = generations_ == 0 || gain_ >= k_least_gain;
+  pays_ = generations_ == 0 || arrived_ == 0 || gain_ >= k_least_gain;
   const LearnedCells cells = lights_.cells.scale > 0 ? lights_.cells : learned_cells(fresh_);
   samples_.insert(samples_.end(), fresh_.begin(), fresh_.end());
   record_count_ = samples_.size();
   const size_t last = fresh_.size();
   fresh_.clear();
-  take(pays_ ? learn_lights(clusters_, cells, samples_, last) : plain_lights(clusters_));
+  take(learn_lights(clusters_, cells, samples_, last));
   ++generations_;
 }
 

@@ -8,7 +8,7 @@
 
 namespace lucerna::transport {
 
-/// Minimum of measured_gain() with which learned selection pays: it takes a sixth of a sample's time.
+/// Minimum of measured_gain() with which further generations pay.
 inline constexpr double k_least_gain = 1.3;
 
 class LightLearning {
@@ -35,8 +35,8 @@ class LightLearning {
   void abandon_generation();
   /// Frees the records; no generation may follow.
   void end();
-  /// False once a generation has shown that light samples gain little by learning (k_least_gain). Selection is
-  /// then as without learning, which costs less, and further generations would be in vain.
+  /// False once a generation has shown that light samples gain little by learning (k_least_gain): further
+  /// generations would take more time than they save. What is learned stays.
   bool pays() const { return pays_; }
   /// Likewise, with samples recorded elsewhere, as a generation.
   void learn(std::vector<shared::LightRecord> records);
@@ -69,7 +69,7 @@ class LightLearning {
   upload::LightClusters clusters_;
   uint32_t most_paths_;
   gpu::Buffer grid_, rows_, cluster_texels_, members_, primitives_, shapes_, tiles_, facets_, records_;
-  LearnedLights lights_;  ///< present selection, until the end
+  LearnedLights lights_;                              ///< present selection, until the end
   std::vector<shared::LightRecord> samples_, fresh_;  ///< of earlier generations, and of the current one
   std::vector<float> row_arrived_;
   size_t record_count_ = 0;

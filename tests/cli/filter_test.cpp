@@ -18,11 +18,13 @@ using test::Run;
 
 namespace {
 
-Run render(const test::Folder& folder, const std::string& name, const std::string& more, int samples = 16) {
+Run render(const test::Folder& folder, const std::string& name, const std::string& more, int samples = 16,
+           const std::string& size = "48x40") {
   const std::string at = folder.path.string() + "/" + name;
   return test::run("render '" + std::string(LUCERNA_SOURCE_DIR) +
-                   "/scenes/cornell/cornell.gltf' --size 48x40 --quiet --samples " + std::to_string(samples) +
-                   " -o " + at + ".exr -o " + at + ".png --stats " + at + ".json " + more);
+                   "/scenes/cornell/cornell.gltf' --quiet --size " + size + " --samples " +
+                   std::to_string(samples) + " -o " + at + ".exr -o " + at + ".png --stats " + at + ".json " +
+                   more);
 }
 
 nlohmann::json figures(const test::Folder& folder, const std::string& name) {
@@ -40,10 +42,12 @@ double mean_square(const std::vector<float>& a, const std::vector<float>& b) {
 
 TEST_CASE("--filter: layers beside the samples, a picture without noise, and its error") {
   const test::Folder f;
-  REQUIRE(render(f, "plain", "").status == 0);
-  REQUIRE(render(f, "truth", "--seed 9", 1024).status == 0);
+  // In smaller pictures the reported error is mostly that of a few pixels at the lamp's edges.
+  const std::string size = "96x80";
+  REQUIRE(render(f, "plain", "", 16, size).status == 0);
+  REQUIRE(render(f, "truth", "--seed 9", 1024, size).status == 0);
   for (const char* name : {"a", "b"}) {
-    const Run r = render(f, name, "--filter");
+    const Run r = render(f, name, "--filter", 16, size);
     INFO(r.out);
     REQUIRE(r.status == 0);
   }

@@ -2,6 +2,7 @@
 // Learned light selection: the same light as selection by power in every scene, reproducible bit for bit, and
 // less noise where walls hide most of the lights.
 #include "images/learned_lights_support.h"
+#include "transport/light_learning.h"
 
 namespace learned_lights_tests {
 
@@ -95,6 +96,29 @@ TEST_CASE("the picture is a function of scene, settings and seed") {
     renderer.step([&] { return ++calls > limit; });
   }
   CHECK(test::identical(first, renderer.image()));
+}
+
+TEST_CASE("pilots end where learning gains little, and go on where it gains much") {
+  const auto lights = [](const auto& load) {
+    session::Renderer renderer(test::renderer_options(false));
+    renderer.settings().set("path.batch", test::k_batch);
+    renderer.set_size(48, 40);
+    load(renderer);
+    test::set(renderer, {{"samples", "8"}, {"cache.max_records", test::k_room}});
+    test::finish(renderer);
+    return renderer.solvers().statistics().at("lights");
+  };
+  // One lamp, visible from everywhere: samples of the second pilot show it, and no third follows.
+  const auto open = lights([](session::Renderer& renderer) {
+    renderer.load(std::string(LUCERNA_SOURCE_DIR) + "/scenes/cornell/cornell.gltf");
+  });
+  CHECK(open.at("gain").get<double>() < transport::k_least_gain);
+  CHECK(open.at("records") < 5000);  // three pilots have 9353
+  const auto narrow = lights([](session::Renderer& renderer) {
+    renderer.set_scene(std::make_shared<scene::Scene>(window_room(sky(), false, 0.2f)));
+  });
+  CHECK(narrow.at("gain").get<double>() > transport::k_least_gain);
+  CHECK(narrow.at("records") > 5000);
 }
 
 TEST_CASE("less noise through a window") {
