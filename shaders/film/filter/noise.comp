@@ -7,9 +7,7 @@ uniform samplerBuffer filter_noisy, filter_surfaces;
 layout(scalar) writeonly buffer FilterMeasured { vec4 measured[]; };
 #include "film/filter/window.glsl"
 
-// A disk of 21 pixels, as window.glsl has one.
-const int k_noise_reach = 2;
-int noise_row(int y) { return min(k_noise_reach, 3 - abs(y)); }
+const int k_reach = 2;
 
 void main() {
   uint pixel = global_index();
@@ -17,8 +15,8 @@ void main() {
   Window window = window_at(pixel);
   FilterLight here = filter_light(texelFetch(filter_noisy, int(pixel)));
   float sum = 0.0, weights = 0.0;
-  for (int y = -k_noise_reach; y <= k_noise_reach; ++y)
-    for (int x = -noise_row(y); x <= noise_row(y); ++x) {
+  for (int y = -k_reach; y <= k_reach; ++y)
+    for (int x = -window_row(k_reach, y); x <= window_row(k_reach, y); ++x) {
       ivec2 step = int(push.stride) * ivec2(x, y), at = window.xy + step;
       bool inside = window_has(at);
       int there = inside ? at.y * int(push.width) + at.x : int(pixel);

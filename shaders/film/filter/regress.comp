@@ -14,6 +14,8 @@ uniform samplerBuffer filter_guides;
 layout(scalar) writeonly buffer FilterFitted { vec4 fitted[]; };
 #include "film/filter/window.glsl"
 
+const int k_reach = 3;
+
 // True for secondary and tertiary light, which has few edges but those of surfaces; direct light and caustics have their own.
 bool is_smooth() { return push.component == 1u || push.component == 2u; }
 
@@ -94,8 +96,8 @@ void main() {
   vec3 tangent, bitangent;
   make_basis(window.surface.normal, tangent, bitangent);
   mat2x3 tangents = mat2x3(tangent, bitangent);
-  for (int y = -k_window_reach; y <= k_window_reach; ++y)
-    for (int x = -window_row(y); x <= window_row(y); ++x) {
+  for (int y = -k_reach; y <= k_reach; ++y)
+    for (int x = -window_row(k_reach, y); x <= window_row(k_reach, y); ++x) {
       ivec2 step = int(push.stride) * ivec2(x, y), at = window.xy + step;
       bool inside = window_has(at) && (x != 0 || y != 0);
       int there = inside ? at.y * int(push.width) + at.x : int(pixel);
@@ -107,7 +109,7 @@ void main() {
       float v = square(g.deviation) + square(g.in_both);
       float by_odd = inside ? exp2(alike - distance_of(guide.odd, g.odd, variance, v)) : 0.0;
       float by_even = inside ? exp2(alike - distance_of(guide.even, g.even, variance, v)) : 0.0;
-      vec4 a = vec4(1.0, vec2(x, y) * (1.0 / float(k_window_reach)), luminance(window.surface.albedo) / luminance(s.albedo) - 1.0);
+      vec4 a = vec4(1.0, vec2(x, y) * (1.0 / float(k_reach)), luminance(window.surface.albedo) / luminance(s.albedo) - 1.0);
       vec3 b = vec3((s.normal - window.surface.normal) * tangents, (s.depth - window.surface.depth) * per_depth);
       if (s.covered == 0.0 || window.surface.covered == 0.0) b = vec3(0.0);
       add(even, by_odd, a, b, light.even);

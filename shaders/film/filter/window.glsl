@@ -7,10 +7,9 @@ struct Window {
   vec2 slope;  // of depth [m a pixel]
 };
 
-// A window is a disk of 37 pixels: rows -k_window_reach to k_window_reach, each from -window_row(y) to window_row(y). Both bound
-// loops, because a loop is left early where a condition within it would not save its work.
-const int k_window_reach = 3;
-int window_row(int y) { return min(k_window_reach, 4 - abs(y)); }
+// A window is a disk: rows -reach to reach, each from -window_row(reach, y) to window_row(reach, y). Both bound loops, because a
+// loop is left early where a condition within it would not save its work. A reach of 2 has 21 pixels, one of 3 has 37.
+int window_row(int reach, int y) { return min(reach, reach + 1 - abs(y)); }
 
 bool window_has(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(push.width, push.height))); }
 
