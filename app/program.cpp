@@ -44,8 +44,13 @@ int open_window(const WindowArguments& window, const Common& common) {
     if (options.script.empty()) options.script.emplace_back();  // an empty script ends too
     options.script_name = window.script;
   }
+  // A script does not depend on the time that anything takes.
   const auto made = session::start_session(
-      {.device = common.device, .validation = false, .shaders = {}, .scenes = common.scenes});
+      {.device = common.device,
+       .validation = false,
+       .shaders = {},
+       .scenes = common.scenes,
+       .patience = options.script.empty() ? std::optional(session::k_patience) : std::nullopt});
   session::Session& session = *made;
   options.interrupted = [&] { return interrupt.signal() != 0; };
   const int status = ui::run_viewer(session, options);

@@ -161,10 +161,10 @@ std::vector<session::SettingChange> setting_changes(const RenderArguments& a, ui
 /// True if the command line or the scene sets a setting that begins so.
 bool is_given(const session::Renderer& r, const std::vector<session::SettingChange>& changes,
               const std::string& begin) {
-  const auto& scenes = r.scene()->settings;
-  return std::any_of(changes.begin(), changes.end(),
-                     [&](const auto& c) { return c.key.starts_with(begin); }) ||
-         std::any_of(scenes.begin(), scenes.end(), [&](const auto& s) { return s.first.starts_with(begin); });
+  const auto begins = [&](const auto& setting) { return setting.first.starts_with(begin); };
+  return std::ranges::any_of(changes, [&](const auto& c) { return c.key.starts_with(begin); }) ||
+         std::ranges::any_of(r.scene()->settings, begins) ||
+         std::ranges::any_of(r.scene()->own_settings, begins);
 }
 
 /// True if nothing but --time ends the render, and nothing else says where its samples go.
@@ -185,8 +185,7 @@ void choose_solvers(session::Renderer& r, const RenderArguments& a,
   if (std::any_of(a.solver_load.begin(), a.solver_load.end(),
                   [](const auto& l) { return !l.second.empty(); }))
     return;
-  for (const char* component : {"secondary", "tertiary", "caustic"})
-    r.settings().set(std::string("components.") + component, plan::k_auto, "--time");
+  plan::leave_choice(r.settings(), "--time");
   r.apply_settings();
 }
 

@@ -29,8 +29,10 @@ std::string solver_help(int component, const std::string& value) {
   if (value == "off")
     return "Off: the component is missing; its paths are traced only where other components need them.";
   if (value == plan::k_auto)
-    return "Auto: chosen once for the scene, by what it contains and by the first samples of paths. Edits "
-           "do not change the choice; choosing another solver and then auto does.";
+    return "Auto: chosen once for the scene, by what it contains and by the first samples of paths, for a "
+           "good "
+           "picture within half a minute. Edits do not change the choice; choosing another solver and then "
+           "auto does.";
   const size_t plus = value.find('+');
   const solvers::SolverInfo* solver = solvers::find(value.substr(0, plus));
   std::string first = solver ? solver->help : "";
@@ -89,6 +91,13 @@ void component_row(Controls& controls, int c, float width) {
     for (const std::string& solver : option->choices)
       if (solver == chosen_name || solver.find('+') == std::string::npos)
         solver_width = std::max(solver_width, text_width(solver) + px(36));
+    // Where the program chooses: what it has chosen, in parentheses if there is no room to say so.
+    std::string shown;
+    if (chosen_name == plan::k_auto && status && !status->solver.empty()) {
+      shown = fmt::format("{}: {}", plan::k_auto, status->solver);
+      if (text_width(shown) + px(36) > width - beside) shown = fmt::format("({})", status->solver);
+      solver_width = std::max(solver_width, text_width(shown) + px(36));
+    }
     solver_width = std::min(solver_width, std::max(px(76), width - beside));
     int chosen = static_cast<int>(
         std::find(option->choices.begin(), option->choices.end(), controls.open.setting(key)) -
@@ -97,7 +106,7 @@ void component_row(Controls& controls, int c, float width) {
     for (const std::string& solver : option->choices) helps.push_back(solver_help(c, solver));
     const std::string help =
         option->help + (static_cast<size_t>(chosen) < helps.size() ? " " + helps[size_t(chosen)] : "");
-    if (choice("##solver", "", option->choices, chosen, solver_width, helps))
+    if (choice("##solver", "", option->choices, chosen, solver_width, helps, shown))
       controls.act("set", key, option->choices[static_cast<size_t>(chosen)]);
     tooltip(status && !status->reason.empty()
                 ? fmt::format("{}\n\nChosen: {}. {}.", help, status->solver, status->reason)

@@ -123,7 +123,11 @@ void Ui::finish_leaving() {
   if (opens.empty())
     requests.status = 0;
   else
-    act("scene.open", opens);
+    open_scene(opens);
+}
+
+void Ui::open_scene(const std::string& file) {
+  act_line(commands::line("scene.open", file) + " choose=true");
 }
 
 void Ui::drop(const std::string& file) {

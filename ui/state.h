@@ -126,6 +126,8 @@ struct Ui {
   void leave(const std::string& opens);
   /// Leaves it, with or without edits, for leaving.opens.
   void finish_leaving();
+  /// Opens a scene whose solvers the program chooses, if the scene does not.
+  void open_scene(const std::string& file);
   std::vector<std::string> recent;  ///< files, newest first, from the root; at most k_recent_files
   /// What is kept between runs.
   Remembered remembered() {

@@ -47,7 +47,10 @@ class Viewer {
       return pictures_.get(slot, content, smooth, make);
     };
     session.on_publish([] { Window::wake(); });
-    if (!options.scene.empty()) ui_.act("scene.open", options.scene.string());
+    if (!options.scene.empty() && options.script.empty())
+      ui_.open_scene(options.scene.string());
+    else if (!options.scene.empty())
+      ui_.act("scene.open", options.scene.string());
     for (const std::string& line : settings_) ui_.act_line(line);
   }
 

@@ -431,7 +431,7 @@ bool colour_field(const char* id, const std::string& name, vec3& linear, const s
 }
 
 bool choice(const char* id, const std::string& name, const std::vector<std::string>& entries, int& index,
-            float width, const std::vector<std::string>& helps) {
+            float width, const std::vector<std::string>& helps, const std::string& shown) {
   const float w = full_width(width > 0 ? width : ImGui::CalcItemWidth());
   const ImVec2 lo = ImGui::GetCursorScreenPos(), hi(lo.x + w, lo.y + row_height());
   ImGui::PushID(id);
@@ -448,13 +448,13 @@ bool choice(const char* id, const std::string& name, const std::vector<std::stri
                       px(3));
   draw_sign(list, {hi.x - px(12), 0.5f * (lo.y + hi.y) + 1}, px(7), Sign::chevron_down, true,
             colour::text_dim);
-  const std::string shown =
-      index >= 0 && index < static_cast<int>(entries.size()) ? entries[static_cast<size_t>(index)] : "";
+  const bool chosen = index >= 0 && index < static_cast<int>(entries.size());
+  const std::string& text = !shown.empty() ? shown : chosen ? entries[static_cast<size_t>(index)] : "";
   const ImVec2 inner_lo(lo.x + px(8), lo.y), inner_hi(hi.x - px(22), hi.y);
   const float name_width = name.empty() ? 0 : text_width(name) + px(8);
   if (!name.empty()) draw_text(list, inner_lo, inner_hi, name, colour::text_dim);
   draw_text(list, {inner_lo.x + name_width, lo.y}, inner_hi,
-            elided(shown, inner_hi.x - inner_lo.x - name_width), colour::text,
+            elided(text, inner_hi.x - inner_lo.x - name_width), colour::text,
             name.empty() ? Align::left : Align::right);
   bool changed = false;
   ImGui::SetNextWindowPos({lo.x, hi.y + px(2)});

@@ -83,9 +83,10 @@ ImU32 display_colour(const vec3& linear);
 /// is linear, 0..1 in each channel. Returns whether it changed.
 bool colour_field(const char* id, const std::string& name, vec3& linear, const std::string& note = "");
 
-/// A drop-down; `index` < 0 shows no choice. `helps`: tooltips of the entries, in their order.
+/// A drop-down; `index` < 0 shows no choice. `helps`: tooltips of the entries, in their order. `shown`: text
+/// for the choice instead of its entry.
 bool choice(const char* id, const std::string& name, const std::vector<std::string>& entries, int& index,
-            float width = 0, const std::vector<std::string>& helps = {});
+            float width = 0, const std::vector<std::string>& helps = {}, const std::string& shown = "");
 
 /// A thin bar of several parts (fractions of the width).
 struct Part {

@@ -115,8 +115,11 @@ class Latency {
   }
 
   void run_scene(const fs::path& file, const std::string& solver) {
-    const auto made = session::start_session(
-        {.device = o_.device, .validation = false, .shaders = {}, .scenes = o_.scenes});
+    const auto made = session::start_session({.device = o_.device,
+                                              .validation = false,
+                                              .shaders = {},
+                                              .scenes = o_.scenes,
+                                              .patience = session::k_patience});
     session::Session& s = *made;
     s.set_size(o_.width, o_.height);
     changes_.clear(), back_.reset(), done_edits_.clear();

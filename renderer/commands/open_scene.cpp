@@ -73,9 +73,9 @@ void OpenScene::begin_scene() {
   solo_ = -1;
 }
 
-void OpenScene::load(const std::string& file, bool outside) {
+void OpenScene::load(const std::string& file, bool outside, bool choose) {
   load_failed_ = false;
-  session.load(file, outside);
+  session.load(file, outside, choose);
   loaded_by_ = session.commands();
 }
 

@@ -53,7 +53,7 @@ class OpenScene {
   void begin_scene();
 
   /// Requests another scene.
-  void load(const std::string& file, bool outside = false);
+  void load(const std::string& file, bool outside = false, bool choose = false);
   /// A scene is being loaded, or loaded without a picture yet.
   bool loading() const { return loaded_by_ != 0; }
   bool load_failed() const { return load_failed_; }  ///< the last load failed

@@ -50,10 +50,16 @@ void add_scene_commands(Workspace& work) {
                       {.name = "outside",
                        .type = Type::boolean,
                        .help = "also reads files that the scene names outside its folder",
+                       .optional = true},
+                      {.name = "choose",
+                       .type = Type::boolean,
+                       .help = "the program chooses the solvers, as with auto, unless the scene sets "
+                               "components.* or relight.*",
                        .optional = true}},
        .run = [&work](const Arguments& a) {
          work.exposure.begin_load();
-         work.open.load(a.text("file"), a.has("outside") && a.boolean("outside"));
+         const auto is = [&](const char* name) { return a.has(name) && a.boolean(name); };
+         work.open.load(a.text("file"), is("outside"), is("choose"));
        }});
   work.registry.add({.name = "scene.cancel",
                      .help = "Cancels the load in progress, or the edit of objects; the shown scene stays.",

@@ -135,7 +135,7 @@ std::optional<Combination> combine(const Findings& findings, uint32_t decided, c
     }
     const std::optional<Prospect> p = all.solvers[s]->prospect(findings, slots[s].components);
     if (!p) return std::nullopt;
-    all.sum.preparation += p->preparation;
+    all.sum.preparation += findings.waiting * p->preparation;
     if (p->preparation > 0) all.traced += variance_of(findings, slots[s].components);
     all.sum.sample += p->sample;
     all.sum.variance += p->variance;
@@ -308,6 +308,15 @@ std::optional<double> predicted_cost(const Findings& findings, const std::array<
   const std::optional<Combination> all = combine(findings, traced, slots, by);
   const double cost = all ? all->cost(error) : k_never;
   return cost == k_never ? std::nullopt : std::optional(cost);
+}
+
+bool decides_solvers(std::string_view key) {
+  return key.starts_with("components.") || key.starts_with("relight.");
+}
+
+void leave_choice(Settings& settings, const std::string& where) {
+  for (const size_t c : {paths::k_secondary, paths::k_tertiary, paths::k_caustic})
+    settings.set(key_of(c), k_auto, where);
 }
 
 bool undecided(const SceneFacts& facts, const Settings& settings) {

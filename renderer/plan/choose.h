@@ -10,6 +10,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "plan/facts.h"
 #include "plan/settings.h"
@@ -53,6 +54,12 @@ std::array<Choice, 4> choose(const SceneFacts& facts, const Settings& settings,
 /// nullopt: it is not reached, or a solver states no prospect.
 std::optional<double> predicted_cost(const solvers::Findings& findings, const std::array<Choice, 4>& choices,
                                      double error);
+
+/// True for settings that say who computes which light: with one of them, a scene leaves no choice.
+bool decides_solvers(std::string_view key);
+
+/// Leaves the choice of all solvers but that of direct light to choose(). `where`: for messages.
+void leave_choice(Settings& settings, const std::string& where);
 
 /// True if a component's choice waits for findings.
 bool undecided(const SceneFacts& facts, const Settings& settings);

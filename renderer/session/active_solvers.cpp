@@ -45,6 +45,7 @@ nlohmann::ordered_json ActiveSolvers::statistics() {
                      {"records", learning->records()},
                      {"arrived", learning->arrived()},
                      {"gain", learning->gain()},
+                     {"replayed", learning->replayed()},
                      {"bytes", learning->bytes()}};
   overlays_.visit_solvers(
       [&](solvers::Solver& solver, const overlay::Canvas& canvas, const solvers::Picture& picture) {

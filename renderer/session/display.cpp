@@ -112,13 +112,17 @@ bool Display::draw(DraftPlan::Next what, Engine& engine, const PictureView& view
       if (auto* lookups = solvers::offered<solvers::PreviewLookups>(*solver))
         lookups->look_up_preview(wavefront, on);
   };
+  const auto rays = [&] { return wavefront.stats().rays + wavefront.stats().shadow_rays; };
+  if (!fine && before == 0) coarse_rays_ = 0;
   look_up_preview(true);
   wavefront.uncounted([&] {
+    const uint64_t rays_before = rays();
     while (complete && !schedule.done()) {
       schedule::WorkItem item = schedule.next();
       for (shared::WorkBlock& block : item.blocks) block.first_sample += before;
       complete = wavefront.run(item, film, cancel);
     }
+    if (!fine) coarse_rays_ += rays() - rays_before;
   });
   look_up_preview(false);
   wavefront.set_frame(engine.frame(view, view.width, view.height), engine.enabled());

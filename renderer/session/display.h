@@ -37,7 +37,11 @@ class Display {
   bool sight_wanted(const Engine& engine, const PictureView& view) const {
     return sight_.wanted(engine, view);
   }
+  /// Call after restart() if the former light is this picture's, whose solvers have been chosen meanwhile.
+  void goes_on() { former_is_preview_ = true; }
   PixelSight& sight() { return sight_; }
+  /// Rays of the preview samples at a quarter of the resolution so far.
+  uint64_t coarse_rays() const { return coarse_rays_; }
   /// Traces another preview sample, or a part of the visible surfaces. `coarse`: film of a quarter of the
   /// resolution. False if cancelled.
   bool draw(DraftPlan::Next what, Engine& engine, const PictureView& view, film::Film& coarse,
@@ -58,8 +62,8 @@ class Display {
   std::vector<vec3> shown_light(uint32_t components) const { return preview_.shown_light(components); }
   /// Shares of the latest developed picture.
   film::PreviewShares shares() const { return shares_; }
-  /// True if the former light is of this picture's preview, from before light_changed(); false: from before
-  /// an edit.
+  /// True if the former light is of this picture's preview, from before light_changed() or goes_on(); false:
+  /// from before an edit.
   bool former_is_preview() const { return former_is_preview_; }
   /// Call when the film has been filtered and that is shown.
   void show_filtered(gpu::Stream& stream, const film::Film& film, const film::FilterError& error,
@@ -79,7 +83,7 @@ class Display {
   film::PreviewShares shares_;
   std::optional<film::ShownError> filtered_error_;
   bool developed_ = false, warm_ = false, former_is_preview_ = false;
-  uint64_t version_ = 0;
+  uint64_t version_ = 0, coarse_rays_ = 0;
   /// Display settings of a picture without a preview.
   struct Plain {
     film::PreviewCamera camera;

@@ -10,6 +10,8 @@ namespace lucerna::session {
 class DraftPlan {
  public:
   static constexpr uint32_t k_coarse_samples = 4;
+  /// Time of preparation over its cost: most of its first seconds go to preview samples, then a third.
+  static constexpr double k_waiting = 2;
 
   enum class Next {
     nothing,  ///< the picture's work continues

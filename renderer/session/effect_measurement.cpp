@@ -36,6 +36,7 @@ EffectMeasurement::EffectMeasurement(Renderer& picture, const RendererOptions& o
   const double scale = std::min(1.0, std::sqrt(k_pixels / pixels_));
   RendererOptions small = options;
   small.interactive = false;
+  small.patience.reset();
   small.on = picture.shared_device();
   for (const auto& [key, value] :
        std::initializer_list<std::pair<const char*, std::string>>{{"sampling.mode", "uniform"},

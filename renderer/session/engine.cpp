@@ -114,7 +114,8 @@ solvers::Task task_of(const paths::Automaton& automaton, const plan::Plan& plan,
 
 Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
                const World& world, const plan::Plan& plan, const plan::Settings& settings,
-               gpu::Defines defines, const Engine* before, std::span<const Predecessor> predecessors)
+               gpu::Defines defines, const Engine* before, bool same_lights,
+               std::span<const Predecessor> predecessors)
     : automaton_(automaton),
       plan_(plan),
       only_diffuse_(world.flat.effects.only_diffuse()),
@@ -149,8 +150,14 @@ Engine::Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::
   std::shared_ptr<transport::LightLearning> learning;
   if (!learned_defines_.empty()) {
     for (const auto& [name, value] : learned_defines_) defines[name] = value;
-    learning = std::make_shared<transport::LightLearning>(device, upload::make_light_clusters(world.flat),
-                                                          std::min(slots, k_most_recorded_paths));
+    const uint32_t most_paths = std::min(slots, k_most_recorded_paths);
+    if (before && same_lights && before->learned_defines_ == learned_defines_)
+      learning = before->wavefront_->shared_learning();
+    if (learning && learning->most_paths() == most_paths)
+      begun_ = before->begun_;
+    else
+      learning = std::make_shared<transport::LightLearning>(device, upload::make_light_clusters(world.flat),
+                                                            most_paths);
   }
   std::function<void(gpu::Resources&)> bind;
   if (!solvers_.empty())
@@ -319,7 +326,7 @@ bool Engine::learns(uint32_t samples) const {
 
 void Engine::begin_samples(const PictureView& picture) {
   if (!std::exchange(learned_elsewhere_, false)) return;
-  wavefront_->forget_learned();
+  wavefront_->rewind_learning();
   wavefront_->set_frame(frame(picture, picture.width, picture.height), enabled());
 }
 

@@ -43,13 +43,13 @@ struct Predecessor {
 class Engine {
  public:
   /// `before`: an engine whose film kernels are reused, which depend on neither scene nor plan; null: they
-  /// are compiled. `predecessors`: the first of each kind that serves the task is used with its work
-  /// (working_on); if none does, a new solver adopts the work of the first one that is valid in part. No
-  /// predecessor changes before begin(). Throws Error: kernels that do not compile (located), memory, a
-  /// component that two solvers would compute.
+  /// are compiled. `same_lights`: what it has learned of lights holds in this world, too. `predecessors`: the
+  /// first of each kind that serves the task is used with its work (working_on); if none does, a new solver
+  /// adopts the work of the first one that is valid in part. No predecessor changes before begin(). Throws
+  /// Error: kernels that do not compile (located), memory, a component that two solvers would compute.
   Engine(gpu::Device& device, gpu::ShaderCompiler& compiler, const paths::Automaton& automaton,
          const World& world, const plan::Plan& plan, const plan::Settings& settings, gpu::Defines defines,
-         const Engine* before, std::span<const Predecessor> predecessors);
+         const Engine* before, bool same_lights, std::span<const Predecessor> predecessors);
 
   /// True if kernels and solvers can be reused for another plan and these settings of the same world.
   bool serves(const plan::Plan& plan, const plan::Settings& settings, const World& world) const;

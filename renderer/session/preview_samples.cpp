@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "pilot/findings.h"
+
 namespace lucerna::session {
 
 void PreviewSamples::restart(bool same_light) {
@@ -37,6 +39,20 @@ void PreviewSamples::note_pace(double seconds) {
 std::optional<stats::SamplePace> PreviewSamples::path_pace() const {
   if (!pace_) return std::nullopt;
   return stats::SamplePace{.seconds = pace_->seconds * setup_.width * setup_.height, .noise = pace_->noise};
+}
+
+std::optional<solvers::Findings> PreviewSamples::findings() {
+  constexpr double k_least_paths = 1 << 14;
+  if (!plan() || plan()->coarse_samples() < DraftPlan::k_coarse_samples) return std::nullopt;
+  const uint32_t samples = plan()->coarse_samples();
+  const double paths = double(samples) * setup_.coarse->width() * setup_.coarse->height();
+  if (paths < k_least_paths) return std::nullopt;
+  solvers::Findings findings = pilot::evaluate(setup_.coarse->read(), samples);
+  findings.pixels = double(setup_.width) * setup_.height;
+  findings.rays = double(output_.display()->coarse_rays()) / paths;
+  findings.seconds = coarse_s_ / paths * findings.pixels;
+  findings.waiting = DraftPlan::k_waiting;
+  return findings;
 }
 
 bool PreviewSamples::draw(const std::function<bool()>& cancel) {

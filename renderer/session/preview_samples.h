@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "session/picture_output.h"
+#include "solvers/prospect.h"
 #include "stats/forecast.h"
 
 namespace lucerna::session {
@@ -26,6 +27,9 @@ class PreviewSamples {
   /// Pace of pure path tracing, measured with samples before there was lookup data; nullopt without such
   /// samples.
   std::optional<stats::SamplePace> path_pace() const;
+  /// What the preview samples at a quarter of the resolution say of path tracing, once they are complete: a
+  /// pilot that comes sooner than the picture's own first samples. nullopt: not yet, or of too few paths.
+  std::optional<solvers::Findings> findings();
   /// Call when another picture begins. `same_light`: its light is known from the former one.
   void restart(bool same_light);
 

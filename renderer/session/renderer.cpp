@@ -32,12 +32,13 @@ Renderer::Renderer(const RendererOptions& options)
           options.shaders.empty() ? gpu::ShaderCompiler::default_root() : options.shaders)),
       automaton_(paths::compile_components()),
       context_{*device_, *compiler_, automaton_, options.defines, options.interactive},
-      sampling_(setup_, options.interactive) {}
+      sampling_(setup_, options.interactive),
+      seconds_limit_(options.patience) {}
 
 Renderer::~Renderer() = default;
 
 void Renderer::load(const std::filesystem::path& file, const Progress& progress,
-                    const std::vector<SettingChange>& changes, bool outside) {
+                    const std::vector<SettingChange>& changes, bool outside, bool choose) {
   progress_.rest();
   const Timer timer;
   scene::LoadOptions how = options_.scenes;
@@ -53,7 +54,7 @@ void Renderer::load(const std::filesystem::path& file, const Progress& progress,
       [&](float fraction, const std::string& what) {
         return !progress || progress(0.6f + 0.4f * fraction, what);
       },
-      changes);
+      changes, choose);
   for (std::string& line : plan::unreachable_light(setup_.engine->plan(), *scene)) {
     log::warning("{}", line);
     scene->warnings.push_back(std::move(line));
@@ -62,11 +63,15 @@ void Renderer::load(const std::filesystem::path& file, const Progress& progress,
 }
 
 void Renderer::set_scene(std::shared_ptr<const scene::Scene> scene, const Progress& progress,
-                         const std::vector<SettingChange>& changes) {
+                         const std::vector<SettingChange>& changes, bool choose) {
   // A scene starts with the defaults and its settings; only those of the machine stay.
   plan::Settings settings;
   for (const char* key : {"tracer", "path.batch", "path.classes", "film.ocio"})
     settings.set(key, setup_.settings.text(key));
+  const auto decides = [](const auto& setting) { return plan::decides_solvers(setting.first); };
+  if (choose && std::ranges::none_of(scene->settings, decides) &&
+      std::ranges::none_of(scene->own_settings, decides))
+    plan::leave_choice(settings, "scene.open");
   for (const auto& [key, value] : scene->settings) settings.set(key, value, "settings.json");
   for (const auto& [key, value] : scene->own_settings)
     settings.set(key, value, scene->file + ": extras.lucerna.settings");

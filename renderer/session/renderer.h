@@ -34,6 +34,10 @@ struct RendererOptions {
   /// If set: uses this device instead of creating one from `device` and `validation`; its pipelines are kept
   /// from renderer to renderer. Not thread-safe.
   std::shared_ptr<gpu::Device> on = {};
+  /// Seconds in which a good picture is wanted, or as good as possible: the program chooses solvers for them
+  /// (expect_seconds()), and preparation may take plan::k_most_preparation of them if its data are usable
+  /// then. nullopt: solvers are chosen for the finished picture, and preparation is completed.
+  std::optional<double> patience = {};
 };
 
 /// The value of a setting, and where it comes from, for messages.
@@ -51,13 +55,13 @@ class Renderer {
   std::shared_ptr<gpu::Device> shared_device() const { return device_; }
   /// Loads a file and makes it ready to render. On failure throws Error and the former scene stays.
   /// `changes`: settings that override the scene's; `outside`: LoadOptions::outside, whatever the options
-  /// say.
+  /// say; `choose`: the program chooses the solvers if no setting does (plan::leave_choice()).
   void load(const std::filesystem::path& file, const Progress& progress = {},
-            const std::vector<SettingChange>& changes = {}, bool outside = false);
+            const std::vector<SettingChange>& changes = {}, bool outside = false, bool choose = false);
   /// Likewise, for a scene in memory. Resets the settings (except tracer, path.batch and path.classes), then
   /// applies the scene's, then `changes`.
   void set_scene(std::shared_ptr<const scene::Scene> scene, const Progress& progress = {},
-                 const std::vector<SettingChange>& changes = {});
+                 const std::vector<SettingChange>& changes = {}, bool choose = false);
   /// Null before the first scene.
   std::shared_ptr<const scene::Scene> scene() const { return setup_.world.scene; }
   /// As passed to set_scene(), without edits; null before the first scene.
@@ -153,6 +157,9 @@ class Renderer {
   /// before the first step().
   void expect_seconds(std::optional<double> seconds) { seconds_limit_ = seconds; }
   /// True until the first samples of the picture are there, by which solvers are chosen (components.X=auto).
+  /// While the choice of solvers waits for a pilot: makes it by the preview samples, if they are complete.
+  /// Call after PreviewSamples::draw().
+  void choose_by_previews();
   bool choosing() const { return setup_.engine && setup_.engine->plan().undecided; }
   /// Runs one work item; cancellable between bounces. False if there is nothing to do, if cancelled, or if
   /// preparation waits.
@@ -221,6 +228,8 @@ class Renderer {
   /// With a limit of time: chooses again once the cost of the chosen solvers is measured.
   void review_choice();
   bool render_item(const std::function<bool()>& cancel);
+  /// Ends preparation that has taken too long (RendererOptions::patience).
+  void hurry();
   /// If the item waits for a round: runs one work item of that round. True if it did.
   std::optional<bool> prepare_round(const schedule::WorkItem& item, const std::function<bool()>& cancel);
 

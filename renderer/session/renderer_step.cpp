@@ -26,9 +26,10 @@ bool Renderer::step(const std::function<bool()>& cancel) {
   output_.judge_filtered();
   progress_.add_render_seconds(timer.seconds());
   output_.worked(timer.seconds());
-  if (prepares)
+  if (prepares) {
     progress_.note_prepared();
-  else if (progress && !learns)
+    hurry();
+  } else if (progress && !learns)
     progress_.note(false);
   if (!prepares && choosing()) {
     if (!learns) judge_pilot(timer.seconds(), stats().rays + stats().shadow_rays - rays);
@@ -36,6 +37,12 @@ bool Renderer::step(const std::function<bool()>& cancel) {
     review_choice();
   if (done()) progress_.rest();
   return progress;
+}
+
+void Renderer::hurry() {
+  if (options_.patience && progress_.seconds() > plan::k_most_preparation * *options_.patience &&
+      preparing() && solvers_.usable())
+    solvers_.finish_early();
 }
 
 bool Renderer::render_item(const std::function<bool()>& cancel) {
@@ -108,6 +115,14 @@ void Renderer::judge_pilot(double seconds, uint64_t rays) {
   choose_solvers();
 }
 
+void Renderer::choose_by_previews() {
+  if (!choosing()) return;
+  if (std::optional<solvers::Findings> findings = previews_.findings()) {
+    findings_ = findings;
+    choose_solvers();
+  }
+}
+
 void Renderer::choose_solvers() {
   review_.restart();
   const std::array<plan::Choice, 4> before = setup_.engine->plan().choices;
@@ -130,6 +145,7 @@ void Renderer::choose_solvers() {
   if (changes.settings.empty()) return;
   notify_settings_changed();
   restart(changes);
+  if (Display* display = output_.display()) display->goes_on();
 }
 
 void Renderer::review_choice() {

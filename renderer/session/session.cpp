@@ -23,9 +23,9 @@ class RenderSession final : public Session {
  public:
   explicit RenderSession(const Options& options) : thread_(options) {}
 
-  void load(const std::filesystem::path& file, bool outside) override {
+  void load(const std::filesystem::path& file, bool outside, bool choose) override {
     const uint64_t number = ++thread_.loads;
-    const auto run = [s = &thread_, file, number, outside](Renderer& r) {
+    const auto run = [s = &thread_, file, number, outside, choose](Renderer& r) {
       Timer since;
       const auto goes_on = [&] { return number > s->given_up; };
       try {
@@ -38,7 +38,7 @@ class RenderSession final : public Session {
               }
               return goes_on();
             },
-            {}, outside);
+            {}, outside, choose);
       } catch (const Error&) {
         if (goes_on()) throw;
         log::info("{}: loading was cancelled", file.string());

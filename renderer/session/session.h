@@ -130,11 +130,15 @@ struct Snapshot {
 struct Options {
   std::string device;  ///< gpu::DeviceOptions::selector
   bool validation = false;
-  std::filesystem::path shaders;   ///< empty: ShaderCompiler::default_root()
-  scene::LoadOptions scenes = {};  ///< limits on scene files
+  std::filesystem::path shaders;        ///< empty: ShaderCompiler::default_root()
+  scene::LoadOptions scenes = {};       ///< limits on scene files
+  std::optional<double> patience = {};  ///< RendererOptions::patience
   /// True: makes no device and carries out nothing, so that commands can be read and explained.
   bool idle = false;
 };
+
+/// Patience [s] of a person at the window.
+inline constexpr double k_patience = 30;
 
 /// State of the session at one moment.
 struct State {
@@ -165,8 +169,8 @@ class Session {
   //
   // `scene`: the scene that a command is for, by State::scene_id. If another one has been loaded by its turn,
   // the command is skipped with a warning.
-  /// `outside`: reads what the scene names outside its folder, whatever the options say.
-  virtual void load(const std::filesystem::path& file, bool outside = false) = 0;
+  /// `outside`, `choose`: as of Renderer::load().
+  virtual void load(const std::filesystem::path& file, bool outside = false, bool choose = false) = 0;
   virtual void set(const std::string& key, const std::string& value, SceneId scene = k_any_scene) = 0;
   /// If several consecutive ones are in the queue, only the last is used; they share one number.
   virtual void set_camera(const scene::Camera& camera, SceneId scene = k_any_scene) = 0;

@@ -35,6 +35,7 @@ SessionThread::~SessionThread() {
 std::unique_ptr<Renderer> SessionThread::make_renderer() {
   try {
     RendererOptions made{options.device, options.validation, options.shaders, {}, true, options.scenes};
+    made.patience = options.patience;
     if (!options.validation) made.on = kept_device(options.device);
     auto renderer = std::make_unique<Renderer>(made);
     next.device = renderer->device().info().name;
@@ -95,6 +96,7 @@ void SessionThread::advance(Renderer& renderer, bool work) {
     return quit || (pending && (!draft_given_up || since_given_up.seconds() < k_draft_seconds));
   };
   if (!paused && !draft_cancelled() && renderer.previews().draw(draft_cancelled)) {
+    renderer.choose_by_previews();
     draft_given_up = false;
     changed = changed || renderer.previews().news();
     // The first one, and the first of improved light, are shown at once; more of them at the usual rate.

@@ -101,7 +101,7 @@ void Transaction::build_engine(const scene::Changes& changes) {
   const bool same_shaders = !changes.edits.contains(scene::Change::shaders);
   engine_ = std::make_unique<Engine>(context_.device, context_.compiler, context_.automaton, world(), plan_,
                                      target_.settings, context_.defines, same_shaders ? before : nullptr,
-                                     predecessors);
+                                     !world_ && !edit_, predecessors);
   kept_ = setup_.kept;
   if (before) kept_.replace(*before, *engine_, changes.edits);
 }

@@ -20,6 +20,7 @@ struct Findings {
   double pixels = 0;                      ///< of the picture to be rendered
   double rays = 7;                        ///< of a sample of a pixel
   double seconds = 0;                     ///< a sample of that picture, measured; for limits of time only
+  double waiting = 1;                     ///< time of preparation over its cost: preview samples share it
 
   /// What the picture has cost so far with the solvers chosen first; for limits of time only. Measured
   /// instead of predicted: the cost of these solvers.

@@ -1,6 +1,7 @@
 #include "transport/light_learning.h"
 
 #include <algorithm>
+#include <cstring>
 #include <utility>
 
 namespace lucerna::transport {
@@ -8,6 +9,9 @@ namespace lucerna::transport {
 using namespace shared;
 
 namespace {
+
+/// Memory for the generations that can be replayed.
+constexpr uint64_t k_most_kept_bytes = uint64_t{64} << 20;
 
 template <class T>
 void put(gpu::Device& device, gpu::Buffer& buffer, const char* name, std::vector<T> values) {
@@ -69,8 +73,18 @@ void LightLearning::describe(Frame& frame) const {
   frame.learning = recording_ ? 1 : 0;
 }
 
-void LightLearning::begin_generation() {
+void LightLearning::take(const Generation& generation) {
+  take(generation.lights);
+  record_count_ = generation.records;
+  pays_ = generation.pays;
+  gain_ = generation.gain, arrived_ = generation.arrived;
+  ++generations_;
+}
+
+void LightLearning::begin_generation(const Frame& pilot) {
   fresh_.clear();
+  pilot_.resize(sizeof pilot);
+  std::memcpy(pilot_.data(), &pilot, sizeof pilot);
   if (generations_ == 0) take(exploring_lights(clusters_));
 }
 
@@ -96,16 +110,19 @@ void LightLearning::abandon_generation() {
 void LightLearning::finish_generation() {
   size_t arrived = 0;
   for (const LightRecord& r : fresh_) arrived += r.arrived > 0;
-  arrived_ = fresh_.empty() ? 0 : double(arrived) / double(fresh_.size());
-  if (generations_ > 0) gain_ = measured_gain(clusters_, lights_, fresh_);
-  pays_ = generations_ == 0 || arrived_ == 0 || gain_ >= k_least_gain;
+  Generation next;
+  next.arrived = fresh_.empty() ? 0 : double(arrived) / double(fresh_.size());
+  next.gain = generations_ > 0 ? measured_gain(clusters_, lights_, fresh_) : 1;
+  next.pays = generations_ == 0 || arrived == 0 || next.gain >= k_least_gain;
   const LearnedCells cells = lights_.cells.scale > 0 ? lights_.cells : learned_cells(fresh_);
+  if (generations_ == 0) samples_.clear();
   samples_.insert(samples_.end(), fresh_.begin(), fresh_.end());
-  record_count_ = samples_.size();
-  const size_t last = fresh_.size();
+  next.records = samples_.size();
+  next.lights = learn_lights(clusters_, cells, samples_, fresh_.size());
   fresh_.clear();
-  take(learn_lights(clusters_, cells, samples_, last));
-  ++generations_;
+  take(next);
+  if (learned_.size() + 1 == generations_) learned_.push_back(std::move(next));
+  if (kept_bytes() > k_most_kept_bytes) learned_.clear();
 }
 
 void LightLearning::end() {
@@ -126,11 +143,28 @@ void LightLearning::forget(upload::LightClusters clusters) {
 
 void LightLearning::forget() {
   end();
+  learned_.clear();
+  rewind();
+}
+
+void LightLearning::rewind() {
+  fresh_.clear();
   record_count_ = 0;
-  gain_ = 1, pays_ = true;
+  gain_ = 1, arrived_ = 0, pays_ = true;
   recording_ = false;
-  generations_ = 0;
+  generations_ = replayed_ = 0;
   take(plain_lights(clusters_));
+}
+
+bool LightLearning::replay(const Frame& pilot) {
+  if (generations_ >= learned_.size()) return false;
+  if (std::memcmp(pilot_.data(), &pilot, sizeof pilot) != 0) {
+    forget();
+    return false;
+  }
+  take(learned_[generations_]);
+  ++replayed_;
+  return true;
 }
 
 std::vector<float> LightLearning::row(uint32_t row) const {
@@ -141,9 +175,16 @@ std::vector<float> LightLearning::row(uint32_t row) const {
   return p;
 }
 
+uint64_t LightLearning::kept_bytes() const {
+  uint64_t kept = 0;
+  for (const Generation& g : learned_)
+    kept += g.lights.grid.capacity() * sizeof(uint32_t) + g.lights.rows.capacity() * sizeof(vec4);
+  return kept;
+}
+
 uint64_t LightLearning::bytes() const {
-  return grid_.bytes() + rows_.bytes() + cluster_texels_.bytes() + members_.bytes() + primitives_.bytes() +
-         shapes_.bytes() + tiles_.bytes() + facets_.bytes() + records_.bytes() +
+  return kept_bytes() + grid_.bytes() + rows_.bytes() + cluster_texels_.bytes() + members_.bytes() +
+         primitives_.bytes() + shapes_.bytes() + tiles_.bytes() + facets_.bytes() + records_.bytes() +
          (samples_.capacity() + fresh_.capacity()) * sizeof(LightRecord) +
          lights_.grid.capacity() * sizeof(uint32_t) + lights_.rows.capacity() * sizeof(vec4);
 }

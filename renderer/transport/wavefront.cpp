@@ -398,7 +398,12 @@ bool Wavefront::learn(const schedule::WorkItem& item, const Frame& pilot, const 
                       uint32_t enabled, const std::function<bool()>& cancel) {
   Impl& w = *impl_;
   LightLearning& learning = *w.learning;
-  learning.begin_generation();
+  if (learning.replay(pilot)) {
+    w.bind_learning();
+    set_frame(picture, enabled);
+    return true;
+  }
+  learning.begin_generation(pilot);
   w.bind_learning();
   const size_t at_once = std::min(learning.most_paths(), w.slots) / 64;
   bool went = true;
@@ -421,16 +426,20 @@ bool Wavefront::learn(const schedule::WorkItem& item, const Frame& pilot, const 
   return went;
 }
 
-void Wavefront::forget_learned(std::optional<upload::LightClusters> clusters) {
+void Wavefront::forget_learned(upload::LightClusters clusters) {
   if (!impl_->learning) return;
-  if (clusters)
-    impl_->learning->forget(std::move(*clusters));
-  else
-    impl_->learning->forget();
+  impl_->learning->forget(std::move(clusters));
+  impl_->bind_learning();
+}
+
+void Wavefront::rewind_learning() {
+  if (!impl_->learning) return;
+  impl_->learning->rewind();
   impl_->bind_learning();
 }
 
 LightLearning* Wavefront::learning() { return impl_->learning.get(); }
+std::shared_ptr<LightLearning> Wavefront::shared_learning() { return impl_->learning; }
 const LightLearning* Wavefront::learning() const { return impl_->learning.get(); }
 
 bool Wavefront::run(uint32_t count, const PathEnds& ends, const std::function<bool()>& cancel) {

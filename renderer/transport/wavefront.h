@@ -95,14 +95,17 @@ class Wavefront {
   bool try_out(const schedule::WorkItem& item, film::Film& film, const std::function<bool()>& cancel = {});
   /// Likewise, without a film, for data that kernels note.
   bool probe(const schedule::WorkItem& item, const std::function<bool()>& cancel = {});
-  /// Traces the item to learn from its light samples: one generation of `learning`. Afterwards the frame is
-  /// `picture` with `enabled` components again. False if cancelled: nothing was learned.
+  /// Traces the item to learn from its light samples: one generation of `learning`, or replays it. Afterwards
+  /// the frame is `picture` with `enabled` components again. False if cancelled: nothing was learned.
   bool learn(const schedule::WorkItem& item, const shared::Frame& pilot, const shared::Frame& picture,
              uint32_t enabled, const std::function<bool()>& cancel = {});
   /// Null: lights are chosen by power.
   LightLearning* learning();
-  /// Resets learned light selection, for the present lights or these. The frame must be set again.
-  void forget_learned(std::optional<upload::LightClusters> clusters = {});
+  std::shared_ptr<LightLearning> shared_learning();
+  /// Resets learned light selection, for other lights. The frame must be set again.
+  void forget_learned(upload::LightClusters clusters);
+  /// Resets it for a picture of the same lights, which may replay its generations (LightLearning::replay()).
+  void rewind_learning();
   const LightLearning* learning() const;
   /// Traces `count` <= slots() paths between the caller's ends; cancellable as above, then without `end`.
   /// Their time and rays count in stats() like those of the film's paths. Uses the frame of set_frame().

@@ -94,6 +94,87 @@ TEST_CASE("with time for records, noisy interreflection is cached, as if the cac
   for (size_t c = 0; c < 4; ++c) CHECK(test::identical(r.image().components[c], fixed.image().components[c]));
 }
 
+namespace {
+
+/// A renderer as in the window, with a picture of that size.
+std::unique_ptr<session::Renderer> in_window(const scene::Scene& scene, uint32_t width, uint32_t height,
+                                             std::optional<double> patience, bool choose) {
+  session::RendererOptions options = test::renderer_options(false);
+  options.interactive = true;
+  options.patience = patience;
+  auto r = std::make_unique<session::Renderer>(options);
+  r->set_size(width, height);
+  r->set_scene(std::make_shared<scene::Scene>(scene), {}, {}, choose);
+  return r;
+}
+
+/// What the session does while it has time: preview samples first, then the picture.
+void work(session::Renderer& r) {
+  if (r.previews().draw())
+    r.choose_by_previews();
+  else
+    REQUIRE(r.step());
+}
+
+}  // namespace
+
+TEST_CASE("in the window preview samples choose, before the picture's first sample") {
+  const scene::Scene room = test::block_room();
+  const auto r = in_window(room, 512, 256, {}, true);
+  CHECK(r->settings().text("components.secondary") == plan::k_auto);
+  CHECK(r->choosing());
+  while (r->choosing()) work(*r);
+  CHECK(r->samples() == 0);
+  REQUIRE(r->findings());
+  CHECK(r->findings()->components[1].variance > 0);
+  CHECK(r->findings()->rays > 1);
+  CHECK(r->findings()->seconds > 0);
+  CHECK(r->findings()->pixels == 512 * 256);
+  // Nearly the same as the samples of a small picture find, which has too few pixels for preview samples.
+  // (Noise of direct light is at edges here, of which both have another share.)
+  const auto small = in_window(room, 128, 64, {}, true);
+  while (small->choosing()) work(*small);
+  CHECK(small->samples() > 0);
+  for (const size_t c : {1, 2}) {
+    const double a = r->findings()->components[c].variance, b = small->findings()->components[c].variance;
+    CAPTURE(c, a, b);
+    CHECK(a < 1.5 * b);
+    CHECK(b < 1.5 * a);
+  }
+  CHECK(r->findings()->rays < 1.1 * small->findings()->rays);
+  CHECK(small->findings()->rays < 1.1 * r->findings()->rays);
+}
+
+TEST_CASE("nothing is chosen for a scene that says who computes which light, or without the request") {
+  scene::Scene room = test::block_room();
+  CHECK_FALSE(in_window(room, 64, 64, {}, false)->choosing());
+  room.settings = {{"components.caustic", "photons"}};
+  const auto r = in_window(room, 64, 64, {}, true);
+  CHECK_FALSE(r->choosing());
+  CHECK(r->settings().text("components.secondary") == "path");
+  CHECK(r->settings().text("components.caustic") == "photons");
+}
+
+TEST_CASE("with little patience preparation ends once its data are usable, unless a user steps through it") {
+  const auto stopped_by = [](std::optional<double> patience, const char* pause) {
+    const auto r = in_window(test::block_room(), 96, 96, patience, false);
+    test::set(*r, {{"components.secondary", "cache"},
+                   {"components.tertiary", "cache"},
+                   {"cache.pause", pause},
+                   {"cache.max_records", test::k_room}});
+    while (r->preparing())
+      if (r->waits())
+        r->solvers().command("cache", "run");
+      else
+        REQUIRE(r->step());
+    return r->solvers().statistics().at("cache").at("stopped_by").get<std::string>();
+  };
+  CHECK(stopped_by(1e-9, "off") == "finished early");
+  CHECK(stopped_by(1e-9, "pass") == "covered");
+  CHECK(stopped_by({}, "off") == "covered");
+  CHECK(stopped_by(1e9, "off") == "covered");
+}
+
 TEST_CASE("the choice is the same in every run, whatever the batches") {
   const scene::Scene room = test::block_room();
   const Chosen a = render(room, all("auto"), "3");

@@ -98,6 +98,44 @@ TEST_CASE("the picture is a function of scene, settings and seed") {
   CHECK(test::identical(first, renderer.image()));
 }
 
+TEST_CASE("a picture of the same view with other solvers replays what was learned, bit for bit") {
+  const auto scene = std::make_shared<scene::Scene>(window_room(sky(), false));
+  const auto make = [&] {
+    auto renderer = std::make_unique<session::Renderer>(test::renderer_options(false));
+    renderer->settings().set("path.batch", test::k_batch);
+    renderer->set_size(32, 32);
+    renderer->set_scene(scene);
+    return renderer;
+  };
+  const auto finish = [](session::Renderer& renderer, const char* solver, const char* samples) {
+    test::set(renderer, {{"components.secondary", solver},
+                         {"components.tertiary", solver},
+                         {"samples", samples},
+                         {"cache.max_records", test::k_room}});
+    test::finish(renderer);
+    const nlohmann::ordered_json lights = renderer.solvers().statistics().at("lights");
+    CHECK(lights.at("records") > 0);
+    return lights.at("replayed").get<uint32_t>();
+  };
+  const auto renderer = make(), fresh = make();
+  CHECK(finish(*renderer, "path", "4") == 0);
+  // Two generations after one and two samples; the third one is new.
+  CHECK(finish(*renderer, "cache", "8") == 2);
+  CHECK(finish(*fresh, "cache", "8") == 0);
+  CHECK(test::identical(renderer->image(), fresh->image()));
+  CHECK(finish(*renderer, "path", "8") == 3);
+  CHECK(finish(*fresh, "path", "8") == 3);
+  CHECK(test::identical(renderer->image(), fresh->image()));
+  // Another view learns for itself.
+  const scene::Camera other = test::looking_down({0.1f, 0.9f, 0.1f}, 1.3f);
+  renderer->set_camera(other);
+  CHECK(finish(*renderer, "path", "8") == 0);
+  const auto there = make();
+  there->set_camera(other);
+  CHECK(finish(*there, "path", "8") == 0);
+  CHECK(test::identical(renderer->image(), there->image()));
+}
+
 TEST_CASE("pilots end where learning gains little, and go on where it gains much") {
   const auto lights = [](const auto& load) {
     session::Renderer renderer(test::renderer_options(false));

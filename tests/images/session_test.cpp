@@ -70,6 +70,24 @@ TEST_CASE("a cancelled load stays cancelled, whatever is loaded after it") {
   CHECK(session.snapshot()->scene_id == 3);
 }
 
+TEST_CASE("a scene opened for the program to choose its solvers, unless it names them") {
+  const auto made = session::start_session({.device = test::device_name()});
+  Session& session = *made;
+  session.set_size(32, 24);
+  const auto solvers_of = [&](const char* scene, bool choose) {
+    session.load(gltf(scene), false, choose);
+    settle(session);
+    const plan::Settings settings = session.state().settings;
+    return settings.text("components.secondary") + " " + settings.text("components.caustic");
+  };
+  CHECK(solvers_of("cornell", true) == "auto auto");
+  const auto chosen = until(session, [](const Snapshot& s) { return s.samples > 8; });
+  CHECK(chosen->components[1].solver == "path");
+  CHECK_FALSE(chosen->components[1].reason.empty());
+  CHECK(solvers_of("cornell", false) == "path path");
+  CHECK(solvers_of("ring", true) == "path photons");
+}
+
 TEST_CASE("commands for a replaced scene are skipped, and refusals are listed") {
   Heard heard;
   const auto made = session::start_session({.device = test::device_name()});

@@ -105,6 +105,12 @@ TEST_CASE("interreflection goes to the cache where it has the noise and there is
   CHECK(limited(70)[2].solver == "cache");
   // A third of the records serves more than a third of the picture.
   CHECK(limited(50)[2].solver == "cache");
+  // In the window preview samples take part of the time meanwhile.
+  Findings slow = noisy;
+  slow.waiting = 8;
+  CHECK(plan::choose(facts, settings, &slow, Goal{.samples = 70, .cuts_preparation = true})[2].solver ==
+        "path");
+  CHECK(plan::choose(facts, settings, &slow, Goal{.samples = 400})[2].solver == "path");
   // Direct light has the noise: records would only cost.
   const Findings direct = findings(20, 0.5, 0.3, 0);
   CHECK(plan::choose(facts, settings, &direct, Goal{.samples = 400})[2].solver == "path");
@@ -176,6 +182,18 @@ TEST_CASE("a dark pilot leaves everything to paths") {
   const SceneFacts facts = plan::facts_of(room(true, false));
   const Findings none = findings(0, 0, 0, 0);
   for (const Choice& c : plan::choose(facts, all_auto(), &none, Goal{})) CHECK(c.solver == "path");
+}
+
+TEST_CASE(
+    "a scene that does not say who computes which light leaves that to the program, but for direct light") {
+  Settings settings;
+  plan::leave_choice(settings, "");
+  CHECK(settings.text("components.primary") == "path");
+  for (const char* key : {"components.secondary", "components.tertiary", "components.caustic"})
+    CHECK(settings.text(key) == plan::k_auto);
+  CHECK(plan::decides_solvers("components.primary"));
+  CHECK(plan::decides_solvers("relight.mix"));
+  CHECK_FALSE(plan::decides_solvers("cache.rays"));
 }
 
 TEST_CASE("goals: samples, the target of adaptive sampling, a limit of time once a sample's time is known") {

@@ -29,7 +29,7 @@ class FakeSession final : public Session {
   std::atomic<int> busy_ms{0};     ///< duration of each command
   std::atomic<int> drawing_ms{0};  ///< duration of the first picture after each command
 
-  void load(const std::filesystem::path& file, bool) override {
+  void load(const std::filesystem::path& file, bool, bool) override {
     post([this, file, number = ++loads_] { open(file, number); });
   }
   /// A light mix named "nonsense" is refused.

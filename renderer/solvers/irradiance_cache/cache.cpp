@@ -81,7 +81,9 @@ void Cache::extend() {
 
 void Cache::finish_early() {
   Impl& c = *impl_;
-  if (ready() || c.status.relighting.records > 0 || c.end_with_first_level()) return;
+  // Who steps through building sees all of it.
+  if (ready() || c.progress.pauses.after() != PauseAfter::off) return;
+  if (c.status.relighting.records > 0 || c.end_with_first_level()) return;
   c.drop_pass();
   if (!c.ranges.complete_pass() && !c.status.passes.empty() && !c.status.passes.back().complete)
     c.status.passes.pop_back();
