@@ -8,7 +8,7 @@
 layout(local_size_x = 64) in;
 layout(push_constant, scalar) uniform Push { PreviewRecallPush push; };
 uniform samplerBuffer history_texels, history_surfaces;
-uniform samplerBuffer cell_texels;  // per cell: light, depth (0: unknown)
+uniform samplerBuffer cell_texels;  // per cell: light over the surface's colour; cell_word()
 uniform samplerBuffer shown_texels;  // of pass 2, for pass 3: tone-mapped
 layout(scalar) writeonly buffer Cells { vec4 cells[]; };
 layout(scalar) writeonly buffer Picture { uint picture[]; };
@@ -35,26 +35,37 @@ vec3 shown_at(int pixel) {
   return sum;
 }
 
+// Weight of light that was divided by this colour: light of dark or strongly coloured surfaces says little of that on others,
+// above all where they mirror it, so that it has not their colour.
+float trust(vec3 modulation) { return square(min(modulation.r, min(modulation.g, modulation.b))); }
+
+// Depth and mean trust as one number; 0: unknown.
+float cell_word(float depth, float trust) { return uintBitsToFloat(packHalf2x16(vec2(min(depth, 60000.0), trust))); }
+vec2 depth_and_trust(vec4 cell) { return unpackHalf2x16(floatBitsToUint(cell.w)); }
+
 // Mean over the cell's known pixels.
 vec4 cell_mean(ivec2 cell) {
   vec4 sum = vec4(0.0);
-  float known = 0.0;
+  float known = 0.0, trusts = 0.0;
   for (int k = 0; k < 4; ++k) {
     ivec2 at = min(int(k_preview_first_step) * cell + int(k_preview_first_step / 2u) * ivec2(k & 1, k >> 1),
                    ivec2(push.width, push.height) - 1);
     int pixel = at.y * int(push.width) + at.x;
     float depth = depth_at(pixel);
-    if (depth <= 0.0) continue;
-    sum += vec4(shown_at(pixel) / modulation_at(pixel), depth);
+    if (depth <= 0.0 || (push.seen != 0u && surface_at(pixel).emits)) continue;
+    vec3 modulation = modulation_at(pixel);
+    float trusted = trust(modulation);
+    sum += trusted * vec4(shown_at(pixel) / modulation, depth);
+    trusts += trusted;
     known += 1.0;
   }
-  return sum / max(known, 1.0);
+  return known > 0.0 ? vec4(sum.rgb / trusts, cell_word(sum.w / trusts, trusts / known)) : vec4(0.0);
 }
 
 // Weighted mean of the first known cells in eight directions. Steps double, so that the search may span the whole picture.
 vec4 cell_around(ivec2 cell, ivec2 size) {
   vec4 sum = vec4(0.0);
-  float weights = 0.0;
+  float weights = 0.0, trusts = 0.0;
   for (int k = 0; k < 9; ++k) {
     ivec2 way = ivec2(k % 3, k / 3) - 1;
     for (int far = k == 4 ? 2 * k_reach : 1; far <= k_reach; far *= 2) {
@@ -62,13 +73,15 @@ vec4 cell_around(ivec2 cell, ivec2 size) {
       if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, size))) break;
       vec4 there = texelFetch(cell_texels, at.y * size.x + at.x);
       if (there.w <= 0.0) continue;
-      float weight = square(square(there.w)) / float(far);
-      sum += weight * there;
+      vec2 surface = depth_and_trust(there);
+      float weight = square(square(surface.x)) / float(far), trusted = weight * surface.y;
+      sum += trusted * vec4(there.rgb, surface.x);
       weights += weight;
+      trusts += trusted;
       break;
     }
   }
-  return sum / max(weights, 1e-20);
+  return weights > 0.0 ? vec4(sum.rgb / trusts, cell_word(sum.w / trusts, trusts / weights)) : vec4(0.0);
 }
 
 void main() {
@@ -109,7 +122,7 @@ void main() {
       ivec2 corner = ivec2(k & 1, k >> 1), at = clamp(base + corner, ivec2(0), size - 1);
       vec4 there = texelFetch(cell_texels, at.y * size.x + at.x);
       vec2 g = mix(1.0 - f, f, vec2(corner));
-      sum += (there.w > 0.0 ? g.x * g.y + 1e-4 : 0.0) * vec4(there.rgb, 1.0);
+      sum += (there.w > 0.0 ? (g.x * g.y + 1e-4) * depth_and_trust(there).y : 0.0) * vec4(there.rgb, 1.0);
     }
     here = sum.rgb / max(sum.w, 1e-20) * modulation_at(int(index));
   }
