@@ -107,6 +107,15 @@ bool ActiveSolvers::usable() const {
   });
 }
 
+bool ActiveSolvers::stepped() const {
+  if (!setup_.engine) return false;
+  const auto& all = setup_.engine->solvers();
+  return std::any_of(all.begin(), all.end(), [](const auto& solver) {
+    const auto* preparation = solvers::offered<solvers::Preparation>(*solver);
+    return preparation && preparation->stepped();
+  });
+}
+
 void ActiveSolvers::finish_early() {
   if (!setup_.engine) return;
   for (const auto& solver : setup_.engine->solvers())

@@ -29,6 +29,8 @@ class ActiveSolvers {
   void load(const std::string& name, const std::filesystem::path& file);
   /// True if all solvers have data for most of the picture (solvers::Preparation::usable).
   bool usable() const;
+  /// True if a user steps through the preparation of one (solvers::Preparation::stepped).
+  bool stepped() const;
   /// Ends preparation as soon as possible (solvers::Preparation::finish_early).
   void finish_early();
   /// Reports for the picture that the latest PictureOutput::picture() has shown, of solvers and of views over

@@ -311,8 +311,10 @@ void Renderer::apply_settings() {
 }
 
 bool Renderer::apply_plan(Transaction::Target target, scene::Changes& changes) {
-  plan::Plan plan =
-      plan::make_plan(facts_, target.settings, findings_ ? &*findings_ : nullptr, seconds_limit_);
+  // A target error counts for more than patience.
+  const bool aims = options_.patience && target.settings.text("sampling.mode") == "adaptive";
+  plan::Plan plan = plan::make_plan(facts_, target.settings, findings_ ? &*findings_ : nullptr,
+                                    aims ? std::nullopt : seconds_limit_);
   Transaction transaction(context_, setup_, std::move(target), std::move(plan));
   const plan::Settings& settings = transaction.target().settings;
   // If groups are not separate, a mix is an edit of all lamps.

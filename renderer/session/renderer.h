@@ -156,10 +156,10 @@ class Renderer {
   /// Rendering will end after this many seconds: solvers with the setting auto are chosen for that. Call
   /// before the first step().
   void expect_seconds(std::optional<double> seconds) { seconds_limit_ = seconds; }
-  /// True until the first samples of the picture are there, by which solvers are chosen (components.X=auto).
   /// While the choice of solvers waits for a pilot: makes it by the preview samples, if they are complete.
   /// Call after PreviewSamples::draw().
   void choose_by_previews();
+  /// True until the first samples of the picture are there, by which solvers are chosen (components.X=auto).
   bool choosing() const { return setup_.engine && setup_.engine->plan().undecided; }
   /// Runs one work item; cancellable between bounces. False if there is nothing to do, if cancelled, or if
   /// preparation waits.

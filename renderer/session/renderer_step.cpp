@@ -41,7 +41,7 @@ bool Renderer::step(const std::function<bool()>& cancel) {
 
 void Renderer::hurry() {
   if (options_.patience && progress_.seconds() > plan::k_most_preparation * *options_.patience &&
-      preparing() && solvers_.usable())
+      preparing() && !solvers_.stepped() && solvers_.usable())
     solvers_.finish_early();
 }
 

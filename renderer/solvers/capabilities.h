@@ -70,6 +70,8 @@ class Preparation {
   virtual bool waits() const { return false; }
   /// True once data for most of the picture would remain if preparation ended.
   virtual bool usable() const { return ready(); }
+  /// True if a user steps through preparation, to see all of it.
+  virtual bool stepped() const { return false; }
   /// Ends preparation as soon as possible. Light without data falls back to path tracing.
   virtual void finish_early() {}
   /// True if preparation takes long and all of its kernels have run once.

@@ -37,7 +37,8 @@ vec3 shown_at(int pixel) {
 
 // Weight of light that was divided by this colour: light of dark or strongly coloured surfaces says little of that on others,
 // above all where they mirror it, so that it has not their colour.
-float trust(vec3 modulation) { return square(min(modulation.r, min(modulation.g, modulation.b))); }
+float trust(vec3 modulation) { return min(modulation.r, min(modulation.g, modulation.b)); }
+const float k_of_emitter = 0.02;  // ... of an emitter's light, relative to that
 
 // Depth and mean trust as one number; 0: unknown.
 float cell_word(float depth, float trust) { return uintBitsToFloat(packHalf2x16(vec2(min(depth, 60000.0), trust))); }
@@ -52,9 +53,9 @@ vec4 cell_mean(ivec2 cell) {
                    ivec2(push.width, push.height) - 1);
     int pixel = at.y * int(push.width) + at.x;
     float depth = depth_at(pixel);
-    if (depth <= 0.0 || (push.seen != 0u && surface_at(pixel).emits)) continue;
+    if (depth <= 0.0) continue;
     vec3 modulation = modulation_at(pixel);
-    float trusted = trust(modulation);
+    float trusted = trust(modulation) * (push.seen != 0u && surface_at(pixel).emits ? k_of_emitter : 1.0);
     sum += trusted * vec4(shown_at(pixel) / modulation, depth);
     trusts += trusted;
     known += 1.0;

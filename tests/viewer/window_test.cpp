@@ -340,7 +340,8 @@ TEST_CASE("a dropped scene opens; a file that cannot be opened is an error, and 
   CHECK(test::Picture(file("missing.png")).contrast(400, 300, 900, 500) > 0.02);
   const std::string script = read_file(file("session.lucerna"));
   // Failed commands are not recorded.
-  CHECK_THAT(script, !Catch::Contains("missing.glb") && Catch::Contains("other.gltf\nwait_scene"));
+  CHECK_THAT(script,
+             !Catch::Contains("missing.glb") && Catch::Contains("other.gltf choose=true\nwait_scene"));
 }
 
 TEST_CASE("during a render the strip shows error over time, the forecast and the passes") {

@@ -81,9 +81,7 @@ void Cache::extend() {
 
 void Cache::finish_early() {
   Impl& c = *impl_;
-  // Who steps through building sees all of it.
-  if (ready() || c.progress.pauses.after() != PauseAfter::off) return;
-  if (c.status.relighting.records > 0 || c.end_with_first_level()) return;
+  if (ready() || c.status.relighting.records > 0 || c.end_with_first_level()) return;
   c.drop_pass();
   if (!c.ranges.complete_pass() && !c.status.passes.empty() && !c.status.passes.back().complete)
     c.status.passes.pop_back();
@@ -130,6 +128,8 @@ void Cache::pause(PauseAfter after) {
   impl_->progress.pauses.set(after);
   impl_->status.waits = impl_->progress.pauses.waits();
 }
+
+bool Cache::stepped() const { return impl_->progress.pauses.after() != PauseAfter::off; }
 
 void Cache::go_on(bool one_stage) {
   if (ready()) return;

@@ -180,6 +180,7 @@ class Cache {
   /// Sets where building pauses: step() then does nothing until go_on(). The result does not change.
   /// Initially off.
   void pause(PauseAfter after);
+  bool stepped() const;  ///< building pauses somewhere
   /// Continues to the end of the current or next stage and pauses there; or, without `one_stage`, until
   /// building is complete whatever pause() has set. Does nothing if complete.
   void go_on(bool one_stage);

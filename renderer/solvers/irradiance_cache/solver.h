@@ -48,6 +48,7 @@ class CacheSolver final : public solvers::Solver,
   bool prepare(transport::Wavefront& wavefront, const solvers::Picture& picture,
                const solvers::Cancel& cancel) override;
   bool usable() const override { return cache_.usable(); }
+  bool stepped() const override { return cache_.stepped(); }
   void finish_early() override { cache_.finish_early(); }
   uint64_t paths_refined() const override { return cache_.status().rays; }
   void begin_refining(double factor) override { cache_.refine(factor); }
