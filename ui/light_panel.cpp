@@ -29,10 +29,9 @@ std::string solver_help(int component, const std::string& value) {
   if (value == "off")
     return "Off: the component is missing; its paths are traced only where other components need them.";
   if (value == plan::k_auto)
-    return "Auto: chosen once for the scene, by what it contains and by the first samples of paths, for a "
-           "good "
-           "picture within half a minute. Edits do not change the choice; choosing another solver and then "
-           "auto does.";
+    return "Auto: chosen once for the scene, by what it contains and by the first samples of paths; in the "
+           "window for a good picture within half a minute. Edits do not change the choice; choosing another "
+           "solver and then auto does.";
   const size_t plus = value.find('+');
   const solvers::SolverInfo* solver = solvers::find(value.substr(0, plus));
   std::string first = solver ? solver->help : "";
