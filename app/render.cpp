@@ -158,13 +158,19 @@ std::vector<session::SettingChange> setting_changes(const RenderArguments& a, ui
   return changes;
 }
 
-/// True if the command line or the scene sets a setting that begins so.
+/// True if the command line or the scene sets a setting whose key is wanted.
 bool is_given(const session::Renderer& r, const std::vector<session::SettingChange>& changes,
-              const std::string& begin) {
-  const auto begins = [&](const auto& setting) { return setting.first.starts_with(begin); };
-  return std::ranges::any_of(changes, [&](const auto& c) { return c.key.starts_with(begin); }) ||
-         std::ranges::any_of(r.scene()->settings, begins) ||
-         std::ranges::any_of(r.scene()->own_settings, begins);
+              const std::function<bool(const std::string&)>& wanted) {
+  const auto in_scene = [&](const auto& setting) { return wanted(setting.first); };
+  return std::ranges::any_of(changes, [&](const auto& c) { return wanted(c.key); }) ||
+         std::ranges::any_of(r.scene()->settings, in_scene) ||
+         std::ranges::any_of(r.scene()->own_settings, in_scene);
+}
+
+/// ... a setting that begins so.
+bool is_given(const session::Renderer& r, const std::vector<session::SettingChange>& changes,
+              const char* begin) {
+  return is_given(r, changes, [&](const std::string& key) { return key.starts_with(begin); });
 }
 
 /// True if nothing but --time ends the render, and nothing else says where its samples go.
@@ -180,8 +186,7 @@ bool is_free_in_time(const session::Renderer& r, const RenderArguments& a,
 void choose_solvers(session::Renderer& r, const RenderArguments& a,
                     const std::vector<session::SettingChange>& changes) {
   if (!is_free_in_time(r, a, changes)) return;
-  for (const char* key : {"components.", "relight."})
-    if (is_given(r, changes, key)) return;
+  if (is_given(r, changes, plan::decides_solvers)) return;
   if (std::any_of(a.solver_load.begin(), a.solver_load.end(),
                   [](const auto& l) { return !l.second.empty(); }))
     return;
@@ -203,7 +208,7 @@ void set_limits(session::Renderer& r, const RenderArguments& a,
                 const std::vector<session::SettingChange>& changes) {
   const bool adaptive = r.settings().text("sampling.mode") == "adaptive";
   const std::string key = adaptive ? "sampling.max_samples" : "samples";
-  if (is_given(r, changes, key)) return;
+  if (is_given(r, changes, key.c_str())) return;
   if (a.samples != -1)
     r.settings().set(key, std::to_string(a.samples), "--samples");
   else if (a.seconds)
