@@ -21,6 +21,7 @@ struct Site {
   float radius = 0;            ///< lesser one [m]; 0: neither smoothed nor a neighbour
   float share = 0;             ///< share of its disc that it represents, 0..1
   float weight = 0;            ///< rays, times the share of its disc that it represents
+  float area = 0;              ///< that it represents, up to a factor [m^2]
   float light = 0, error = 0;  ///< luminance of all parts, and its standard error
   uint32_t medium = 0;
 };
@@ -39,6 +40,7 @@ Site site_of(const RawRecords& raw, uint32_t r) {
   s.radius = radius;
   s.share = std::clamp(place[2].y / radius, k_least_share, 1.0f);
   s.weight = rays * s.share;
+  s.area = radius * radius * s.share;
   s.medium = std::bit_cast<uint32_t>(place[5].x);
   for (uint32_t p = 0; p < k_part_count; ++p) s.light += luminance(vec3(light[p * k_part_texels]));
   return s;
@@ -190,6 +192,51 @@ void mix_shares(const RawRecords& raw, const std::vector<Neighbour>& list, std::
     }
 }
 
+/// Each record's neighbours with their weights in its fit.
+class Fits {
+ public:
+  Fits(const std::vector<Site>& sites, const SmoothingOptions& options)
+      : sites_(sites), gains_(sites.size(), 1.0f) {
+    Neighbourhood neighbourhood(sites, options);
+    for (uint32_t r = 0; r < sites.size(); ++r) {
+      const std::vector<Neighbour>& found = neighbourhood.of(r);
+      neighbours_.insert(neighbours_.end(), found.begin(), found.end());
+      ends_.push_back(neighbours_.size());
+    }
+  }
+
+  /// Weights of the light that a record reads; valid until the next call.
+  const std::vector<Neighbour>& of(uint32_t record) {
+    const size_t first = record > 0 ? ends_[record - 1] : 0;
+    list_.assign(neighbours_.begin() + ptrdiff_t(first), neighbours_.begin() + ptrdiff_t(ends_[record]));
+    if (list_.size() < 2) return list_;
+    for (Neighbour& n : list_) n.weight *= gains_[n.record];
+    fit_plane(list_);
+    return list_;
+  }
+
+  /// Scales the records' weights until each is read by as much area as it represents.
+  void balance() {
+    /// Without any, 2.6 % of the light of the unit test's sparse records is lost; after 4 it is .2 %.
+    constexpr int k_rounds = 4;
+    /// Largest scale: a record that hardly any fit admits does not get all of one.
+    constexpr float k_most = 4;
+    for (int round = 0; round < k_rounds; ++round) {
+      std::vector<float> read(sites_.size(), 0.0f);
+      for (uint32_t r = 0; r < sites_.size(); ++r)
+        for (const Neighbour& n : of(r)) read[n.record] += sites_[r].area * n.weight;
+      for (uint32_t r = 0; r < sites_.size(); ++r)
+        if (read[r] > 0) gains_[r] = std::clamp(gains_[r] * sites_[r].area / read[r], 1 / k_most, k_most);
+    }
+  }
+
+ private:
+  const std::vector<Site>& sites_;
+  std::vector<float> gains_;  // of each record's weight in all fits
+  std::vector<Neighbour> neighbours_, list_;
+  std::vector<size_t> ends_;  // of each record's neighbours
+};
+
 }  // namespace
 
 PublishedLight smooth(const RawRecords& raw, const SmoothingOptions& options) {
@@ -197,11 +244,11 @@ PublishedLight smooth(const RawRecords& raw, const SmoothingOptions& options) {
   const size_t group_texels = count > 0 ? raw.groups.size() / count : 0;
   std::vector<Site> sites;
   for (uint32_t r = 0; r < count; ++r) sites.push_back(site_of(raw, r));
-  Neighbourhood neighbourhood(sites, options);
+  Fits fits(sites, options);
+  fits.balance();
   PublishedLight out{raw.lights, raw.groups, std::vector<float>(size_t{count} * k_lookup_lanes)};
   for (uint32_t r = 0; r < count; ++r) {
-    std::vector<Neighbour>& list = neighbourhood.of(r);
-    if (list.size() > 1) fit_plane(list);
+    const std::vector<Neighbour>& list = fits.of(r);
     mix_errors(sites, list, &out.errors[size_t{r} * k_lookup_lanes]);
     if (list.size() == 1) continue;
     for (uint32_t p = 0; p < k_part_count; ++p)

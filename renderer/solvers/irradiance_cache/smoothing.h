@@ -18,6 +18,15 @@
 //     unlike it. Otherwise its shadow would show as dark discs.
 // Weights of the solution below 0, at borders of surfaces, become 0.
 //
+// Balance. A bright record among dark ones, which found light that few rays find, is mixed with all of them,
+// while each of them counts it as one of many: the light would be lost. So the weights of each record in all
+// fits are scaled until it is read by as much area as it represents, A_j (squared radius times share):
+//
+//   sum_i A_i w_ij = A_j for all j, and so sum_i A_i E_i' = sum_j A_j E_j
+//
+// (R. Sinkhorn, P. Knopp, "Concerning Nonnegative Matrices and Doubly Stochastic Matrices", 1967; P.
+// Milanfar, "Symmetrizing Smoothing Filters", 2013). In few rounds, so it holds nearly.
+//
 // All parts, channels and shares of light groups get the same weights, so components still add up, and the
 // errors of records propagate exactly but for the weights' own dependence on the light. Rotational gradients
 // are smoothed alike. Translational ones stay: each is valid only up to its own distance.
