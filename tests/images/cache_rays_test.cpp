@@ -73,6 +73,32 @@ TEST_CASE("the more of the picture reads a record, the less noise it has at the 
   CHECK(none > 0);
 }
 
+TEST_CASE("levels after the first have at most 16 rays per pixel in a pass, more for a lower noise bound") {
+  const scene::Scene room = test::block_room();
+  constexpr uint32_t k_size = 16;
+  const auto further = [&](const char* noise) {
+    test::CacheRenderer shown(room, k_size, false);
+    shown.set(test::k_cached);
+    shown.set({{"cache.noise", noise},
+               {"cache.rays", "64"},
+               {"cache.min_radius", "1"},
+               {"cache.passes", "1"},
+               {"samples", "1"}});
+    shown.finish();
+    uint64_t rays = 0;
+    for (const irradiance_cache::Record& r : test::cache(shown.r)->records().read())
+      rays += uint64_t(r.rays) - 64;
+    return double(rays) / (k_size * k_size);
+  };
+  // The first pass wants more than that in both cases.
+  const double usual = further("0.3"), less = further("0.15");
+  INFO(usual << " and " << less << " rays per pixel");
+  CHECK(usual <= 16);
+  CHECK(usual > 8);
+  CHECK(less <= 64);
+  CHECK(less > 32);
+}
+
 TEST_CASE("a record's importance is the square of its share of the picture, summed over the pixels") {
   const test::PanelRoom room;
   constexpr uint32_t k_size = 64;

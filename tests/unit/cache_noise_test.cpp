@@ -78,4 +78,18 @@ TEST_CASE("records that stop are unbiased on average, whatever their noise") {
   CHECK(std::abs(mean_of_stopped(alone, stopped) - 1) > 0.1);
 }
 
+TEST_CASE("of the noisy records, at most a number are selected, the noisiest") {
+  std::vector<Noise> list(40, {.error = 0.1f, .light = 1, .bound = 0.05f});
+  CHECK(too_noisy(list, 0).size() == 40);
+  CHECK(too_noisy(list, 0, 0).empty());
+  // Equals: the first.
+  CHECK(too_noisy(list, 0, 3) == std::vector<uint32_t>{0, 1, 2});
+  // A noisier record makes its neighbours noisier, not itself.
+  list[20].error = 0.4f;
+  CHECK(too_noisy(list, 0, 4) == std::vector<uint32_t>{16, 17, 18, 19});
+  // What counts is the excess over the bound: here 2, there up to 4.
+  list[30].bound = 0.01f;
+  CHECK(too_noisy(list, 0, 1) == std::vector<uint32_t>{30});
+}
+
 }  // namespace cache_noise_tests

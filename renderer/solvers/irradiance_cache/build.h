@@ -34,6 +34,7 @@ struct BuildProgress {
   StageClock clock;
   Pauses pauses;
   Refining refining;
+  uint64_t further_rays = 0;  ///< of the levels after the first, in this pass
   /// Why building had stopped before relighting; it stops again for that reason afterwards.
   StopReason stopped_before = StopReason::building;
   bool ends_early = false;  ///< building ends with the stage `index`
@@ -182,13 +183,14 @@ struct Cache::Impl {
   bool see_reads(const Work& work);
   /// Traces one round of rays of the next queued records; false if cancelled.
   bool gather(const Work& work);
-  /// Queues the records of this pass that are too noisy, for four times as many rays. False if there are
-  /// none.
-  bool next_level();
+  /// Queues the records of this pass that are too noisy, as many as its rays allow, for four times as many
+  /// rays. False if there are none.
+  bool next_level(const CacheView& view);
   bool at_last_level() const;
-  /// The noisy ones among records with equally many rays. `figures`: of every record.
+  /// The noisy ones among records with equally many rays, at most `most`, the noisiest. `figures`: of every
+  /// record.
   std::vector<uint32_t> noisy(const std::vector<uint32_t>& records,
-                              const std::vector<Records::Figures>& figures) const;
+                              const std::vector<Records::Figures>& figures, size_t most) const;
   /// Queues the next records of any pass for refinement, and sets their level. False if there are none.
   bool next_refined();
   float share_of_noise(uint32_t record) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 namespace lucerna::irradiance_cache {
 
@@ -13,8 +14,12 @@ float dark_luminance(std::span<const float> light, uint32_t count) {
   return lit > 0 ? 0.1f * float(sum / lit) : 1.0f;
 }
 
-std::vector<uint32_t> too_noisy(std::span<const Noise> list, float darkest) {
-  std::vector<uint32_t> found;
+std::vector<uint32_t> too_noisy(std::span<const Noise> list, float darkest, size_t most) {
+  struct Found {
+    double excess;
+    uint32_t index;
+  };
+  std::vector<Found> found;
   for (size_t i = 0; i < list.size(); ++i) {
     double squares = 0, light = 0;
     size_t others = 0;
@@ -24,10 +29,17 @@ std::vector<uint32_t> too_noisy(std::span<const Noise> list, float darkest) {
       squares += double(list[k].error) * double(list[k].error), light += double(list[k].light), ++others;
     }
     const double error = std::sqrt(squares / double(others));
-    if (error > double(list[i].bound) * std::max(light / double(others), double(darkest)))
-      found.push_back(uint32_t(i));
+    const double accepted = double(list[i].bound) * std::max(light / double(others), double(darkest));
+    if (error > accepted) found.push_back({error / accepted, uint32_t(i)});
   }
-  return found;
+  if (found.size() > most) {
+    std::ranges::stable_sort(found, std::ranges::greater{}, &Found::excess);
+    found.resize(most);
+    std::ranges::sort(found, {}, &Found::index);
+  }
+  std::vector<uint32_t> indices;
+  for (const Found& f : found) indices.push_back(f.index);
+  return indices;
 }
 
 }  // namespace lucerna::irradiance_cache

@@ -29,6 +29,8 @@ float dark_luminance(std::span<const float> light, uint32_t count);
 /// missed a bright feature by chance has too small an error and too little light; one that met it too often
 /// has too small a ratio; stopping by either would bias the result. Light that few rays find (a caustic) is
 /// therefore searched wherever a nearby record has found it. A record without neighbours is judged alone.
-std::vector<uint32_t> too_noisy(std::span<const Noise> list, float darkest);
+///
+/// At most `most` are selected: those that exceed their bound most, earlier ones first among equals.
+std::vector<uint32_t> too_noisy(std::span<const Noise> list, float darkest, size_t most = SIZE_MAX);
 
 }  // namespace lucerna::irradiance_cache

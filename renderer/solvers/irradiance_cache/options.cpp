@@ -57,7 +57,8 @@ std::vector<OptionInfo> light_rows() {
       real_option("cache.noise", "0.3", 0, 10, "",
                   "Irradiance cache: relative standard error above which a record gets more rays than the "
                   "first level. Valid for a record with a radius of 3 % of the picture's height; records "
-                  "that more of the picture reads get more rays, others fewer. The bound falls as samples "
+                  "that more of the picture reads get more rays, others fewer, and a pass at most 16 further "
+                  "rays per pixel in all (four times as many for half the bound). The bound falls as samples "
                   "accumulate, where more rays are more efficient than more samples.",
                   "Noise bound"),
       boolean_option("cache.smooth", "true",
