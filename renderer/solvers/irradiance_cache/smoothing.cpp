@@ -21,7 +21,7 @@ struct Site {
   float radius = 0;            ///< lesser one [m]; 0: neither smoothed nor a neighbour
   float share = 0;             ///< share of its disc that it represents, 0..1
   float weight = 0;            ///< rays, times the share of its disc that it represents
-  float area = 0;              ///< that it represents, up to a factor [m^2]
+  double area = 0;             ///< that it represents, up to a factor [m^2]; in double: large squares
   float light = 0, error = 0;  ///< luminance of all parts, and its standard error
   uint32_t medium = 0;
 };
@@ -40,7 +40,7 @@ Site site_of(const RawRecords& raw, uint32_t r) {
   s.radius = radius;
   s.share = std::clamp(place[2].y / radius, k_least_share, 1.0f);
   s.weight = rays * s.share;
-  s.area = radius * radius * s.share;
+  s.area = double{radius} * double{radius} * double{s.share};
   s.medium = std::bit_cast<uint32_t>(place[5].x);
   for (uint32_t p = 0; p < k_part_count; ++p) s.light += luminance(vec3(light[p * k_part_texels]));
   return s;
@@ -222,11 +222,12 @@ class Fits {
     /// Largest scale: a record that hardly any fit admits does not get all of one.
     constexpr float k_most = 4;
     for (int round = 0; round < k_rounds; ++round) {
-      std::vector<float> read(sites_.size(), 0.0f);
+      std::vector<double> read(sites_.size(), 0.0);
       for (uint32_t r = 0; r < sites_.size(); ++r)
-        for (const Neighbour& n : of(r)) read[n.record] += sites_[r].area * n.weight;
+        for (const Neighbour& n : of(r)) read[n.record] += sites_[r].area * double{n.weight};
       for (uint32_t r = 0; r < sites_.size(); ++r)
-        if (read[r] > 0) gains_[r] = std::clamp(gains_[r] * sites_[r].area / read[r], 1 / k_most, k_most);
+        if (read[r] > 0)
+          gains_[r] = std::clamp(gains_[r] * float(sites_[r].area / read[r]), 1 / k_most, k_most);
     }
   }
 
