@@ -111,6 +111,30 @@ TEST_CASE("surfaces become glass, thin panes, cut out and blended as if built th
   }
 }
 
+TEST_CASE("a surface becomes glass or matt while photons are traced, as if built that way") {
+  const scene::Scene matt = textured_room();
+  scene::Scene glass = matt, tinted = matt;
+  scene::Material& clear = glass.materials[k_block];
+  clear.transmission = 1, clear.thickness = 1, clear.roughness = 0;
+  tinted.materials[k_block] = clear;
+  tinted.materials[k_block].attenuation_color = {0.9f, 0.5f, 0.2f};
+  tinted.materials[k_block].attenuation_distance = 0.5f;
+  // Without glass no photons are called for: they begin, begin again, and are dropped.
+  const std::pair<const scene::Scene*, const scene::Scene*> edits[] = {
+      {&matt, &glass}, {&glass, &tinted}, {&glass, &matt}};
+  for (const auto& [from, to] : edits) {
+    const film::Image expected = Bench(*to, true).image();
+    for (const int steps : {1, 2, 4}) {
+      CAPTURE(steps, from == &matt, to == &matt);
+      Bench edited(*from, true);
+      for (int i = 0; i < steps; ++i) REQUIRE(edited.r.step());
+      REQUIRE_FALSE(edited.r.done());
+      edited.r.set_material(k_block, to->materials[k_block]);
+      CHECK(same(edited.image(), expected));
+    }
+  }
+}
+
 TEST_CASE("textures come from files and other materials, and leave nothing behind") {
   const test::Folder folder;
   const scene::Scene before = textured_room();
