@@ -98,22 +98,20 @@ void ActiveSolvers::load(const std::string& name, const std::filesystem::path& f
   });
 }
 
+std::vector<const solvers::Preparation*> ActiveSolvers::preparations() const {
+  std::vector<const solvers::Preparation*> all;
+  if (!setup_.engine) return all;
+  for (const auto& solver : setup_.engine->solvers())
+    if (const auto* preparation = solvers::offered<solvers::Preparation>(*solver)) all.push_back(preparation);
+  return all;
+}
+
 bool ActiveSolvers::usable() const {
-  if (!setup_.engine) return true;
-  const auto& all = setup_.engine->solvers();
-  return std::all_of(all.begin(), all.end(), [](const auto& solver) {
-    const auto* preparation = solvers::offered<solvers::Preparation>(*solver);
-    return !preparation || preparation->usable();
-  });
+  return std::ranges::all_of(preparations(), &solvers::Preparation::usable);
 }
 
 bool ActiveSolvers::stepped() const {
-  if (!setup_.engine) return false;
-  const auto& all = setup_.engine->solvers();
-  return std::any_of(all.begin(), all.end(), [](const auto& solver) {
-    const auto* preparation = solvers::offered<solvers::Preparation>(*solver);
-    return preparation && preparation->stepped();
-  });
+  return std::ranges::any_of(preparations(), &solvers::Preparation::stepped);
 }
 
 void ActiveSolvers::finish_early() {

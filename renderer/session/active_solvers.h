@@ -42,6 +42,7 @@ class ActiveSolvers {
   nlohmann::ordered_json statistics();
 
  private:
+  std::vector<const solvers::Preparation*> preparations() const;  // of the solvers that prepare
   solvers::Provenance provenance() const;
   solvers::Solver& for_file(const std::string& name, const std::filesystem::path& file, const char* nothing,
                             const char* no_scene);

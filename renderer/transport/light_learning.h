@@ -50,9 +50,8 @@ class LightLearning {
   /// Number of them that were replayed.
   uint32_t replayed() const { return replayed_; }
   uint32_t most_paths() const { return most_paths_; }
-  /// Restarts, with these lights or the present ones.
+  /// Restarts with these lights.
   void forget(upload::LightClusters clusters);
-  void forget();
 
   /// Without data that only the device reads.
   const upload::LightClusters& clusters() const { return clusters_; }
@@ -77,6 +76,7 @@ class LightLearning {
     bool pays = true;
     double gain = 1, arrived = 0;
   };
+  void forget();  // with the present lights
   void take(LearnedLights lights);
   void take(const Generation& generation);
   uint64_t kept_bytes() const;
