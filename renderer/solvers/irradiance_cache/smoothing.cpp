@@ -219,7 +219,8 @@ class Fits {
   void balance() {
     /// Without any, 2.6 % of the light of the unit test's sparse records is lost; after 4 it is .2 %.
     constexpr int k_rounds = 4;
-    /// Largest scale: a record that hardly any fit admits does not get all of one.
+    /// Largest scale: a record that hardly any fit admits does not get all of one. A record that represents
+    /// only a part of its disc gets none: that others reject its light is wanted (likeness()).
     constexpr float k_most = 4;
     for (int round = 0; round < k_rounds; ++round) {
       std::vector<double> read(sites_.size(), 0.0);
@@ -227,7 +228,8 @@ class Fits {
         for (const Neighbour& n : of(r)) read[n.record] += sites_[r].area * double{n.weight};
       for (uint32_t r = 0; r < sites_.size(); ++r)
         if (read[r] > 0)
-          gains_[r] = std::clamp(gains_[r] * float(sites_[r].area / read[r]), 1 / k_most, k_most);
+          gains_[r] = std::clamp(gains_[r] * float(sites_[r].area / read[r]), 1 / k_most,
+                                 sites_[r].share < 1 ? 1 : k_most);
     }
   }
 

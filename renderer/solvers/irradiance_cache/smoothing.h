@@ -25,7 +25,8 @@
 //   sum_i A_i w_ij = A_j for all j, and so sum_i A_i E_i' = sum_j A_j E_j
 //
 // (R. Sinkhorn, P. Knopp, "Concerning Nonnegative Matrices and Doubly Stochastic Matrices", 1967; P.
-// Milanfar, "Symmetrizing Smoothing Filters", 2013). In few rounds, so it holds nearly.
+// Milanfar, "Symmetrizing Smoothing Filters", 2013). In few rounds, so it holds nearly; and records in
+// creases are not scaled up, because others are right to reject their light.
 //
 // All parts, channels and shares of light groups get the same weights, so components still add up, and the
 // errors of records propagate exactly but for the weights' own dependence on the light. Rotational gradients
