@@ -34,7 +34,6 @@ struct BuildProgress {
   StageClock clock;
   Pauses pauses;
   Refining refining;
-  uint64_t further_rays = 0;  ///< of the levels after the first, in this pass
   /// Why building had stopped before relighting; it stops again for that reason afterwards.
   StopReason stopped_before = StopReason::building;
   bool ends_early = false;  ///< building ends with the stage `index`
@@ -190,7 +189,7 @@ struct Cache::Impl {
   /// The noisy ones among records with equally many rays, at most `most`, the noisiest. `figures`: of every
   /// record.
   std::vector<uint32_t> noisy(const std::vector<uint32_t>& records,
-                              const std::vector<Records::Figures>& figures, size_t most) const;
+                              const std::vector<Records::Figures>& figures, size_t most = SIZE_MAX) const;
   /// Queues the next records of any pass for refinement, and sets their level. False if there are none.
   bool next_refined();
   float share_of_noise(uint32_t record) const;

@@ -166,7 +166,7 @@ float Cache::Impl::share_of_noise(uint32_t record) const {
                     int(progress.levels.level()));
 }
 
-bool Cache::Impl::at_last_level() const { return uint64_t{4} * progress.levels.rays() > options.most_rays; }
+bool Cache::Impl::at_last_level() const { return progress.levels.next_rays() > options.most_rays; }
 
 std::vector<uint32_t> Cache::Impl::noisy(const std::vector<uint32_t>& records,
                                          const std::vector<Records::Figures>& figures, size_t most) const {
@@ -183,17 +183,15 @@ std::vector<uint32_t> Cache::Impl::noisy(const std::vector<uint32_t>& records,
 
 bool Cache::Impl::next_level(const CacheView& view) {
   RecordQueue& queue = progress.queue;
-  if (progress.levels.level() == 0) progress.further_rays = 0;
   queue.set(without_crowded(queue.all()));  // the rays so far may have hit near geometry
   if (queue.done() || at_last_level()) return false;
-  const uint64_t rays = uint64_t{4} * progress.levels.rays();
+  RayLevels& levels = progress.levels;
   const double left =
-      most_further_rays(options.noise) * view.width * view.height - double(progress.further_rays);
-  const double most = std::clamp(left / double(rays), 0.0, double(queue.all().size()));
+      most_further_rays(options.noise) * view.width * view.height - double(levels.further_rays());
+  const double most = std::clamp(left / double(levels.next_rays()), 0.0, double(queue.all().size()));
   queue.set(noisy(queue.all(), tables.records.figures(), size_t(most)));
   if (queue.done()) return false;
-  progress.further_rays += queue.all().size() * rays;
-  progress.levels.next();
+  levels.next(queue.all().size());
   return true;
 }
 
@@ -225,9 +223,9 @@ bool Cache::Impl::next_refined() {
     std::vector<uint32_t> here;
     for (uint32_t r = 0; r < ranges.evaluated(); ++r)
       if (figures[r].rays == float(progress.levels.rays_before())) here.push_back(r);
-    progress.queue.set(noisy(without_crowded(std::move(here)), figures, SIZE_MAX));
+    progress.queue.set(noisy(without_crowded(std::move(here)), figures));
     if (progress.queue.done()) continue;
-    progress.levels.next();
+    progress.levels.next(progress.queue.all().size());
     ++level;
     return true;
   }

@@ -57,7 +57,7 @@ class RayLevels {
   bool in_first_round() const { return level_ == 0 && in_level_ == 0; }
 
   /// Restarts at the first level, for another pass.
-  void restart() { level_ = in_level_ = before_ = 0; }
+  void restart() { level_ = in_level_ = before_ = 0, further_ = 0; }
   /// Call when all records have had a round; true if it was the last of the level.
   bool end_round() {
     before_ += round_rays();
@@ -65,7 +65,12 @@ class RayLevels {
     return in_level_ >= rays();
   }
   void end_level() { in_level_ = 0; }
-  void next() { ++level_; }
+  /// Begins the next level, for that many records.
+  void next(size_t records) { ++level_, further_ += uint64_t{rays()} * records; }
+  /// Of each record, in the next level.
+  uint64_t next_rays() const { return uint64_t{4} * rays(); }
+  /// Of all records, in all levels since restart() but the first.
+  uint64_t further_rays() const { return further_; }
   /// Sets the level to continue with: records have had the rays of all levels up to `level`.
   void resume(uint32_t level) { level_ = level, in_level_ = 0, before_ = rays_up_to(level); }
   /// Rays of a record after a complete level, including earlier levels.
@@ -75,6 +80,7 @@ class RayLevels {
 
  private:
   uint32_t first_, level_ = 0, in_level_ = 0, before_ = 0;
+  uint64_t further_ = 0;
 };
 
 }  // namespace lucerna::irradiance_cache
